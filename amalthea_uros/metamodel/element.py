@@ -1,0 +1,364 @@
+"""Base of the AMALTHEA classes: features, containment known from both ends, walking.
+
+The generated classes declare one feature per line::
+
+    class Task(Process):
+        preemption: Preemption | None = attribute("preemption")
+        stimuli: list[Stimulus] = references("stimuli")
+
+A feature is unset (`None`, or an empty list) until something is assigned; defaults are a matter of the AMALTHEA version and are
+asked with `Element.effective`. Values live in the instance dictionary; the descriptors below only answer for unset features, so
+that a read costs no more than that of an ordinary attribute and an object of which three of twenty features are set stays small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from difflib import get_close_matches
+from functools import cache
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, SupportsIndex, TypeVar, dataclass_transform
+
+if TYPE_CHECKING:
+    from amalthea_uros.metamodel.model import Document, Model
+
+E = TypeVar("E", bound="Element")
+
+#: `either` is a containment in some versions and a reference in others (the data type of labels and channels).
+FeatureKind = Literal["attribute", "reference", "containment", "either"]
+
+_set = object.__setattr__
+
+
+class Revision:
+    """Counts the changes of names and containment in this process; look-up tables made earlier are stale."""
+
+    number: ClassVar[int] = 0
+
+
+class Feature:
+    """One feature of a class; as a descriptor it answers for the unset value."""
+
+    __slots__ = ("kind", "many", "name", "xml_name")
+
+    def __init__(self, xml_name: str, kind: FeatureKind, many: bool = False) -> None:
+        self.name = ""
+        self.xml_name = xml_name
+        self.kind: FeatureKind = kind
+        self.many = many
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, instance: Element | None, owner: type) -> Any:
+        if instance is None:
+            return self
+        if not self.many:
+            return None
+        empty: list[Any] = ContainmentList(instance) if self.kind == "containment" else []
+        _set(instance, self.name, empty)
+        return empty
+
+    def contains(self, value: object) -> bool:
+        """Whether an object held by this feature is part of its holder."""
+        if self.kind == "either":
+            return isinstance(value, Element) and not value.is_referable
+        return self.kind == "containment"
+
+    def __repr__(self) -> str:
+        return f"<{self.kind} {self.xml_name}{' *' if self.many else ''}>"
+
+
+# The generated classes call these five; their static type is the annotation of the feature.
+
+
+def attribute(xml_name: str) -> Any:
+    """A number, text, truth value or literal."""
+    return Feature(xml_name, "attribute")
+
+
+def reference(xml_name: str) -> Any:
+    """A reference to an object that lives elsewhere."""
+    return Feature(xml_name, "reference")
+
+
+def references(xml_name: str) -> Any:
+    """Ordered references to objects that live elsewhere."""
+    return Feature(xml_name, "reference", many=True)
+
+
+def containment(xml_name: str) -> Any:
+    """A part of the object."""
+    return Feature(xml_name, "containment")
+
+
+def containments(xml_name: str) -> Any:
+    """Ordered parts of the object."""
+    return Feature(xml_name, "containment", many=True)
+
+
+def containment_or_reference(xml_name: str) -> Any:
+    """A part of the object in older versions, a reference in newer ones."""
+    return Feature(xml_name, "either")
+
+
+@dataclass_transform(kw_only_default=True, eq_default=False)
+class Element:
+    """Any object of an AMALTHEA model.
+
+    Objects are equal only to themselves. An object has at most one container: putting it into a second one takes it out of the
+    first.
+    """
+
+    __slots__ = ("_container", "_document", "_reference")
+
+    is_abstract: ClassVar[bool] = True
+    is_referable: ClassVar[bool] = False
+
+    def __init_subclass__(cls, abstract: bool = False) -> None:
+        cls.is_abstract = abstract
+        cls.is_referable = any(base.__name__ == "IReferable" for base in cls.__mro__)
+
+    def __new__(cls, *_args: Any, **_features: Any) -> Self:
+        self = object.__new__(cls)
+        _set(self, "_container", None)
+        return self
+
+    def __init__(self, **features: Any) -> None:
+        if self.is_abstract:
+            raise TypeError(f"{type(self).__name__} is abstract, create one of its subclasses")
+        for name, value in features.items():
+            setattr(self, name, value)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        feature = features_of(type(self)).get(name)
+        if feature is None:
+            raise AttributeError(_unknown_feature(type(self), name))
+        if feature.many:
+            value = self._new_list(feature, value)
+        elif feature.kind != "attribute":
+            old = self.__dict__.get(name)
+            if old is value:
+                return
+            if old is not None and feature.contains(old):
+                _release(old)
+            if value is not None and feature.contains(value):
+                adopt(self, value)
+        if name == "name":
+            Revision.number += 1
+        _set(self, name, value)
+
+    def __delattr__(self, name: str) -> None:
+        feature = features_of(type(self)).get(name)
+        if feature is None:
+            raise AttributeError(_unknown_feature(type(self), name))
+        setattr(self, name, [] if feature.many else None)
+
+    def _new_list(self, feature: Feature, values: Iterable[Any]) -> list[Any]:
+        if feature.kind != "containment":
+            return list(values)
+        values = list(values)
+        old = self.__dict__.get(feature.name)
+        if old:
+            old.clear()
+        return ContainmentList(self, values)
+
+    def __repr__(self) -> str:
+        name = self.__dict__.get("name")
+        return f"<{type(self).__name__} {name!r}>" if name else f"<{type(self).__name__}>"
+
+    def __dir__(self) -> list[str]:
+        return sorted({*object.__dir__(self), *features_of(type(self))})
+
+    @property
+    def container(self) -> Element | None:
+        """The object that this one is part of; None for a root, an unresolved or a detached object."""
+        return self._container  # type: ignore[no-any-return]
+
+    @property
+    def document(self) -> Document | None:
+        """The file (to be) that holds this object; None while it is not part of one."""
+        top: Element = self
+        while top._container is not None:
+            top = top._container
+        return getattr(top, "_document", None)
+
+    @property
+    def model(self) -> Model | None:
+        """The model that holds this object."""
+        document = self.document
+        return document.model if document else None
+
+    @property
+    def unresolved(self) -> str | None:
+        """The text of the reference for which no object was found; None for every real object.
+
+        A reference into a file that was not read, or to nothing at all, leads to such a stand-in of the right class.
+        """
+        return getattr(self, "_reference", None)
+
+    @property
+    def unique_name(self) -> str:
+        """The id under which references find this object, e.g. `Board/eth0?type=HwPort`."""
+        from amalthea_uros.metamodel.naming import unique_name
+
+        return unique_name(self)
+
+    @property
+    def qualified_name(self) -> str:
+        """Name with the names that set it apart from others, joined by `.`; for an unnamed object where it stands."""
+        from amalthea_uros.metamodel.naming import qualified_name
+
+        return qualified_name(self)
+
+    def effective(self, feature_name: str) -> Any:
+        """The value of a feature, or what its absence stands for in the AMALTHEA version of the object's document.
+
+        Raises
+        ------
+        AttributeError : the class has no such feature.
+        """
+        from amalthea_uros.metamodel.defaults import effective
+
+        return effective(self, feature_name)
+
+    def contents(self) -> Iterator[Element]:
+        """The direct parts, in the order of the features."""
+        values = self.__dict__
+        for feature in containments_of(type(self)):
+            value = values.get(feature.name)
+            if value is None:
+                continue
+            if feature.many:
+                yield from value
+            elif feature.contains(value):
+                yield value
+
+    def walk(self) -> Iterator[Element]:
+        """The object itself and all its parts, parents before children."""
+        stack = [self]
+        while stack:
+            element = stack.pop()
+            yield element
+            stack.extend(reversed(tuple(element.contents())))
+
+    def enclosing(self, cls: type[E]) -> E | None:
+        """The nearest container of a class (the Task in which a call stands), None if there is none."""
+        element = self._container
+        while element is not None and not isinstance(element, cls):
+            element = element._container
+        return element
+
+
+class ContainmentList(list[E]):
+    """Parts of one object, in order. Every way of putting an object in makes the owner its container."""
+
+    __slots__ = ("_owner",)
+
+    def __init__(self, owner: Element, values: Iterable[E] = ()) -> None:
+        super().__init__()
+        self._owner = owner
+        self.extend(values)
+
+    def append(self, value: E) -> None:
+        adopt(self._owner, value)
+        super().append(value)
+
+    def insert(self, index: SupportsIndex, value: E) -> None:
+        adopt(self._owner, value)
+        super().insert(index, value)
+
+    def extend(self, values: Iterable[E]) -> None:
+        for value in list(values):
+            self.append(value)
+
+    def __iadd__(self, values: Iterable[E]) -> ContainmentList[E]:  # type: ignore[override, misc]
+        self.extend(values)
+        return self
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        if isinstance(index, slice):
+            kept = list(self)
+            kept[index] = list(value)
+            self.clear()
+            self.extend(kept)
+            return
+        old = self[index]
+        if old is value:
+            return
+        adopt(self._owner, value)
+        position = next(i for i, element in enumerate(self) if element is old)
+        _release(old)
+        super().__setitem__(position, value)
+
+    def __delitem__(self, index: Any) -> None:
+        gone = self[index] if isinstance(index, slice) else [self[index]]
+        super().__delitem__(index)
+        for value in gone:
+            _release(value)
+
+    def remove(self, value: E) -> None:
+        del self[self.index(value)]
+
+    def pop(self, index: SupportsIndex = -1) -> E:
+        value = super().pop(index)
+        _release(value)
+        return value
+
+    def clear(self) -> None:
+        del self[:]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (list, (list(self),))
+
+
+def _release(value: Element) -> None:
+    """Forget the container of an object that was just taken out."""
+    _set(value, "_container", None)
+    Revision.number += 1
+
+
+def adopt(owner: Element, value: Element) -> None:
+    """Make `owner` the container of `value`, taking it out of the old one."""
+    if not isinstance(value, Element):
+        raise TypeError(f"{owner!r} cannot contain {value!r}: not a model object")
+    ancestor: Element | None = owner
+    while ancestor is not None:
+        if ancestor is value:
+            raise ValueError(f"{value!r} cannot become a part of {owner!r}, which is part of it")
+        ancestor = ancestor._container
+    _take_out(value)
+    _set(value, "_container", owner)
+    Revision.number += 1
+
+
+def _take_out(value: Element) -> None:
+    holder = value._container
+    if holder is None:
+        return
+    for feature in containments_of(type(holder)):
+        held = holder.__dict__.get(feature.name)
+        if held is value:
+            _set(holder, feature.name, None)
+        elif feature.many and held and any(element is value for element in held):
+            list.remove(held, value)
+
+
+@cache
+def features_of(cls: type[Element]) -> dict[str, Feature]:
+    """All features of a class by their Python names, those of the supertypes first."""
+    found: dict[str, Feature] = {}
+    for base in reversed(cls.__mro__):
+        found.update((name, value) for name, value in vars(base).items() if isinstance(value, Feature))
+    return found
+
+
+@cache
+def containments_of(cls: type[Element]) -> tuple[Feature, ...]:
+    """The features of a class that may hold parts."""
+    return tuple(f for f in features_of(cls).values() if f.kind in ("containment", "either"))
+
+
+def _unknown_feature(cls: type[Element], name: str) -> str:
+    near = get_close_matches(name, features_of(cls), n=1)
+    hint = f", did you mean {near[0]!r}?" if near else ""
+    return f"{cls.__name__} has no feature {name!r}{hint}"

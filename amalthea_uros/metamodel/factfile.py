@@ -1,0 +1,156 @@
+"""Reader of the facts files: what each AMALTHEA version declares, as text.
+
+A facts file is a sequence of blocks separated by blank lines::
+
+    class EnumMode : Mode @ 0.9.4..            class, its kind, supertypes, the versions for which the block holds
+      literals   <> ModeLiteral * opposite containingMode       contains many
+      entity     -> Label 1                                      refers to exactly one
+      ordered    EBoolean = "true"                               attribute with an explicit default literal
+
+    enum ISRCategory                           literals, the first one is the default
+      _undefined_
+      CATEGORY_1
+
+    datatype PositiveInt int minExclusive 0    a restricted number
+
+Class kinds are `abstract`, `interface` (both without instances) and `entry` (an Ecore map entry with key and value). A feature
+is optional unless its multiplicity says `1`, `*` or `1..*`; `derived` features are computed and never stored, `readonly` ones
+mirror the containment named by `opposite`. The order of the features is the order of their serialisation.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+
+class Kind(Enum):
+    """How a feature holds its value."""
+
+    ATTRIBUTE = ""
+    CONTAINMENT = "<>"
+    REFERENCE = "->"
+
+
+_KINDS = {kind.value: kind for kind in Kind}
+
+
+class FeatureFact(NamedTuple):
+    """What one version declares of one feature, under the names of the file format."""
+
+    name: str
+    kind: Kind
+    type: str
+    required: bool = False
+    many: bool = False
+    derived: bool = False
+    readonly: bool = False
+    default: str | None = None
+    opposite: str | None = None
+
+    @property
+    def stored(self) -> bool:
+        """Whether the feature is written to files."""
+        return not self.derived and not self.readonly
+
+
+@dataclass(frozen=True, slots=True)
+class ClassFact:
+    """What one version declares of one class: its own features only."""
+
+    name: str
+    module: str
+    abstract: bool
+    entry: bool
+    supertypes: tuple[str, ...]
+    features: tuple[FeatureFact, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EnumFact:
+    """An enumeration; its first literal is the default of every attribute of that type."""
+
+    name: str
+    literals: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class NumberFact:
+    """A number type with a lower limit."""
+
+    name: str
+    java_type: str
+    minimum: int
+    exclusive: bool
+
+
+Fact = ClassFact | EnumFact | NumberFact
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """The text of a fact and the (first, last) versions between which it holds; no ranges means always."""
+
+    module: str
+    text: str
+    ranges: tuple[tuple[str, str | None], ...]
+
+    def fact(self) -> Fact:
+        """The declaration (parsed when asked for: a version needs half of the blocks)."""
+        head, *body = self.text.split("\n")
+        return _fact(self.module, head.partition(" @ ")[0].split(), body)
+
+
+def blocks(module: str, text: str) -> Iterable[Block]:
+    """Blocks of one facts file, in its order."""
+    for chunk in text.strip().split("\n\n"):
+        _, _, versions = chunk.partition("\n")[0].partition(" @ ")
+        yield Block(module, chunk, _ranges(versions))
+
+
+def _ranges(text: str) -> tuple[tuple[str, str | None], ...]:
+    found: list[tuple[str, str | None]] = []
+    for item in text.split():
+        first, dots, last = item.partition("..")
+        found.append((first, (last or None) if dots else first))
+    return tuple(found)
+
+
+def _fact(module: str, words: list[str], body: list[str]) -> Fact:
+    match words:
+        case ["class", name, *rest]:
+            split = rest.index(":") if ":" in rest else len(rest)
+            return ClassFact(
+                name=name,
+                module=module,
+                abstract="abstract" in rest[:split] or "interface" in rest[:split],
+                entry="entry" in rest[:split],
+                supertypes=tuple(rest[split + 1 :]),
+                features=tuple(map(_feature, body)),
+            )
+        case ["enum", name]:
+            return EnumFact(name, tuple(line.strip() for line in body))
+        case ["datatype", name, java_type, facet, limit]:
+            return NumberFact(name, java_type, int(limit), exclusive=facet == "minExclusive")
+    raise ValueError(f"facts file {module}: not a declaration: {' '.join(words)}")
+
+
+def _feature(line: str) -> FeatureFact:
+    declaration, _, default = line.partition(" = ")
+    name, *words = declaration.split()
+    kind = _KINDS.get(words[0], Kind.ATTRIBUTE)
+    type_name, *flags = words if kind is Kind.ATTRIBUTE else words[1:]
+    return FeatureFact(
+        name=name,
+        kind=kind,
+        type=type_name,
+        required="1" in flags or "1..*" in flags,
+        many="*" in flags or "1..*" in flags,
+        derived="derived" in flags,
+        readonly="readonly" in flags,
+        default=json.loads(default) if default else None,
+        opposite=flags[flags.index("opposite") + 1] if "opposite" in flags else None,
+    )

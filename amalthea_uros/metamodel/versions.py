@@ -1,0 +1,152 @@
+"""AMALTHEA versions and what each of them declares.
+
+`facts(version)` answers for one version: classes, features in the order of their serialisation, defaults, literals.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+from importlib.resources import files
+
+from amalthea_uros.metamodel.factfile import Block, ClassFact, EnumFact, FeatureFact, Kind, NumberFact, blocks
+
+NAMESPACE_PREFIX = "http://app4mc.eclipse.org/amalthea/"
+
+#: The first version whose models are held as they are; older ones have another structure.
+OLDEST_HELD = "0.9.7"
+
+#: Value of an unset attribute without a default literal, by Ecore type: that of the Java primitive, or nothing at all.
+_JAVA_DEFAULTS = {
+    "EInt": "0",
+    "ELong": "0",
+    "EDouble": "0.0",
+    "EFloat": "0.0",
+    "EBoolean": "false",
+    "Address": "0",
+}
+
+
+@cache
+def version_key(version: str) -> tuple[int, ...]:
+    """Sort key of a version such as "0.9.7"."""
+    return tuple(map(int, version.split(".")))
+
+
+@cache
+def _blocks() -> tuple[Block, ...]:
+    folder = files(__package__) / "facts"
+    names = sorted(entry.name for entry in folder.iterdir() if entry.name != "versions.txt")
+    return tuple(
+        block for name in names for block in blocks(name.removesuffix(".txt"), (folder / name).read_text(encoding="utf-8"))
+    )
+
+
+@cache
+def known_versions() -> tuple[str, ...]:
+    """Every version with facts, oldest first."""
+    return tuple((files(__package__) / "facts" / "versions.txt").read_text(encoding="utf-8").split())
+
+
+def held_versions() -> tuple[str, ...]:
+    """The versions that the typed classes cover, oldest first."""
+    return tuple(v for v in known_versions() if version_key(v) >= version_key(OLDEST_HELD))
+
+
+def newest_version() -> str:
+    """The newest version with facts."""
+    return known_versions()[-1]
+
+
+def nearest_version(version: str) -> str:
+    """The version whose facts serve for `version`: itself, else the next older known one, else the oldest."""
+    older = [v for v in known_versions() if version_key(v) <= version_key(version)]
+    return older[-1] if older else known_versions()[0]
+
+
+def _holds(block: Block, version: str) -> bool:
+    key = version_key(version)
+    return not block.ranges or any(
+        version_key(first) <= key and (last is None or key <= version_key(last)) for first, last in block.ranges
+    )
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What one AMALTHEA version declares.
+
+    Attributes
+    ----------
+    version : "0.9.3" ... "3.3.0"
+    classes, enums, numbers : declarations by name, in declaration order within a sub-model
+    """
+
+    version: str
+    classes: dict[str, ClassFact]
+    enums: dict[str, EnumFact]
+    numbers: dict[str, NumberFact]
+
+    @property
+    def namespace(self) -> str:
+        """The XML namespace of the version."""
+        return NAMESPACE_PREFIX + self.version
+
+    @cached_property
+    def _features(self) -> dict[str, tuple[FeatureFact, ...]]:
+        return {}
+
+    def features(self, class_name: str) -> tuple[FeatureFact, ...]:
+        """All features of a class in EMF's order: those of the supertypes first, depth first, each once; then its own."""
+        known = self._features.get(class_name)
+        if known is None:
+            fact = self.classes[class_name]
+            merged = {f.name: f for supertype in fact.supertypes for f in self.features(supertype)}
+            known = tuple((merged | {f.name: f for f in fact.features}).values())
+            self._features[class_name] = known
+        return known
+
+    def feature(self, class_name: str, feature_name: str) -> FeatureFact | None:
+        """A feature by the names of the file format, None if the version has no such class or feature."""
+        if class_name not in self.classes:
+            return None
+        return next((f for f in self.features(class_name) if f.name == feature_name), None)
+
+    def supertypes(self, class_name: str) -> frozenset[str]:
+        """The class itself and everything it inherits from."""
+        found = {class_name}
+        for supertype in self.classes[class_name].supertypes:
+            found |= self.supertypes(supertype)
+        return frozenset(found)
+
+    def concrete_subtypes(self, class_name: str) -> tuple[str, ...]:
+        """Every class of which an instance may stand where `class_name` is declared."""
+        return tuple(n for n, c in self.classes.items() if not c.abstract and class_name in self.supertypes(n))
+
+    def default(self, feature: FeatureFact) -> str | None:
+        """The text an unset attribute stands for, None if it stands for nothing."""
+        if feature.kind is not Kind.ATTRIBUTE:
+            return None
+        if feature.default is not None:
+            return feature.default
+        if feature.type in self.enums:
+            return self.enums[feature.type].literals[0]
+        return _JAVA_DEFAULTS.get(feature.type)
+
+
+@cache
+def facts(version: str) -> Facts:
+    """What `version` declares.
+
+    Raises
+    ------
+    KeyError : if there are no facts of that version; see `nearest_version`.
+    """
+    if version not in known_versions():
+        raise KeyError(version)
+    declared = [block.fact() for block in _blocks() if _holds(block, version)]
+    return Facts(
+        version=version,
+        classes={fact.name: fact for fact in declared if isinstance(fact, ClassFact)},
+        enums={fact.name: fact for fact in declared if isinstance(fact, EnumFact)},
+        numbers={fact.name: fact for fact in declared if isinstance(fact, NumberFact)},
+    )

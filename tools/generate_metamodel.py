@@ -1,0 +1,103 @@
+"""Generate `amalthea_uros/metamodel/classes/` from the facts.
+
+Usage: python tools/generate_metamodel.py [TARGET]
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+sys.path.insert(0, str(Path(__file__).parent))
+from union import Union, UnionClass, constant_case, union  # noqa: E402
+
+ROOT = Path(__file__).parent.parent
+TARGET = ROOT / "amalthea_uros" / "metamodel" / "classes"
+DESCRIPTIONS = ROOT / "tools" / "metamodel_descriptions.txt"
+
+
+def descriptions() -> dict[str, str]:
+    """Our words for classes ("Task") and features ("Task.preemption")."""
+    lines = DESCRIPTIONS.read_text(encoding="utf-8").splitlines() if DESCRIPTIONS.exists() else []
+    return {name.strip(): text.strip() for name, _, text in (line.partition(":") for line in lines) if text}
+
+
+def in_base_order(classes: list[UnionClass], merged: Union) -> Iterator[UnionClass]:
+    """Classes of one module, each after those of its bases that live in the same module."""
+    names = {cls.name for cls in classes}
+    done: set[str] = set()
+
+    def visit(cls: UnionClass) -> Iterator[UnionClass]:
+        for base in cls.bases:
+            if base in names and base not in done:
+                yield from visit(merged.classes[base])
+        if cls.name not in done:
+            done.add(cls.name)
+            yield cls
+
+    for cls in classes:
+        yield from visit(cls)
+
+
+def imports(classes: list[UnionClass], merged: Union, bases: bool) -> dict[str, list[str]]:
+    """Names needed from other modules: of base classes, or only of types of features."""
+    needed = {base for cls in classes for base in cls.bases}
+    if not bases:
+        types = {t for cls in classes for f in cls.features.values() for t in f.types}
+        needed = types - needed
+    found: dict[str, list[str]] = {}
+    for name in needed:
+        module = merged.classes[name].module if name in merged.classes else "enums" if name in merged.enums else None
+        if module and module != classes[0].module:
+            found.setdefault(module, []).append(name)
+    return {module: sorted(names) for module, names in sorted(found.items())}
+
+
+def render() -> dict[str, str]:
+    """File name -> text of every generated module."""
+    merged = union()
+    environment = Environment(
+        loader=FileSystemLoader(ROOT / "templates"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["constant"] = constant_case
+    by_module: dict[str, list[UnionClass]] = {}
+    for cls in merged.classes.values():
+        by_module.setdefault(cls.module, []).append(cls)
+    shared = {"merged": merged, "described": descriptions(), "versions": merged.versions, "all_versions": set(merged.versions)}
+    files = {"enums.py": environment.get_template("enums.py.jinja").render(shared)}
+    for module, classes in by_module.items():
+        used = {f.specifier for cls in classes for f in cls.features.values()}
+        quantities = [cls for cls in classes if "Quantity" in cls.bases]
+        if quantities or any(not cls.bases for cls in classes):
+            used.add("Element")
+        files[f"{module}.py"] = environment.get_template("classes.py.jinja").render(
+            shared,
+            module=module,
+            classes=list(in_base_order(classes, merged)),
+            element_names=sorted(used, key=lambda n: (n != "Element", n)),
+            base_imports=imports(classes, merged, bases=True),
+            type_imports=imports(classes, merged, bases=False),
+            unit_imports=[f"{cls.name}Unit" for cls in quantities],
+        )
+    exported = {module: sorted(cls.name for cls in classes) for module, classes in sorted(by_module.items())}
+    files["__init__.py"] = environment.get_template("classes_init.py.jinja").render(
+        exported={"enums": sorted(merged.enums), **exported}
+    )
+    return files
+
+
+def main(target: Path) -> None:
+    target.mkdir(parents=True, exist_ok=True)
+    for name, text in render().items():
+        (target / name).write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else TARGET)
