@@ -25,17 +25,27 @@ if TYPE_CHECKING:
 
 
 class IAnnotatable(Element, abstract=True):
-    """AMALTHEA IAnnotatable."""
+    """Object that may carry custom properties.
+
+    Attributes
+    ----------
+    custom_properties : User-defined values by key; a key may occur only once per object.
+    """
 
     custom_properties: list[CustomProperty] = containments("customProperties")
 
 
 class BaseObject(IAnnotatable, abstract=True):
-    """AMALTHEA BaseObject."""
+    """Base of the classes whose objects may carry custom properties."""
 
 
 class Amalthea(BaseObject):
-    """AMALTHEA Amalthea."""
+    """Root of a model; it holds at most one sub-model of each kind.
+
+    Attributes
+    ----------
+    measurement_model : Measured runtimes; this sub-model was dropped in 1.0.0.
+    """
 
     common_elements: CommonElements | None = containment("commonElements")
     sw_model: SWModel | None = containment("swModel")
@@ -52,42 +62,57 @@ class Amalthea(BaseObject):
 
 
 class INamed(Element, abstract=True):
-    """AMALTHEA INamed."""
+    """Object with a name.
+
+    Attributes
+    ----------
+    name : Raw text of any characters; only references encode it (a blank becomes a plus sign).
+    """
 
     name: str | None = attribute("name")
 
 
 class IReferable(INamed, abstract=True):
-    """AMALTHEA IReferable."""
+    """Named object to which others refer by name and class, so that names must be unique within a class."""
 
 
 class ReferableObject(IReferable, abstract=True):
-    """AMALTHEA ReferableObject."""
+    """Base of named objects to which others refer."""
 
 
 class ReferableBaseObject(IAnnotatable, IReferable, abstract=True):
-    """AMALTHEA ReferableBaseObject."""
+    """Base of named objects to which others refer and which may carry custom properties."""
 
 
 class ITaggable(Element, abstract=True):
-    """AMALTHEA ITaggable."""
+    """Object that may carry tags."""
 
     tags: list[Tag] = references("tags")
 
 
 class IDisplayName(Element, abstract=True):
-    """AMALTHEA IDisplayName."""
+    """Object with a second name for display.
+
+    Attributes
+    ----------
+    display_name : Name to show to users; references always use the name.
+    """
 
     display_name: str | None = attribute("displayName")
 
 
 class IDescription(Element, abstract=True):
-    """AMALTHEA IDescription."""
+    """Object with a free text that describes it."""
 
     description: str | None = attribute("description")
 
 
 class INamespaceMember(Element, abstract=True):
-    """AMALTHEA INamespaceMember."""
+    """Object whose name may be qualified by a namespace.
+
+    Attributes
+    ----------
+    namespace : Namespace of the name; it becomes part of every reference to the object.
+    """
 
     namespace: Namespace | None = reference("namespace")

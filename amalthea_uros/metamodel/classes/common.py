@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class CommonElements(BaseObject):
-    """AMALTHEA CommonElements."""
+    """Sub-model of elements that other sub-models share, such as tags and classifiers."""
 
     tags: list[Tag] = containments("tags")
     namespaces: list[Namespace] = containments("namespaces")
@@ -34,31 +34,48 @@ class CommonElements(BaseObject):
 
 
 class Tag(ReferableBaseObject, IDescription):
-    """AMALTHEA Tag."""
+    """Mark that can be attached to objects, for instance to select them as a group.
+
+    Attributes
+    ----------
+    tag_type : Free text that sorts tags into kinds.
+    """
 
     tag_type: str | None = attribute("tagType")
 
 
 class Namespace(ReferableObject):
-    """AMALTHEA Namespace."""
+    """One segment of a qualified name; segments are nested.
+
+    Attributes
+    ----------
+    next_segments : Namespaces below this one, each a longer qualified name.
+    """
 
     next_segments: list[Namespace] = containments("nextSegments")
 
 
 class Classifier(ReferableBaseObject, IDescription, abstract=True):
-    """AMALTHEA Classifier."""
+    """Property of a core or a memory that property constraints ask for."""
 
 
 class CoreClassifier(Classifier):
-    """AMALTHEA CoreClassifier."""
+    """Property of processing units, attached to their definitions."""
 
 
 class MemoryClassifier(Classifier):
-    """AMALTHEA MemoryClassifier."""
+    """Property of memories, attached to their definitions."""
 
 
 class TransmissionPolicy(Element):
-    """AMALTHEA TransmissionPolicy."""
+    """How data is transmitted in chunks and what the processing of the chunks costs.
+
+    Attributes
+    ----------
+    chunk_size : Size of one chunk, not larger than the transmitted element.
+    chunk_processing_ticks : Ticks per chunk; all elements of an access are added up before the number of chunks is rounded up.
+    transmit_ratio : Share of the data that is really transmitted, 0 to 1 (default 1); it does not scale the ticks.
+    """
 
     chunk_size: DataSize | None = containment("chunkSize")
     chunk_processing_ticks: int | None = attribute("chunkProcessingTicks")
@@ -66,19 +83,25 @@ class TransmissionPolicy(Element):
 
 
 class Quantity(Element, abstract=True):
-    """AMALTHEA Quantity."""
+    """Number with a unit; a unit that is left out means undefined, never a standard unit."""
 
 
 class TimeComparable(Element, abstract=True):
-    """AMALTHEA TimeComparable."""
+    """Marker of values that can be compared with times."""
 
 
 class Value(Element, abstract=True):
-    """AMALTHEA Value."""
+    """Base of everything that a custom property or a scheduling parameter can hold."""
 
 
 class Time(Quantity, Value, TimeComparable):
-    """AMALTHEA Time."""
+    """Integer with a unit of time; negative values are legal unless the role of the time excludes them.
+
+    Attributes
+    ----------
+    value : Integer in the given unit, of any size.
+    unit : Unit from s to ps; left out, the time is undefined and not a number of nanoseconds.
+    """
 
     value: int | None = attribute("value")
     unit: TimeUnit | None = attribute("unit")
@@ -88,7 +111,12 @@ class Time(Quantity, Value, TimeComparable):
 
 
 class Frequency(Quantity):
-    """AMALTHEA Frequency."""
+    """Number of cycles per time, with a unit.
+
+    Attributes
+    ----------
+    value : Zero or more, in the given unit; the clock of a processing unit must be greater than zero.
+    """
 
     value: float | None = attribute("value")
     unit: FrequencyUnit | None = attribute("unit")
@@ -98,7 +126,7 @@ class Frequency(Quantity):
 
 
 class Voltage(Quantity):
-    """AMALTHEA Voltage."""
+    """Electrical potential with a unit."""
 
     value: float | None = attribute("value")
     unit: VoltageUnit | None = attribute("unit")
@@ -108,7 +136,13 @@ class Voltage(Quantity):
 
 
 class DataSize(Quantity):
-    """AMALTHEA DataSize."""
+    """Amount of data in bits or bytes, with decimal (kB) or binary (KiB) prefix.
+
+    Attributes
+    ----------
+    value : Integer in the given unit; sizes of labels and processes must be greater than zero.
+    unit : Unit with prefix; sizes are often given in bit, so check before you take them for bytes.
+    """
 
     value: int | None = attribute("value")
     unit: DataSizeUnit | None = attribute("unit")
@@ -118,11 +152,11 @@ class DataSize(Quantity):
 
 
 class DataRateComparable(Element, abstract=True):
-    """AMALTHEA DataRateComparable."""
+    """Marker of values that can be compared with data rates."""
 
 
 class DataRate(Quantity, DataRateComparable):
-    """AMALTHEA DataRate."""
+    """Amount of data per second."""
 
     value: int | None = attribute("value")
     unit: DataRateUnit | None = attribute("unit")
@@ -132,78 +166,83 @@ class DataRate(Quantity, DataRateComparable):
 
 
 class CustomProperty(Element):
-    """AMALTHEA CustomProperty."""
+    """Map entry from a user-defined key to a value of any kind."""
 
     key: str | None = attribute("key")
     value: Value | None = containment("value")
 
 
 class ListObject(Value):
-    """AMALTHEA ListObject."""
+    """Value that is a list of values, which may be lists themselves."""
 
     values: list[Value] = containments("values")
 
 
 class MapObject(Value):
-    """AMALTHEA MapObject. (AMALTHEA 1.2.0..)"""
+    """Value that is a map of keys to values. (AMALTHEA 1.2.0..)"""
 
     entries: list[CustomProperty] = containments("entries")
 
 
 class StringObject(Value):
-    """AMALTHEA StringObject."""
+    """Value that is a text."""
 
     value: str | None = attribute("value")
 
 
 class BigIntegerObject(Value):
-    """AMALTHEA BigIntegerObject."""
+    """Value that is an integer of any size."""
 
     value: int | None = attribute("value")
 
 
 class ReferenceObject(Value):
-    """AMALTHEA ReferenceObject."""
+    """Value that refers to an object of the model."""
 
     value: IReferable | None = reference("value")
 
 
 class IntegerObject(Value):
-    """AMALTHEA IntegerObject."""
+    """Value that is an integer of 32 bits."""
 
     value: int | None = attribute("value")
 
 
 class LongObject(Value):
-    """AMALTHEA LongObject."""
+    """Value that is an integer of 64 bits."""
 
     value: int | None = attribute("value")
 
 
 class FloatObject(Value):
-    """AMALTHEA FloatObject."""
+    """Value that is a floating-point number of single precision."""
 
     value: float | None = attribute("value")
 
 
 class DoubleObject(Value):
-    """AMALTHEA DoubleObject."""
+    """Value that is a floating-point number of double precision."""
 
     value: float | None = attribute("value")
 
 
 class BooleanObject(Value):
-    """AMALTHEA BooleanObject."""
+    """Value that is true or false."""
 
     value: bool | None = attribute("value")
 
 
 class NumericStatistic(Element, abstract=True):
-    """AMALTHEA NumericStatistic."""
+    """How often something happens, as one number or as minimum, average and maximum."""
 
 
 class MinAvgMaxStatistic(NumericStatistic):
-    """AMALTHEA MinAvgMaxStatistic."""
+    """Statistic of a minimum, an average and a maximum.
+
+    Attributes
+    ----------
+    avg : Average, which must lie between min and max.
+    """
 
     min: int | None = attribute("min")
     avg: float | None = attribute("avg")
@@ -211,255 +250,410 @@ class MinAvgMaxStatistic(NumericStatistic):
 
 
 class SingleValueStatistic(NumericStatistic):
-    """AMALTHEA SingleValueStatistic."""
+    """Statistic of one number, usually the average."""
 
     value: float | None = attribute("value")
 
 
 class ITimeDeviation(Element, abstract=True):
-    """AMALTHEA ITimeDeviation."""
+    """Time that varies, described as a constant, by bounds, by a histogram or by a distribution."""
 
 
 class TimeInterval(Element, abstract=True):
-    """AMALTHEA TimeInterval."""
+    """Base of deviations and entries with a lower and an upper bound.
+
+    Attributes
+    ----------
+    lower_bound : Smallest value, not above the upper bound.
+    upper_bound : Largest value, the one that worst-case analyses use.
+    """
 
     lower_bound: Time | None = containment("lowerBound")
     upper_bound: Time | None = containment("upperBound")
 
 
 class TimeConstant(ITimeDeviation):
-    """AMALTHEA TimeConstant."""
+    """Time that does not vary."""
 
     value: Time | None = containment("value")
 
 
 class TimeHistogram(ITimeDeviation):
-    """AMALTHEA TimeHistogram."""
+    """Time described by intervals and how often each was seen.
+
+    Attributes
+    ----------
+    entries : Intervals of any width, which may overlap or leave gaps.
+    """
 
     entries: list[TimeHistogramEntry] = containments("entries")
 
 
 class TimeHistogramEntry(TimeInterval):
-    """AMALTHEA TimeHistogramEntry."""
+    """Interval of a histogram and the number of values in it.
+
+    Attributes
+    ----------
+    occurrences : Weight of the interval, at least 1; how values spread inside the interval is undefined.
+    """
 
     occurrences: int | None = attribute("occurrences")
 
 
 class BoundedTimeDistribution(TimeInterval, ITimeDeviation, abstract=True):
-    """AMALTHEA BoundedTimeDistribution."""
+    """Base of time distributions that always have both bounds."""
 
 
 class TruncatedTimeDistribution(ITimeDeviation, abstract=True):
-    """AMALTHEA TruncatedTimeDistribution."""
+    """Base of time distributions that bounds may cut off.
+
+    Attributes
+    ----------
+    lower_bound : Smallest value; unset means unbounded, which leaves no best case to analyse.
+    upper_bound : Largest value; unset means unbounded, which leaves no worst case to analyse.
+    """
 
     lower_bound: Time | None = containment("lowerBound")
     upper_bound: Time | None = containment("upperBound")
 
 
 class TimeBoundaries(BoundedTimeDistribution):
-    """AMALTHEA TimeBoundaries."""
+    """Time between two bounds, with a hint where between them the values lie.
+
+    Attributes
+    ----------
+    sampling_type : Where values concentrate; the average is the centre of the bounds whatever is chosen here.
+    """
 
     sampling_type: SamplingType | None = attribute("samplingType")
 
 
 class TimeStatistics(BoundedTimeDistribution):
-    """AMALTHEA TimeStatistics."""
+    """Time known by its minimum, average and maximum, without a distribution.
+
+    Attributes
+    ----------
+    average : Average, not necessarily the centre of the bounds.
+    """
 
     average: Time | None = containment("average")
 
 
 class TimeUniformDistribution(BoundedTimeDistribution):
-    """AMALTHEA TimeUniformDistribution."""
+    """Time whose values between the bounds are equally likely."""
 
 
 class TimeGaussDistribution(TruncatedTimeDistribution):
-    """AMALTHEA TimeGaussDistribution."""
+    """Normally distributed time, optionally truncated at bounds.
+
+    Attributes
+    ----------
+    mean : Mean of the normal distribution before it is truncated, thus not always the average.
+    sd : Standard deviation of the normal distribution before it is truncated.
+    """
 
     mean: Time | None = containment("mean")
     sd: Time | None = containment("sd")
 
 
 class TimeWeibullEstimatorsDistribution(BoundedTimeDistribution):
-    """AMALTHEA TimeWeibullEstimatorsDistribution."""
+    """Weibull distributed time given by its average and the probability of the upper bound.
+
+    Attributes
+    ----------
+    average : Average, strictly between the bounds.
+    p_remain_promille : Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound.
+    """
 
     average: Time | None = containment("average")
     p_remain_promille: float | None = attribute("pRemainPromille")
 
 
 class TimeBetaDistribution(BoundedTimeDistribution):
-    """AMALTHEA TimeBetaDistribution."""
+    """Beta distributed time, scaled to the bounds.
+
+    Attributes
+    ----------
+    alpha : First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta).
+    beta : Second shape parameter, greater than zero.
+    """
 
     alpha: float | None = attribute("alpha")
     beta: float | None = attribute("beta")
 
 
 class IDiscreteValueDeviation(Element, abstract=True):
-    """AMALTHEA IDiscreteValueDeviation."""
+    """Integer that varies, such as ticks, cycles or a count."""
 
 
 class DiscreteValueInterval(Element, abstract=True):
-    """AMALTHEA DiscreteValueInterval."""
+    """Base of deviations and entries with an integer lower and upper bound.
+
+    Attributes
+    ----------
+    lower_bound : Smallest value, not above the upper bound; for ticks it gives the BCET.
+    upper_bound : Largest value; for ticks it gives the WCET.
+    """
 
     lower_bound: int | None = attribute("lowerBound")
     upper_bound: int | None = attribute("upperBound")
 
 
 class DiscreteValueConstant(IDiscreteValueDeviation):
-    """AMALTHEA DiscreteValueConstant."""
+    """Integer that does not vary."""
 
     value: int | None = attribute("value")
 
 
 class DiscreteValueHistogram(IDiscreteValueDeviation):
-    """AMALTHEA DiscreteValueHistogram."""
+    """Integer described by intervals and how often each was seen.
+
+    Attributes
+    ----------
+    entries : Intervals of any width, which may overlap or leave gaps.
+    """
 
     entries: list[DiscreteValueHistogramEntry] = containments("entries")
 
 
 class DiscreteValueHistogramEntry(DiscreteValueInterval):
-    """AMALTHEA DiscreteValueHistogramEntry."""
+    """Interval of a histogram and the number of values in it.
+
+    Attributes
+    ----------
+    occurrences : Weight of the interval, at least 1; how values spread inside the interval is undefined.
+    """
 
     occurrences: int | None = attribute("occurrences")
 
 
 class BoundedDiscreteValueDistribution(DiscreteValueInterval, IDiscreteValueDeviation, abstract=True):
-    """AMALTHEA BoundedDiscreteValueDistribution."""
+    """Base of integer distributions that always have both bounds."""
 
 
 class TruncatedDiscreteValueDistribution(IDiscreteValueDeviation, abstract=True):
-    """AMALTHEA TruncatedDiscreteValueDistribution."""
+    """Base of integer distributions that bounds may cut off.
+
+    Attributes
+    ----------
+    lower_bound : Smallest value; unset means unbounded, which leaves no BCET to analyse.
+    upper_bound : Largest value; unset means unbounded, which leaves no WCET to analyse.
+    """
 
     lower_bound: int | None = attribute("lowerBound")
     upper_bound: int | None = attribute("upperBound")
 
 
 class DiscreteValueBoundaries(BoundedDiscreteValueDistribution):
-    """AMALTHEA DiscreteValueBoundaries."""
+    """Integer between two bounds, with a hint where between them the values lie.
+
+    Attributes
+    ----------
+    sampling_type : Where values concentrate; the average is the centre of the bounds whatever is chosen here.
+    """
 
     sampling_type: SamplingType | None = attribute("samplingType")
 
 
 class DiscreteValueStatistics(BoundedDiscreteValueDistribution):
-    """AMALTHEA DiscreteValueStatistics."""
+    """Integer known by its minimum, average and maximum, without a distribution.
+
+    Attributes
+    ----------
+    average : Average, not necessarily the centre of the bounds nor an integer.
+    """
 
     average: float | None = attribute("average")
 
 
 class DiscreteValueUniformDistribution(BoundedDiscreteValueDistribution):
-    """AMALTHEA DiscreteValueUniformDistribution."""
+    """Integer whose values between the bounds are equally likely."""
 
 
 class DiscreteValueGaussDistribution(TruncatedDiscreteValueDistribution):
-    """AMALTHEA DiscreteValueGaussDistribution."""
+    """Normally distributed integer, optionally truncated at bounds.
+
+    Attributes
+    ----------
+    mean : Mean of the normal distribution before it is truncated, thus not always the average.
+    sd : Standard deviation of the normal distribution before it is truncated, greater than zero.
+    """
 
     mean: float | None = attribute("mean")
     sd: float | None = attribute("sd")
 
 
 class DiscreteValueWeibullEstimatorsDistribution(BoundedDiscreteValueDistribution):
-    """AMALTHEA DiscreteValueWeibullEstimatorsDistribution."""
+    """Weibull distributed integer given by its average and the probability of the upper bound.
+
+    Attributes
+    ----------
+    average : Average, strictly between the bounds.
+    p_remain_promille : Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound.
+    """
 
     average: float | None = attribute("average")
     p_remain_promille: float | None = attribute("pRemainPromille")
 
 
 class DiscreteValueBetaDistribution(BoundedDiscreteValueDistribution):
-    """AMALTHEA DiscreteValueBetaDistribution."""
+    """Beta distributed integer, scaled to the bounds.
+
+    Attributes
+    ----------
+    alpha : First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta).
+    beta : Second shape parameter, greater than zero.
+    """
 
     alpha: float | None = attribute("alpha")
     beta: float | None = attribute("beta")
 
 
 class IContinuousValueDeviation(Element, abstract=True):
-    """AMALTHEA IContinuousValueDeviation."""
+    """Real number that varies, such as a rate."""
 
 
 class ContinuousValueInterval(Element, abstract=True):
-    """AMALTHEA ContinuousValueInterval."""
+    """Base of deviations and entries with a real lower and upper bound.
+
+    Attributes
+    ----------
+    lower_bound : Smallest value, not above the upper bound.
+    upper_bound : Largest value, not below the lower bound.
+    """
 
     lower_bound: float | None = attribute("lowerBound")
     upper_bound: float | None = attribute("upperBound")
 
 
 class ContinuousValueConstant(IContinuousValueDeviation):
-    """AMALTHEA ContinuousValueConstant."""
+    """Real number that does not vary."""
 
     value: float | None = attribute("value")
 
 
 class ContinuousValueHistogram(IContinuousValueDeviation):
-    """AMALTHEA ContinuousValueHistogram."""
+    """Real number described by intervals and how often each was seen.
+
+    Attributes
+    ----------
+    entries : Intervals of any width, which may overlap or leave gaps.
+    """
 
     entries: list[ContinuousValueHistogramEntry] = containments("entries")
 
 
 class ContinuousValueHistogramEntry(ContinuousValueInterval):
-    """AMALTHEA ContinuousValueHistogramEntry."""
+    """Interval of a histogram and the number of values in it.
+
+    Attributes
+    ----------
+    occurrences : Weight of the interval, at least 1; how values spread inside the interval is undefined.
+    """
 
     occurrences: int | None = attribute("occurrences")
 
 
 class BoundedContinuousValueDistribution(ContinuousValueInterval, IContinuousValueDeviation, abstract=True):
-    """AMALTHEA BoundedContinuousValueDistribution."""
+    """Base of distributions of real numbers that always have both bounds."""
 
 
 class TruncatedContinuousValueDistribution(IContinuousValueDeviation, abstract=True):
-    """AMALTHEA TruncatedContinuousValueDistribution."""
+    """Base of distributions of real numbers that bounds may cut off.
+
+    Attributes
+    ----------
+    lower_bound : Smallest value; unset means unbounded.
+    upper_bound : Largest value; unset means unbounded.
+    """
 
     lower_bound: float | None = attribute("lowerBound")
     upper_bound: float | None = attribute("upperBound")
 
 
 class ContinuousValueBoundaries(BoundedContinuousValueDistribution):
-    """AMALTHEA ContinuousValueBoundaries."""
+    """Real number between two bounds, with a hint where between them the values lie.
+
+    Attributes
+    ----------
+    sampling_type : Where values concentrate; the average is the centre of the bounds whatever is chosen here.
+    """
 
     sampling_type: SamplingType | None = attribute("samplingType")
 
 
 class ContinuousValueStatistics(BoundedContinuousValueDistribution):
-    """AMALTHEA ContinuousValueStatistics."""
+    """Real number known by its minimum, average and maximum, without a distribution.
+
+    Attributes
+    ----------
+    average : Average, not necessarily the centre of the bounds.
+    """
 
     average: float | None = attribute("average")
 
 
 class ContinuousValueUniformDistribution(BoundedContinuousValueDistribution):
-    """AMALTHEA ContinuousValueUniformDistribution."""
+    """Real number whose values between the bounds are equally likely."""
 
 
 class ContinuousValueGaussDistribution(TruncatedContinuousValueDistribution):
-    """AMALTHEA ContinuousValueGaussDistribution."""
+    """Normally distributed real number, optionally truncated at bounds.
+
+    Attributes
+    ----------
+    mean : Mean of the normal distribution before it is truncated, thus not always the average.
+    sd : Standard deviation of the normal distribution before it is truncated, greater than zero.
+    """
 
     mean: float | None = attribute("mean")
     sd: float | None = attribute("sd")
 
 
 class ContinuousValueWeibullEstimatorsDistribution(BoundedContinuousValueDistribution):
-    """AMALTHEA ContinuousValueWeibullEstimatorsDistribution."""
+    """Weibull distributed real number given by its average and the probability of the upper bound.
+
+    Attributes
+    ----------
+    average : Average, strictly between the bounds.
+    p_remain_promille : Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound.
+    """
 
     average: float | None = attribute("average")
     p_remain_promille: float | None = attribute("pRemainPromille")
 
 
 class ContinuousValueBetaDistribution(BoundedContinuousValueDistribution):
-    """AMALTHEA ContinuousValueBetaDistribution."""
+    """Beta distributed real number, scaled to the bounds.
+
+    Attributes
+    ----------
+    alpha : First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta).
+    beta : Second shape parameter, greater than zero.
+    """
 
     alpha: float | None = attribute("alpha")
     beta: float | None = attribute("beta")
 
 
 class Mode(ReferableBaseObject, abstract=True):
-    """AMALTHEA Mode."""
+    """Type of a mode label, which says what values it may take."""
 
 
 class NumericMode(Mode):
-    """AMALTHEA NumericMode."""
+    """Mode whose values are integers."""
 
 
 class EnumMode(Mode):
-    """AMALTHEA EnumMode."""
+    """Mode whose values are its literals.
+
+    Attributes
+    ----------
+    literals : Values in order; increment and decrement step along this order and stop at its ends.
+    """
 
     literals: list[ModeLiteral] = containments("literals")
 
 
 class ModeLiteral(ReferableBaseObject):
-    """AMALTHEA ModeLiteral."""
+    """One value of an enum mode."""

@@ -24,26 +24,31 @@ if TYPE_CHECKING:
 
 
 class IComponentContainer(Element, abstract=True):
-    """AMALTHEA IComponentContainer."""
+    """Object that contains components."""
 
     components: list[Component] = containments("components")
 
 
 class IInterfaceContainer(Element, abstract=True):
-    """AMALTHEA IInterfaceContainer."""
+    """Object that contains interfaces."""
 
     interfaces: list[MainInterface] = containments("interfaces")
 
 
 class ComponentsModel(BaseObject, IComponentContainer, IInterfaceContainer):
-    """AMALTHEA ComponentsModel."""
+    """Sub-model of components, their interfaces and the systems they form."""
 
     structures: list[ComponentStructure] = containments("structures")
     systems: list[System] = containments("systems")
 
 
 class ISystem(Element, abstract=True):
-    """AMALTHEA ISystem."""
+    """Object built of connected component instances, such as a system or a composite.
+
+    Attributes
+    ----------
+    grounded_ports : Ports of inner instances that stay unconnected on purpose.
+    """
 
     component_instances: list[ComponentInstance] = containments("componentInstances")
     connectors: list[Connector] = containments("connectors")
@@ -51,7 +56,13 @@ class ISystem(Element, abstract=True):
 
 
 class ComponentInterface(ReferableBaseObject, ITaggable, abstract=True):
-    """AMALTHEA ComponentInterface."""
+    """Interface that ports provide or require, possibly divided into sub-interfaces.
+
+    Attributes
+    ----------
+    data_type : Type of the data; spelled datatype until 2.2.0.
+    datatype : Type of the data; spelled dataType from 3.0.0 on.
+    """
 
     data_type: TypeDefinition | None = reference("dataType")  # 3.0.0..
     sub_interfaces: list[SubInterface] = containments("subInterfaces")
@@ -59,37 +70,53 @@ class ComponentInterface(ReferableBaseObject, ITaggable, abstract=True):
 
 
 class IComponentStructureMember(Element, abstract=True):
-    """AMALTHEA IComponentStructureMember."""
+    """Object that can be sorted into the tree of component structures."""
 
     structure: ComponentStructure | None = reference("structure")
 
 
 class MainInterface(ComponentInterface, INamespaceMember, IComponentStructureMember):
-    """AMALTHEA MainInterface."""
+    """Interface that stands by itself and not inside another one.
+
+    Attributes
+    ----------
+    version : Version as free text, 1.0 by default.
+    """
 
     version: str | None = attribute("version")
 
 
 class SubInterface(ComponentInterface):
-    """AMALTHEA SubInterface."""
+    """Part of an interface."""
 
 
 class ComponentPort(ReferableBaseObject, ITaggable):
-    """AMALTHEA ComponentPort."""
+    """Point of a component at which an interface is provided or required."""
 
     kind: InterfaceKind | None = attribute("kind")
     interface: ComponentInterface | None = reference("interface")
 
 
 class ComponentStructure(ReferableObject):
-    """AMALTHEA ComponentStructure."""
+    """Node of a tree that sorts components and interfaces.
+
+    Attributes
+    ----------
+    structure_type : Free text that names the kind of the node.
+    """
 
     structure_type: str | None = attribute("structureType")
     sub_structures: list[ComponentStructure] = containments("subStructures")
 
 
 class Component(ReferableBaseObject, ITaggable, INamespaceMember, IComponentStructureMember):
-    """AMALTHEA Component."""
+    """Unit of software behind ports; it lists its processes, runnables and data and does not contain them.
+
+    Attributes
+    ----------
+    processes : Processes, or prototypes of them, that belong to the component.
+    runnables : Runnables of the component; its start and end events are derived from them.
+    """
 
     ports: list[ComponentPort] = containments("ports")
     processes: list[AbstractProcess] = references("processes")
@@ -100,22 +127,32 @@ class Component(ReferableBaseObject, ITaggable, INamespaceMember, IComponentStru
 
 
 class Composite(Component, ISystem):
-    """AMALTHEA Composite."""
+    """Component that is built of connected component instances."""
 
 
 class System(ReferableBaseObject, ITaggable, ISystem):
-    """AMALTHEA System."""
+    """Top of an architecture, built of connected component instances."""
 
 
 class ComponentInstance(ReferableBaseObject, ITaggable):
-    """AMALTHEA ComponentInstance."""
+    """Use of a component inside a system or composite.
+
+    Attributes
+    ----------
+    type : Component that is used.
+    """
 
     containing_system: ISystem | None = reference("containingSystem")
     type: Component | None = reference("type")
 
 
 class Connector(BaseObject, INamed, ITaggable):
-    """AMALTHEA Connector."""
+    """Link between two ports inside a system or composite.
+
+    Attributes
+    ----------
+    implemented_interfaces : Channel that carries the data, by interface of the connected ports.
+    """
 
     containing_system: ISystem | None = reference("containingSystem")
     source_port: QualifiedPort | None = containment("sourcePort")
@@ -124,14 +161,19 @@ class Connector(BaseObject, INamed, ITaggable):
 
 
 class InterfaceChannel(Element):
-    """AMALTHEA InterfaceChannel."""
+    """Map entry from an interface to the channel that implements it."""
 
     key: ComponentInterface | None = reference("key")
     value: Channel | None = reference("value")
 
 
 class QualifiedPort(BaseObject):
-    """AMALTHEA QualifiedPort."""
+    """Port of a certain component instance.
+
+    Attributes
+    ----------
+    instance : Instance that the port is taken of, because a port itself belongs to a component.
+    """
 
     instance: ComponentInstance | None = reference("instance")
     port: ComponentPort | None = reference("port")

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 class ConfigModel(BaseObject):
-    """AMALTHEA ConfigModel."""
+    """Sub-model of settings for tools, such as the events to trace."""
 
     events_to_trace: list[EventConfig] = containments("eventsToTrace")
 
 
 class EventConfig(BaseObject, INamed):
-    """AMALTHEA EventConfig."""
+    """Choice of one event for tracing."""
 
     event: EntityEvent | None = reference("event")

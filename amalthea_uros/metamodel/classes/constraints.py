@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class ConstraintsModel(BaseObject):
-    """AMALTHEA ConstraintsModel."""
+    """Sub-model of event chains, constraints and requirements."""
 
     event_chains: list[EventChain] = containments("eventChains")
     timing_constraints: list[TimingConstraint] = containments("timingConstraints")
@@ -49,7 +49,14 @@ class ConstraintsModel(BaseObject):
 
 
 class RunnableSequencingConstraint(ReferableBaseObject):
-    """AMALTHEA RunnableSequencingConstraint."""
+    """Demand that groups of runnables run in a given order.
+
+    Attributes
+    ----------
+    order_type : Whether other runnables may run in between, and where in the process the sequence lies.
+    runnable_groups : Two groups or more; all of a group terminate before one of the next starts, in any order within a group.
+    process_scope : Processes in which the order is checked; runnables that run elsewhere do not count.
+    """
 
     order_type: RunnableOrderType | None = attribute("orderType")
     runnable_groups: RunnableEntityGroup | None = containment("runnableGroups")
@@ -57,139 +64,193 @@ class RunnableSequencingConstraint(ReferableBaseObject):
 
 
 class AffinityConstraint(ReferableBaseObject, abstract=True):
-    """AMALTHEA AffinityConstraint."""
+    """Demand that objects are kept together on a target or apart."""
 
 
 class SeparationConstraint(AffinityConstraint, abstract=True):
-    """AMALTHEA SeparationConstraint."""
+    """Demand that objects are kept apart."""
 
 
 class PairingConstraint(AffinityConstraint, abstract=True):
-    """AMALTHEA PairingConstraint."""
+    """Demand that objects are kept together."""
 
 
 class ProcessConstraint(Element, abstract=True):
-    """AMALTHEA ProcessConstraint."""
+    """Affinity constraint about processes.
+
+    Attributes
+    ----------
+    target : Processing units or schedulers that count; unset or empty means all.
+    """
 
     target: ProcessConstraintTarget | None = containment("target")
 
 
 class RunnableConstraint(Element, abstract=True):
-    """AMALTHEA RunnableConstraint."""
+    """Affinity constraint about runnables.
+
+    Attributes
+    ----------
+    target : Processing units or schedulers that count; unset or empty means all.
+    """
 
     target: RunnableConstraintTarget | None = containment("target")
 
 
 class DataConstraint(Element, abstract=True):
-    """AMALTHEA DataConstraint."""
+    """Affinity constraint about labels.
+
+    Attributes
+    ----------
+    target : Memories that count; unset or empty means all.
+    """
 
     target: DataConstraintTarget | None = containment("target")
 
 
 class RunnableSeparationConstraint(SeparationConstraint, RunnableConstraint, BaseObject):
-    """AMALTHEA RunnableSeparationConstraint."""
+    """Demand that runnables of two groups share no target, or that those of one group avoid the targets.
+
+    Attributes
+    ----------
+    groups : Two groups are kept apart from each other, a single one is kept away from the targets.
+    """
 
     groups: RunnableGroup | None = containment("groups")
 
 
 class ProcessSeparationConstraint(SeparationConstraint, ProcessConstraint, BaseObject):
-    """AMALTHEA ProcessSeparationConstraint."""
+    """Demand that processes of two groups share no target, or that those of one group avoid the targets.
+
+    Attributes
+    ----------
+    groups : Two groups are kept apart from each other, a single one is kept away from the targets.
+    """
 
     groups: ProcessGroup | None = containment("groups")
 
 
 class DataSeparationConstraint(SeparationConstraint, DataConstraint, BaseObject):
-    """AMALTHEA DataSeparationConstraint."""
+    """Demand that labels of two groups share no memory, or that those of one group avoid the targets.
+
+    Attributes
+    ----------
+    groups : Two groups are kept apart from each other, a single one is kept away from the targets.
+    """
 
     groups: LabelEntityGroup | None = containment("groups")
 
 
 class RunnablePairingConstraint(PairingConstraint, RunnableConstraint, BaseObject):
-    """AMALTHEA RunnablePairingConstraint."""
+    """Demand that all runnables of a group run on one of the targets together."""
 
     group: RunnableGroup | None = containment("group")
 
 
 class ProcessPairingConstraint(PairingConstraint, ProcessConstraint, BaseObject):
-    """AMALTHEA ProcessPairingConstraint."""
+    """Demand that all processes of a group run on one of the targets together."""
 
     group: ProcessGroup | None = containment("group")
 
 
 class DataPairingConstraint(PairingConstraint, DataConstraint, BaseObject):
-    """AMALTHEA DataPairingConstraint."""
+    """Demand that all labels of a group lie in one of the targets together."""
 
     group: LabelGroup | None = containment("group")
 
 
 class RunnableConstraintTarget(Element, abstract=True):
-    """AMALTHEA RunnableConstraintTarget."""
+    """Where runnables may or may not run."""
 
 
 class ProcessConstraintTarget(Element, abstract=True):
-    """AMALTHEA ProcessConstraintTarget."""
+    """Where processes may or may not run."""
 
 
 class DataConstraintTarget(Element, abstract=True):
-    """AMALTHEA DataConstraintTarget."""
+    """Where labels may or may not lie."""
 
 
 class TargetMemory(DataConstraintTarget, BaseObject):
-    """AMALTHEA TargetMemory."""
+    """Memories as the target of an affinity constraint.
+
+    Attributes
+    ----------
+    memories : Memories that count; an empty list means all.
+    """
 
     memories: list[Memory] = references("memories")
 
 
 class TargetCore(RunnableConstraintTarget, ProcessConstraintTarget, BaseObject):
-    """AMALTHEA TargetCore."""
+    """Processing units as the target of an affinity constraint.
+
+    Attributes
+    ----------
+    cores : Processing units that count; an empty list means all.
+    """
 
     cores: list[ProcessingUnit] = references("cores")
 
 
 class TargetScheduler(RunnableConstraintTarget, ProcessConstraintTarget, BaseObject):
-    """AMALTHEA TargetScheduler."""
+    """Schedulers as the target of an affinity constraint.
+
+    Attributes
+    ----------
+    schedulers : Schedulers that count; an empty list means all.
+    """
 
     schedulers: list[Scheduler] = references("schedulers")
 
 
 class LabelGroup(Element, abstract=True):
-    """AMALTHEA LabelGroup."""
+    """Labels about which a constraint speaks."""
 
 
 class RunnableGroup(Element, abstract=True):
-    """AMALTHEA RunnableGroup."""
+    """Runnables about which a constraint speaks."""
 
 
 class ProcessGroup(Element, abstract=True):
-    """AMALTHEA ProcessGroup."""
+    """Processes about which a constraint speaks."""
 
 
 class LabelEntityGroup(LabelGroup, BaseObject):
-    """AMALTHEA LabelEntityGroup."""
+    """Groups labels by listing them one by one."""
 
     labels: list[Label] = references("labels")
 
 
 class RunnableEntityGroup(RunnableGroup, BaseObject):
-    """AMALTHEA RunnableEntityGroup."""
+    """Groups runnables by listing them one by one."""
 
     runnables: list[Runnable] = references("runnables")
 
 
 class ProcessEntityGroup(ProcessGroup, BaseObject):
-    """AMALTHEA ProcessEntityGroup."""
+    """Groups processes by listing them one by one."""
 
     processes: list[Process] = references("processes")
 
 
 class TagGroup(RunnableGroup, ProcessGroup, BaseObject):
-    """AMALTHEA TagGroup."""
+    """Groups all processes or runnables that carry a tag."""
 
     tag: Tag | None = reference("tag")
 
 
 class AbstractEventChain(BaseObject, INamed, abstract=True):
-    """AMALTHEA AbstractEventChain."""
+    """Cause-effect chain from a stimulus event to a response event, possibly refined by items.
+
+    Attributes
+    ----------
+    stimulus : Event with which the chain starts.
+    response : Event with which the chain ends.
+    items : Parts of the chain; without items it is a single step from stimulus to response.
+    item_type : Whether the items follow each other or run side by side; undefined is commonly read as sequence.
+    min_items_completed : For parallel items, how many must complete; 1 (default) makes them alternatives, their number a join.
+    """
 
     stimulus: Event | None = reference("stimulus")
     response: Event | None = reference("response")
@@ -199,62 +260,86 @@ class AbstractEventChain(BaseObject, INamed, abstract=True):
 
 
 class EventChain(AbstractEventChain, IReferable):
-    """AMALTHEA EventChain."""
+    """Event chain that constraints and other chains can refer to."""
 
 
 class SubEventChain(AbstractEventChain):
-    """AMALTHEA SubEventChain."""
+    """Event chain without an identity of its own, contained in another one."""
 
 
 class EventChainItem(Element, abstract=True):
-    """AMALTHEA EventChainItem."""
+    """Part of an event chain."""
 
 
 class EventChainReference(BaseObject, EventChainItem):
-    """AMALTHEA EventChainReference."""
+    """Part of an event chain that is an event chain defined elsewhere.
+
+    Attributes
+    ----------
+    event_chain : Chain that is used as a part; references must not run in a circle.
+    """
 
     event_chain: EventChain | None = reference("eventChain")
 
 
 class EventChainContainer(BaseObject, EventChainItem):
-    """AMALTHEA EventChainContainer."""
+    """Part of an event chain that is defined on the spot."""
 
     event_chain: SubEventChain | None = containment("eventChain")
 
 
 class TimingConstraint(ReferableBaseObject, abstract=True):
-    """AMALTHEA TimingConstraint."""
+    """Demand on when events occur."""
 
 
 class PhysicalSectionConstraint(ReferableBaseObject):
-    """AMALTHEA PhysicalSectionConstraint."""
+    """Demand that a section is placed only in certain memories."""
 
     section: Section | None = reference("section")
     memories: list[Memory] = references("memories")
 
 
 class SynchronizationConstraint(TimingConstraint, abstract=True):
-    """AMALTHEA SynchronizationConstraint."""
+    """Demand that events occur together, within a tolerance.
+
+    Attributes
+    ----------
+    multiple_occurrences_allowed : Whether every occurrence counts (true) or only the next one of each event (false, default).
+    tolerance : Width of the time window in which all of them must occur.
+    """
 
     multiple_occurrences_allowed: bool | None = attribute("multipleOccurrencesAllowed")
     tolerance: Time | None = containment("tolerance")
 
 
 class EventSynchronizationConstraint(SynchronizationConstraint):
-    """AMALTHEA EventSynchronizationConstraint."""
+    """Demand that occurrences of several events lie in a common time window."""
 
     events: list[EntityEvent] = references("events")
 
 
 class EventChainSynchronizationConstraint(SynchronizationConstraint):
-    """AMALTHEA EventChainSynchronizationConstraint."""
+    """Demand that two event chains start together or end together.
+
+    Attributes
+    ----------
+    scope : Exactly two chains.
+    type : Whether the stimuli or the responses of the chains are compared.
+    """
 
     scope: EventChain | None = reference("scope")
     type: SynchronizationType | None = attribute("type")
 
 
 class DelayConstraint(TimingConstraint):
-    """AMALTHEA DelayConstraint."""
+    """Demand on the time from a source event to a target event.
+
+    Attributes
+    ----------
+    mapping_type : Which target occurrence belongs to a source occurrence.
+    upper : Longest delay; unset means no limit.
+    lower : Shortest delay; unset means no limit.
+    """
 
     mapping_type: MappingType | None = attribute("mappingType")
     source: EntityEvent | None = reference("source")
@@ -264,7 +349,14 @@ class DelayConstraint(TimingConstraint):
 
 
 class EventChainLatencyConstraint(TimingConstraint):
-    """AMALTHEA EventChainLatencyConstraint."""
+    """Limit of the reaction time or the data age of an event chain.
+
+    Attributes
+    ----------
+    type : Reaction looks forward from each stimulus, age looks back from each response.
+    minimum : Shortest latency; unset means no limit.
+    maximum : Longest latency; unset means no limit, not zero.
+    """
 
     scope: EventChain | None = reference("scope")
     type: LatencyType | None = attribute("type")
@@ -273,7 +365,16 @@ class EventChainLatencyConstraint(TimingConstraint):
 
 
 class RepetitionConstraint(TimingConstraint):
-    """AMALTHEA RepetitionConstraint."""
+    """Demand on the distance of repeated occurrences of an event.
+
+    Attributes
+    ----------
+    span : Number of steps between the occurrences compared; the default 0 is of no use, read it as 1.
+    lower : Shortest time over span steps, before jitter.
+    upper : Longest time over span steps, before jitter.
+    jitter : Longest delay of an occurrence after its ideal point in time.
+    period : Nominal distance of occurrences.
+    """
 
     event: EntityEvent | None = reference("event")
     span: int | None = attribute("span")
@@ -284,7 +385,12 @@ class RepetitionConstraint(TimingConstraint):
 
 
 class DataAgeConstraint(ReferableBaseObject):
-    """AMALTHEA DataAgeConstraint."""
+    """Demand on how long a written value of a label is valid.
+
+    Attributes
+    ----------
+    runnable : Runnable that writes the label, not one that reads it.
+    """
 
     runnable: Runnable | None = reference("runnable")
     label: Label | None = reference("label")
@@ -292,62 +398,91 @@ class DataAgeConstraint(ReferableBaseObject):
 
 
 class DataAge(Element, abstract=True):
-    """AMALTHEA DataAge."""
+    """How long written data is valid."""
 
 
 class DataAgeCycle(DataAge):
-    """AMALTHEA DataAgeCycle."""
+    """Validity of data, counted in activations of the process that runs the writing runnable.
+
+    Attributes
+    ----------
+    minimum_cycle : Number of activations after the write from which on the data is valid.
+    maximum_cycle : Number of activations after the write until which the data is valid.
+    """
 
     minimum_cycle: int | None = attribute("minimumCycle")
     maximum_cycle: int | None = attribute("maximumCycle")
 
 
 class DataAgeTime(DataAge):
-    """AMALTHEA DataAgeTime."""
+    """Validity of data as time after the write.
+
+    Attributes
+    ----------
+    minimum_time : Time after the write from which on the data is valid.
+    maximum_time : Time after the write until which the data is valid.
+    """
 
     minimum_time: Time | None = containment("minimumTime")
     maximum_time: Time | None = containment("maximumTime")
 
 
 class Requirement(BaseObject, INamed, abstract=True):
-    """AMALTHEA Requirement."""
+    """Limit of a metric, with the severity of missing it.
+
+    Attributes
+    ----------
+    severity : How bad a violation is.
+    limit : Metric and its bound, which every instance must keep.
+    """
 
     severity: Severity | None = attribute("severity")
     limit: RequirementLimit | None = containment("limit")
 
 
 class ProcessRequirement(Requirement):
-    """AMALTHEA ProcessRequirement."""
+    """Requirement on a process; an upper limit of the response time is its deadline."""
 
     process: AbstractProcess | None = reference("process")
 
 
 class RunnableRequirement(Requirement):
-    """AMALTHEA RunnableRequirement."""
+    """Requirement on a runnable."""
 
     runnable: Runnable | None = reference("runnable")
 
 
 class ArchitectureRequirement(Requirement):
-    """AMALTHEA ArchitectureRequirement."""
+    """Requirement on a component."""
 
     component: Component | None = reference("component")
 
 
 class ProcessChainRequirement(Requirement):
-    """AMALTHEA ProcessChainRequirement."""
+    """Requirement on a process chain."""
 
     process_chain: ProcessChain | None = reference("processChain")
 
 
 class RequirementLimit(Element, abstract=True):
-    """AMALTHEA RequirementLimit."""
+    """Metric and the bound it must keep.
+
+    Attributes
+    ----------
+    limit_type : Whether the metric must not exceed or not fall below the value; undefined leaves the limit unusable.
+    """
 
     limit_type: LimitType | None = attribute("limitType")
 
 
 class CPUPercentageRequirementLimit(RequirementLimit):
-    """AMALTHEA CPUPercentageRequirementLimit."""
+    """Bound of a processor load, relative to the capacity of a processing unit.
+
+    Attributes
+    ----------
+    limit_value : Bound; whether it is a percentage or a fraction of 1 is not specified.
+    hardware_context : Processing unit whose capacity is 100 percent.
+    """
 
     metric: CPUPercentageMetric | None = attribute("metric")
     limit_value: float | None = attribute("limitValue")
@@ -355,35 +490,52 @@ class CPUPercentageRequirementLimit(RequirementLimit):
 
 
 class FrequencyRequirementLimit(RequirementLimit):
-    """AMALTHEA FrequencyRequirementLimit."""
+    """Bound of how often something happens per time."""
 
     metric: FrequencyMetric | None = attribute("metric")
     limit_value: Frequency | None = containment("limitValue")
 
 
 class PercentageRequirementLimit(RequirementLimit):
-    """AMALTHEA PercentageRequirementLimit."""
+    """Bound of a ratio.
+
+    Attributes
+    ----------
+    limit_value : Bound; whether it is a percentage or a fraction of 1 is not specified.
+    """
 
     metric: PercentageMetric | None = attribute("metric")
     limit_value: float | None = attribute("limitValue")
 
 
 class CountRequirementLimit(RequirementLimit):
-    """AMALTHEA CountRequirementLimit."""
+    """Bound of a count, such as that of activations."""
 
     metric: CountMetric | None = attribute("metric")
     limit_value: int | None = attribute("limitValue")
 
 
 class TimeRequirementLimit(RequirementLimit):
-    """AMALTHEA TimeRequirementLimit."""
+    """Bound of a time, such as the response time.
+
+    Attributes
+    ----------
+    metric : What is measured; ResponseTime with an upper limit defines the deadline.
+    limit_value : Bound, greater than zero for response times.
+    """
 
     metric: TimeMetric | None = attribute("metric")
     limit_value: Time | None = containment("limitValue")
 
 
 class DataCoherencyGroup(ReferableBaseObject):
-    """AMALTHEA DataCoherencyGroup."""
+    """Labels that must be read or written coherently, as values that belong together.
+
+    Attributes
+    ----------
+    scope : Process, runnable or component within which the accesses are coherent.
+    direction : Whether the coherence concerns reading (input) or writing (output).
+    """
 
     labels: list[Label] = references("labels")
     scope: DataGroupScope | None = containment("scope")
@@ -391,29 +543,34 @@ class DataCoherencyGroup(ReferableBaseObject):
 
 
 class DataStabilityGroup(ReferableBaseObject):
-    """AMALTHEA DataStabilityGroup."""
+    """Labels whose values must not change within a scope.
+
+    Attributes
+    ----------
+    scope : Process, runnable or component within which the values stay the same.
+    """
 
     labels: list[Label] = references("labels")
     scope: DataGroupScope | None = containment("scope")
 
 
 class DataGroupScope(Element, abstract=True):
-    """AMALTHEA DataGroupScope."""
+    """Range of code in which data must be coherent or stable."""
 
 
 class ProcessScope(DataGroupScope):
-    """AMALTHEA ProcessScope."""
+    """Range of one process."""
 
     process: AbstractProcess | None = reference("process")
 
 
 class RunnableScope(DataGroupScope):
-    """AMALTHEA RunnableScope."""
+    """Range of one runnable."""
 
     runnable: Runnable | None = reference("runnable")
 
 
 class ComponentScope(DataGroupScope):
-    """AMALTHEA ComponentScope."""
+    """Range of one component."""
 
     component: Component | None = reference("component")

@@ -28,43 +28,60 @@ if TYPE_CHECKING:
 
 
 class EventModel(BaseObject):
-    """AMALTHEA EventModel."""
+    """Sub-model of the events that chains, constraints, stimuli and traces speak about."""
 
     events: list[Event] = containments("events")
 
 
 class Event(ReferableBaseObject, ITaggable, IDescription, abstract=True):
-    """AMALTHEA Event."""
+    """Something observable that happens at an instant."""
 
 
 class EventSet(Event):
-    """AMALTHEA EventSet."""
+    """Set of events that all must occur in any order; it is complete when the last one has occurred."""
 
     events: list[EntityEvent] = references("events")
 
 
 class EntityEvent(Event, abstract=True):
-    """AMALTHEA EntityEvent."""
+    """Event that happens to one object."""
 
 
 class TriggerEvent(EntityEvent, abstract=True):
-    """AMALTHEA TriggerEvent."""
+    """Event that can fire an event stimulus."""
 
 
 class CustomEvent(TriggerEvent):
-    """AMALTHEA CustomEvent."""
+    """Event without predefined meaning, raised by a custom event trigger.
+
+    Attributes
+    ----------
+    event_type : Free text that names the kind of the event.
+    """
 
     event_type: str | None = attribute("eventType")
 
 
 class StimulusEvent(EntityEvent):
-    """AMALTHEA StimulusEvent."""
+    """Occurrence of a stimulus.
+
+    Attributes
+    ----------
+    entity : Stimulus to observe; unset means any.
+    """
 
     entity: Stimulus | None = reference("entity")
 
 
 class ProcessEvent(EntityEvent):
-    """AMALTHEA ProcessEvent."""
+    """Change of the state of a task or ISR; it cannot fire an event stimulus.
+
+    Attributes
+    ----------
+    event_type : Transition to observe; unset means every one.
+    entity : Task or ISR to observe; unset means any.
+    processing_unit : Counts only what happens on this processing unit; unset means any.
+    """
 
     event_type: ProcessEventType | None = attribute("eventType")
     entity: Process | None = reference("entity")
@@ -72,7 +89,14 @@ class ProcessEvent(EntityEvent):
 
 
 class ProcessChainEvent(EntityEvent):
-    """AMALTHEA ProcessChainEvent."""
+    """Change of the state of a process chain.
+
+    Attributes
+    ----------
+    event_type : Transition to observe; unset means every one.
+    entity : Process chain to observe; unset means any.
+    processing_unit : Counts only what happens on this processing unit; unset means any.
+    """
 
     event_type: ProcessEventType | None = attribute("eventType")
     entity: ProcessChain | None = reference("entity")
@@ -80,7 +104,15 @@ class ProcessChainEvent(EntityEvent):
 
 
 class RunnableEvent(TriggerEvent):
-    """AMALTHEA RunnableEvent."""
+    """Start, suspension, resumption or termination of a runnable.
+
+    Attributes
+    ----------
+    event_type : Transition to observe; unset means every one.
+    entity : Runnable to observe; unset means any.
+    process : Counts only executions in this process; unset means any.
+    processing_unit : Counts only what happens on this processing unit; unset means any.
+    """
 
     event_type: RunnableEventType | None = attribute("eventType")
     entity: Runnable | None = reference("entity")
@@ -89,7 +121,15 @@ class RunnableEvent(TriggerEvent):
 
 
 class LabelEvent(TriggerEvent):
-    """AMALTHEA LabelEvent."""
+    """Read or write access to a label.
+
+    Attributes
+    ----------
+    event_type : Kind of access to observe; unset means every one.
+    entity : Label to observe; unset means any.
+    runnable : Counts only accesses by this runnable; unset means any.
+    process : Counts only accesses by this process; unset means any.
+    """
 
     event_type: LabelEventType | None = attribute("eventType")
     entity: Label | None = reference("entity")
@@ -98,7 +138,15 @@ class LabelEvent(TriggerEvent):
 
 
 class ModeLabelEvent(TriggerEvent):
-    """AMALTHEA ModeLabelEvent. (AMALTHEA 2.1.0..)"""
+    """Access to a mode label. (AMALTHEA 2.1.0..)
+
+    Attributes
+    ----------
+    event_type : Kind of access to observe; unset means every one.
+    entity : Mode label to observe; unset means any.
+    runnable : Counts only accesses by this runnable; unset means any.
+    process : Counts only accesses by this process; unset means any.
+    """
 
     event_type: ModeLabelEventType | None = attribute("eventType")
     entity: ModeLabel | None = reference("entity")
@@ -107,7 +155,15 @@ class ModeLabelEvent(TriggerEvent):
 
 
 class ChannelEvent(TriggerEvent):
-    """AMALTHEA ChannelEvent."""
+    """Sending to or receiving from a channel.
+
+    Attributes
+    ----------
+    event_type : Kind of access to observe; unset means every one.
+    entity : Channel to observe; unset means any.
+    runnable : Counts only accesses by this runnable; unset means any.
+    process : Counts only accesses by this process; unset means any.
+    """
 
     event_type: ChannelEventType | None = attribute("eventType")
     entity: Channel | None = reference("entity")
@@ -116,7 +172,16 @@ class ChannelEvent(TriggerEvent):
 
 
 class SemaphoreEvent(EntityEvent):
-    """AMALTHEA SemaphoreEvent."""
+    """Locking or unlocking of a semaphore.
+
+    Attributes
+    ----------
+    event_type : Kind of access to observe; unset means every one.
+    entity : Semaphore to observe; unset means any.
+    runnable : Counts only accesses by this runnable; unset means any.
+    process : Counts only accesses by this process; unset means any.
+    processing_unit : Counts only what happens on this processing unit; unset means any.
+    """
 
     event_type: SemaphoreEventType | None = attribute("eventType")
     entity: Semaphore | None = reference("entity")
@@ -126,7 +191,13 @@ class SemaphoreEvent(EntityEvent):
 
 
 class ComponentEvent(EntityEvent):
-    """AMALTHEA ComponentEvent."""
+    """Start or end of a component, derived from its runnables.
+
+    Attributes
+    ----------
+    event_type : Start is that of the first runnable; end comes when all runnables were executed at least once.
+    entity : Component to observe; unset means any.
+    """
 
     event_type: ComponentEventType | None = attribute("eventType")
     entity: Component | None = reference("entity")

@@ -34,7 +34,12 @@ if TYPE_CHECKING:
 
 
 class HWModel(BaseObject):
-    """AMALTHEA HWModel."""
+    """Sub-model of the hardware with its definitions, structures and domains.
+
+    Attributes
+    ----------
+    definitions : Types of processing units, memories, caches and connection handlers, to be shared by modules.
+    """
 
     definitions: list[HwDefinition] = containments("definitions")
     feature_categories: list[HwFeatureCategory] = containments("featureCategories")
@@ -43,7 +48,13 @@ class HWModel(BaseObject):
 
 
 class HwStructure(ReferableBaseObject, ITaggable):
-    """AMALTHEA HwStructure."""
+    """Part of the hardware, such as an ECU, microcontroller or cluster, that contains modules and further parts.
+
+    Attributes
+    ----------
+    structure_type : Kind of the part, such as ECU or microcontroller.
+    ports : Outer ports; a connection from inside to them delegates the port.
+    """
 
     structure_type: StructureType | None = attribute("structureType")
     ports: list[HwPort] = containments("ports")
@@ -53,7 +64,12 @@ class HwStructure(ReferableBaseObject, ITaggable):
 
 
 class HwModule(ReferableBaseObject, ITaggable, abstract=True):
-    """AMALTHEA HwModule."""
+    """Base of processing units, memories, caches and connection handlers.
+
+    Attributes
+    ----------
+    frequency_domain : Clock of the module; a processing unit without one has no execution times.
+    """
 
     ports: list[HwPort] = containments("ports")
     power_domain: PowerDomain | None = reference("powerDomain")
@@ -61,33 +77,51 @@ class HwModule(ReferableBaseObject, ITaggable, abstract=True):
 
 
 class HwDomain(ReferableBaseObject, ITaggable, abstract=True):
-    """AMALTHEA HwDomain."""
+    """Part of the hardware that shares a clock or a supply."""
 
 
 class FrequencyDomain(HwDomain):
-    """AMALTHEA FrequencyDomain."""
+    """Modules that share a clock.
+
+    Attributes
+    ----------
+    default_value : Clock frequency, greater than zero; it converts ticks and cycles to time.
+    clock_gating : Whether the clock can be switched off.
+    """
 
     default_value: Frequency | None = containment("defaultValue")
     clock_gating: bool | None = attribute("clockGating")
 
 
 class PowerDomain(HwDomain):
-    """AMALTHEA PowerDomain."""
+    """Modules that share a supply voltage.
+
+    Attributes
+    ----------
+    power_gating : Whether the supply can be switched off.
+    """
 
     default_value: Voltage | None = containment("defaultValue")
     power_gating: bool | None = attribute("powerGating")
 
 
 class HwDestination(IReferable, abstract=True):
-    """AMALTHEA HwDestination."""
+    """Hardware that can be accessed, such as a memory or another processing unit."""
 
 
 class HwPathElement(IReferable, abstract=True):
-    """AMALTHEA HwPathElement."""
+    """Hardware that an access path can lead through."""
 
 
 class ProcessingUnit(HwModule, HwDestination, HwPathElement):
-    """AMALTHEA ProcessingUnit."""
+    """Core or accelerator that executes processes.
+
+    Attributes
+    ----------
+    definition : Its type, by which the extended entries of ticks and the hardware features are chosen.
+    access_elements : Destinations it can reach and what an access to each costs.
+    caches : Caches that lie inside the processing unit.
+    """
 
     definition: ProcessingUnitDefinition | None = reference("definition")
     access_elements: list[HwAccessElement] = containments("accessElements")
@@ -95,32 +129,45 @@ class ProcessingUnit(HwModule, HwDestination, HwPathElement):
 
 
 class Memory(HwModule, HwDestination):
-    """AMALTHEA Memory."""
+    """Memory module into which labels and other elements are mapped."""
 
     definition: MemoryDefinition | None = reference("definition")
 
 
 class Cache(HwModule, HwPathElement):
-    """AMALTHEA Cache."""
+    """Cache module, inside a processing unit or shared in a structure."""
 
     definition: CacheDefinition | None = reference("definition")
 
 
 class HwFeatureCategory(ReferableBaseObject, IDescription):
-    """AMALTHEA HwFeatureCategory."""
+    """Kind of hardware feature; the keys of execution needs name it."""
 
     feature_type: HwFeatureType | None = attribute("featureType")
     features: list[HwFeature] = containments("features")
 
 
 class HwFeature(ReferableBaseObject):
-    """AMALTHEA HwFeature."""
+    """Number that a processing unit definition has for a feature category.
+
+    Attributes
+    ----------
+    value : Number in the sense of its category, such as ticks per unit of an execution need or instructions per cycle.
+    """
 
     value: float | None = attribute("value")
 
 
 class HwPort(ReferableBaseObject, ITaggable):
-    """AMALTHEA HwPort."""
+    """Point at which a module or structure is connected.
+
+    Attributes
+    ----------
+    bit_width : Bits per beat; 0 (default) means not given.
+    priority : Priority of the port where a connection handler arbitrates by priority.
+    port_type : Initiator or responder; a connection joins one of each, a delegation two of the same type.
+    port_interface : Bus or protocol; connected ports must agree in it.
+    """
 
     bit_width: int | None = attribute("bitWidth")
     priority: int | None = attribute("priority")
@@ -129,14 +176,26 @@ class HwPort(ReferableBaseObject, ITaggable):
 
 
 class ConnectionHandler(HwModule, HwPathElement):
-    """AMALTHEA ConnectionHandler."""
+    """Bus, crossbar or other interconnect that arbitrates between transfers.
+
+    Attributes
+    ----------
+    internal_connections : Connections between its own ports, whose latencies may override those of the definition.
+    """
 
     definition: ConnectionHandlerDefinition | None = reference("definition")
     internal_connections: list[HwConnection] = containments("internalConnections")
 
 
 class HwConnection(ReferableBaseObject, HwPathElement, ITaggable):
-    """AMALTHEA HwConnection."""
+    """Link between two hardware ports.
+
+    Attributes
+    ----------
+    read_latency : Cycles of a read, request and response together, at the frequency of the preceding path element.
+    write_latency : Cycles of a write request, at the frequency of the preceding path element.
+    data_rate : Data per time, as an alternative to latencies.
+    """
 
     read_latency: IDiscreteValueDeviation | None = containment("readLatency")
     write_latency: IDiscreteValueDeviation | None = containment("writeLatency")
@@ -146,7 +205,15 @@ class HwConnection(ReferableBaseObject, HwPathElement, ITaggable):
 
 
 class HwAccessElement(ITaggable, INamed):
-    """AMALTHEA HwAccessElement."""
+    """What an access of a processing unit to a destination costs.
+
+    Attributes
+    ----------
+    access_path : Way to the destination; if given, its elements make up the cost instead of the latencies here.
+    read_latency : Cycles of a read, request and response together, at the frequency of the processing unit.
+    write_latency : Cycles of a write request, at the frequency of the processing unit.
+    data_rate : Data per time, as an alternative to latencies.
+    """
 
     destination: HwDestination | None = reference("destination")
     access_path: HwAccessPath | None = containment("accessPath")
@@ -156,11 +223,17 @@ class HwAccessElement(ITaggable, INamed):
 
 
 class HwDefinition(ReferableBaseObject, ITaggable, abstract=True):
-    """AMALTHEA HwDefinition."""
+    """Base of the types of hardware modules."""
 
 
 class ProcessingUnitDefinition(HwDefinition):
-    """AMALTHEA ProcessingUnitDefinition."""
+    """Type of a processing unit.
+
+    Attributes
+    ----------
+    features : Hardware features, at most one per category.
+    classifiers : Properties that core allocation constraints can ask for.
+    """
 
     pu_type: PuType | None = attribute("puType")
     features: list[HwFeature] = references("features")
@@ -168,7 +241,16 @@ class ProcessingUnitDefinition(HwDefinition):
 
 
 class ConnectionHandlerDefinition(HwDefinition):
-    """AMALTHEA ConnectionHandlerDefinition."""
+    """Type of a connection handler.
+
+    Attributes
+    ----------
+    policy : Arbitration between transfers that wait at the same time.
+    read_latency : Cycles of a read, request and response together, at the frequency of the handler.
+    write_latency : Cycles of a write request, at the frequency of the handler.
+    data_rate : Data per time, as an alternative to latencies.
+    max_concurrent_transfers : Transfers at the same time (default 1), not more than initiator or responder ports.
+    """
 
     policy: SchedPolicy | None = attribute("policy")
     read_latency: IDiscreteValueDeviation | None = containment("readLatency")
@@ -179,7 +261,14 @@ class ConnectionHandlerDefinition(HwDefinition):
 
 
 class MemoryDefinition(HwDefinition):
-    """AMALTHEA MemoryDefinition."""
+    """Type of a memory.
+
+    Attributes
+    ----------
+    access_latency : Cycles of an access at the frequency of the memory, added to the latency of the way there.
+    data_rate : Data per time, as an alternative to the latency.
+    classifiers : Properties that memory mapping constraints can ask for.
+    """
 
     size: DataSize | None = containment("size")
     access_latency: IDiscreteValueDeviation | None = containment("accessLatency")
@@ -189,7 +278,14 @@ class MemoryDefinition(HwDefinition):
 
 
 class CacheDefinition(HwDefinition):
-    """AMALTHEA CacheDefinition."""
+    """Type of a cache.
+
+    Attributes
+    ----------
+    access_latency : Cycles of an access at the frequency of the cache.
+    n_ways : Associativity as the number of ways; 0 (default) means not given.
+    hit_rate : Percentage of the accesses that hit; how it combines with cache misses of label accesses is not specified.
+    """
 
     size: DataSize | None = containment("size")
     line_size: DataSize | None = containment("lineSize")
@@ -203,11 +299,19 @@ class CacheDefinition(HwDefinition):
 
 
 class HwPath(Element, abstract=True):
-    """AMALTHEA HwPath."""
+    """Way from a processing unit to a destination."""
 
 
 class HwAccessPath(HwPath, INamed):
-    """AMALTHEA HwAccessPath."""
+    """Way of an access through connections, connection handlers and caches.
+
+    Attributes
+    ----------
+    path_elements : Elements from source to destination; the first and the last are connections.
+    start_address : First address of the range by which the source reaches the destination.
+    end_address : Last address of the range, not below the start address.
+    mem_offset : Offset of the range in the memory; offset plus length must fit into its size in bytes.
+    """
 
     path_elements: list[HwPathElement] = references("pathElements")
     start_address: int | None = attribute("startAddress")

@@ -19,7 +19,12 @@ if TYPE_CHECKING:
 
 
 class MappingModel(BaseObject):
-    """AMALTHEA MappingModel."""
+    """Sub-model that puts software on operating systems and hardware.
+
+    Attributes
+    ----------
+    address_mapping_type : Whether addresses of memory mappings are absolute, offsets from the start of the memory, or not used.
+    """
 
     scheduler_allocation: list[SchedulerAllocation] = containments("schedulerAllocation")
     runnable_allocation: list[RunnableAllocation] = containments("runnableAllocation")
@@ -31,7 +36,13 @@ class MappingModel(BaseObject):
 
 
 class SchedulerAllocation(BaseObject):
-    """AMALTHEA SchedulerAllocation."""
+    """Assignment of processing units to a scheduler.
+
+    Attributes
+    ----------
+    responsibility : Processing units for which the scheduler decides; several make it a global scheduler.
+    executing_pu : Processing unit that executes the scheduler itself, that is, its computation items.
+    """
 
     scheduler: Scheduler | None = reference("scheduler")
     responsibility: list[ProcessingUnit] = references("responsibility")
@@ -39,7 +50,13 @@ class SchedulerAllocation(BaseObject):
 
 
 class TaskAllocation(BaseObject, ISchedulingParameterContainer):
-    """AMALTHEA TaskAllocation."""
+    """Assignment of a task to a scheduler, with its scheduling parameters; a task has exactly one.
+
+    Attributes
+    ----------
+    affinity : Restricts the task to some processing units of its scheduler; empty means all of them, several allow migration.
+    parameter_extensions : Further scheduling parameters as text.
+    """
 
     task: Task | None = reference("task")
     scheduler: TaskScheduler | None = reference("scheduler")
@@ -48,7 +65,12 @@ class TaskAllocation(BaseObject, ISchedulingParameterContainer):
 
 
 class ISRAllocation(BaseObject):
-    """AMALTHEA ISRAllocation."""
+    """Assignment of an ISR to an interrupt controller, on whose processing units it runs.
+
+    Attributes
+    ----------
+    priority : Priority among ISRs; they outrank tasks whatever it is.
+    """
 
     isr: ISR | None = reference("isr")
     controller: InterruptController | None = reference("controller")
@@ -56,14 +78,24 @@ class ISRAllocation(BaseObject):
 
 
 class RunnableAllocation(BaseObject):
-    """AMALTHEA RunnableAllocation."""
+    """Assignment of a runnable to a scheduler; by itself it does not make the runnable run.
+
+    Attributes
+    ----------
+    entity : Runnable that is assigned.
+    """
 
     scheduler: Scheduler | None = reference("scheduler")
     entity: Runnable | None = reference("entity")
 
 
 class MemoryMapping(BaseObject):
-    """AMALTHEA MemoryMapping."""
+    """Placement of a label or another element in a memory; it decides what an access costs.
+
+    Attributes
+    ----------
+    memory_position_address : Absolute address or offset in the memory, as the mapping model says (hexadecimal in files).
+    """
 
     abstract_element: AbstractMemoryElement | None = reference("abstractElement")
     memory: Memory | None = reference("memory")
@@ -71,7 +103,15 @@ class MemoryMapping(BaseObject):
 
 
 class PhysicalSectionMapping(ReferableBaseObject):
-    """AMALTHEA PhysicalSectionMapping."""
+    """Placement of sections in an address range of a memory.
+
+    Attributes
+    ----------
+    origin : Sections that are placed together.
+    start_address : First address of the range (hexadecimal in files).
+    end_address : Last address of the range (hexadecimal in files).
+    run_entities : Runnables that lie in the range.
+    """
 
     origin: list[Section] = references("origin")
     memory: Memory | None = reference("memory")

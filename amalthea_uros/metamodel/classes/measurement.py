@@ -17,31 +17,37 @@ if TYPE_CHECKING:
 
 
 class MeasurementModel(BaseObject):
-    """AMALTHEA MeasurementModel. (AMALTHEA 0.9.7..0.9.9)"""
+    """Sub-model of measured runtimes. (AMALTHEA 0.9.7..0.9.9)"""
 
     measurements: list[Measurement] = containments("measurements")
 
 
 class Measurement(BaseObject, abstract=True):
-    """AMALTHEA Measurement. (AMALTHEA 0.9.7..0.9.9)"""
+    """Measured runtimes of one object. (AMALTHEA 0.9.7..0.9.9)
+
+    Attributes
+    ----------
+    runtimes : Measured values one by one.
+    runtime_deviation : Measured values summarised as a deviation.
+    """
 
     runtimes: list[Time] = containments("runtimes")
     runtime_deviation: ITimeDeviation | None = containment("runtimeDeviation")
 
 
 class EventChainMeasurement(Measurement):
-    """AMALTHEA EventChainMeasurement. (AMALTHEA 0.9.7..0.9.9)"""
+    """Measured runtimes of an event chain. (AMALTHEA 0.9.7..0.9.9)"""
 
     event_chain: EventChain | None = reference("eventChain")
 
 
 class TaskMeasurement(Measurement):
-    """AMALTHEA TaskMeasurement. (AMALTHEA 0.9.7..0.9.9)"""
+    """Measured runtimes of a task. (AMALTHEA 0.9.7..0.9.9)"""
 
     task: Task | None = reference("task")
 
 
 class RunnableMeasurement(Measurement):
-    """AMALTHEA RunnableMeasurement. (AMALTHEA 0.9.7..0.9.9)"""
+    """Measured runtimes of a runnable. (AMALTHEA 0.9.7..0.9.9)"""
 
     runnable: Runnable | None = reference("runnable")

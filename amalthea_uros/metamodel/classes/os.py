@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class OSModel(BaseObject):
-    """AMALTHEA OSModel."""
+    """Sub-model of operating systems with their schedulers, semaphores and overheads."""
 
     semaphores: list[Semaphore] = containments("semaphores")
     operating_systems: list[OperatingSystem] = containments("operatingSystems")
@@ -35,7 +35,12 @@ class OSModel(BaseObject):
 
 
 class OsDataConsistency(BaseObject):
-    """AMALTHEA OsDataConsistency."""
+    """How an operating system keeps data consistent while processes preempt each other.
+
+    Attributes
+    ----------
+    mode : Who ensures consistency; labels and label accesses may override it.
+    """
 
     mode: OsDataConsistencyMode | None = attribute("mode")
     data_stability: DataStability | None = containment("dataStability")
@@ -43,7 +48,14 @@ class OsDataConsistency(BaseObject):
 
 
 class DataStability(Element):
-    """AMALTHEA DataStability."""
+    """Protection that keeps the values of labels unchanged for an interval.
+
+    Attributes
+    ----------
+    algorithm : Free text that names the protection.
+    access_multiplicity : Whether all data is protected or only data that is accessed several times.
+    level : Interval in which all reads of a label see the same value.
+    """
 
     enabled: bool | None = attribute("enabled")
     algorithm: str | None = attribute("algorithm")
@@ -52,7 +64,13 @@ class DataStability(Element):
 
 
 class NonAtomicDataCoherency(Element):
-    """AMALTHEA NonAtomicDataCoherency."""
+    """Protection of data that cannot be accessed in one step.
+
+    Attributes
+    ----------
+    algorithm : Free text that names the protection.
+    access_multiplicity : Whether all data is protected or only data that is accessed several times.
+    """
 
     enabled: bool | None = attribute("enabled")
     algorithm: str | None = attribute("algorithm")
@@ -60,7 +78,15 @@ class NonAtomicDataCoherency(Element):
 
 
 class Semaphore(ReferableBaseObject):
-    """AMALTHEA Semaphore."""
+    """Lock that limits how many users hold it at the same time.
+
+    Attributes
+    ----------
+    initial_value : Users that hold it already at the start (default 0); it is not the number of free places.
+    max_value : Largest number of users at the same time; the default is 1, but 0 until 2.0.0.
+    ownership : Whether only the owner may release it (default true).
+    priority_ceiling_protocol : Whether the holder runs at the highest priority of all users.
+    """
 
     semaphore_type: SemaphoreType | None = attribute("semaphoreType")
     initial_value: int | None = attribute("initialValue")
@@ -70,44 +96,80 @@ class Semaphore(ReferableBaseObject):
 
 
 class ISchedulingParameterContainer(Element, abstract=True):
-    """AMALTHEA ISchedulingParameterContainer. (AMALTHEA 2.0.0..)"""
+    """Object that gives values for scheduling parameters. (AMALTHEA 2.0.0..)
+
+    Attributes
+    ----------
+    scheduling_parameters : Values by definition; until 1.2.0 one object of fixed fields. The highest priority wins.
+    """
 
     scheduling_parameters: list[SchedulingParameter | SchedulingParameters] = containments("schedulingParameters")
 
 
 class Scheduler(ReferableBaseObject, ISchedulingParameterContainer, abstract=True):
-    """AMALTHEA Scheduler."""
+    """Part of an operating system that decides what a processing unit executes.
+
+    Attributes
+    ----------
+    definition : Scheduling algorithm, by reference to its definition.
+    computation_items : Cost of one scheduling decision, paid on the executing processing unit.
+    """
 
     definition: SchedulerDefinition | None = reference("definition")  # 2.0.0..
     computation_items: list[ComputationItem] = containments("computationItems")
 
 
 class TaskScheduler(Scheduler):
-    """AMALTHEA TaskScheduler."""
+    """Scheduler of tasks, possibly below another scheduler.
+
+    Attributes
+    ----------
+    parent_association : Link to a scheduler above; this one decides only while the parent grants it time.
+    scheduling_algorithm : Scheduling algorithm as an object; replaced by the definition in 2.0.0.
+    """
 
     parent_association: SchedulerAssociation | None = containment("parentAssociation")
     scheduling_algorithm: TaskSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # 0.9.7..1.2.0
 
 
 class SchedulerAssociation(ISchedulingParameterContainer):
-    """AMALTHEA SchedulerAssociation."""
+    """Link from a scheduler to its parent, with the parameters the parent's algorithm needs for this child.
+
+    Attributes
+    ----------
+    parameter_extensions : Further scheduling parameters as text.
+    """
 
     parent: TaskScheduler | None = reference("parent")
     parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")  # 0.9.7..1.2.0
 
 
 class InterruptController(Scheduler):
-    """AMALTHEA InterruptController."""
+    """Scheduler of ISRs.
+
+    Attributes
+    ----------
+    scheduling_algorithm : Scheduling algorithm as an object; replaced by the definition in 2.0.0.
+    """
 
     scheduling_algorithm: InterruptSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # 0.9.7..1.2.0
 
 
 class OsDefinition(ReferableBaseObject, ITaggable, abstract=True):
-    """AMALTHEA OsDefinition. (AMALTHEA 2.0.0..)"""
+    """Base of definitions that operating systems share. (AMALTHEA 2.0.0..)"""
 
 
 class SchedulerDefinition(OsDefinition, IDescription):
-    """AMALTHEA SchedulerDefinition. (AMALTHEA 2.0.0..)"""
+    """Scheduling algorithm, known by its name, with the parameters it takes. (AMALTHEA 2.0.0..)
+
+    Attributes
+    ----------
+    algorithm_parameters : Parameters that are set once per scheduler.
+    process_parameters : Parameters that are set per allocated task or child scheduler.
+    requires_parent_scheduler : Whether the algorithm works only below another scheduler.
+    passes_parameters_upwards : Whether the process parameters of the children are handed to the parent scheduler.
+    has_exactly_one_child : Whether it takes exactly one child, a task or a scheduler.
+    """
 
     algorithm_parameters: list[SchedulingParameterDefinition] = references("algorithmParameters")
     process_parameters: list[SchedulingParameterDefinition] = references("processParameters")
@@ -117,7 +179,14 @@ class SchedulerDefinition(OsDefinition, IDescription):
 
 
 class SchedulingParameterDefinition(OsDefinition):
-    """AMALTHEA SchedulingParameterDefinition. (AMALTHEA 2.0.0..)"""
+    """Name, type and default of a scheduling parameter, such as the priority. (AMALTHEA 2.0.0..)
+
+    Attributes
+    ----------
+    many : Whether the parameter takes a list of values.
+    mandatory : Whether a value must be given (default true) unless there is a default value.
+    default_value : Value for allocations that give none.
+    """
 
     type: ParameterType | None = attribute("type")
     many: bool | None = attribute("many")
@@ -126,14 +195,19 @@ class SchedulingParameterDefinition(OsDefinition):
 
 
 class SchedulingParameter(Element):
-    """AMALTHEA SchedulingParameter. (AMALTHEA 2.0.0..)"""
+    """Map entry from a parameter definition to a value. (AMALTHEA 2.0.0..)
+
+    Attributes
+    ----------
+    value : Value of the type the definition demands, e.g. IntegerObject for a priority; a ListObject for several values.
+    """
 
     key: SchedulingParameterDefinition | None = reference("key")
     value: Value | None = containment("value")
 
 
 class OsOverhead(OsDefinition):
-    """AMALTHEA OsOverhead."""
+    """Execution cost of operating system functions, to be shared by operating systems."""
 
     api_overhead: OsAPIOverhead | None = containment("apiOverhead")
     isr_category1_overhead: OsISROverhead | None = containment("isrCategory1Overhead")
@@ -141,7 +215,20 @@ class OsOverhead(OsDefinition):
 
 
 class OsAPIOverhead(BaseObject):
-    """AMALTHEA OsAPIOverhead."""
+    """Ticks that calls of operating system functions cost the caller.
+
+    Attributes
+    ----------
+    api_send_message : Cost of an activation or an event across cores.
+    api_terminate_task : Cost of an explicit termination, paid by the process that terminates.
+    api_schedule : Cost of an explicit request for scheduling.
+    api_request_resource : Cost of requesting a resource, paid by the runnable.
+    api_release_resource : Cost of releasing a resource, paid by the runnable.
+    api_activate_task : Cost of an activation, paid by the process that activates.
+    api_enforced_migration : Cost of moving a task to another scheduler.
+    api_ioc_read : Cost of a read in communication between OS applications (IOC).
+    api_ioc_write : Cost of a write in communication between OS applications (IOC).
+    """
 
     api_send_message: Ticks | None = containment("apiSendMessage")
     api_terminate_task: Ticks | None = containment("apiTerminateTask")
@@ -165,14 +252,25 @@ class OsAPIOverhead(BaseObject):
 
 
 class OsISROverhead(BaseObject):
-    """AMALTHEA OsISROverhead."""
+    """Ticks that the operating system spends around an ISR.
+
+    Attributes
+    ----------
+    pre_execution_overhead : Cost at the start of the ISR.
+    post_execution_overhead : Cost at the termination of the ISR.
+    """
 
     pre_execution_overhead: Ticks | None = containment("preExecutionOverhead")
     post_execution_overhead: Ticks | None = containment("postExecutionOverhead")
 
 
 class OperatingSystem(BaseObject, INamed):
-    """AMALTHEA OperatingSystem."""
+    """Operating system with its task schedulers and interrupt controllers.
+
+    Attributes
+    ----------
+    overhead : Cost of its functions; without it they take no time.
+    """
 
     overhead: OsOverhead | None = reference("overhead")
     task_schedulers: list[TaskScheduler] = containments("taskSchedulers")
@@ -181,7 +279,7 @@ class OperatingSystem(BaseObject, INamed):
 
 
 class VendorOperatingSystem(OperatingSystem):
-    """AMALTHEA VendorOperatingSystem."""
+    """Operating system product with vendor and version."""
 
     os_name: str | None = attribute("osName")
     vendor: str | None = attribute("vendor")
@@ -189,7 +287,15 @@ class VendorOperatingSystem(OperatingSystem):
 
 
 class SchedulingParameters(Element):
-    """AMALTHEA SchedulingParameters. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling parameters of a task or child scheduler as fixed fields. (AMALTHEA 0.9.7..1.2.0)
+
+    Attributes
+    ----------
+    priority : Priority; a higher value means more urgent.
+    min_budget : Least budget per replenishment, used when the budget is an interval.
+    max_budget : Largest budget per replenishment, which counts if the budget is no interval.
+    replenishment : Period after which the budget is restored.
+    """
 
     priority: int | None = attribute("priority")
     min_budget: Time | None = containment("minBudget")
@@ -198,119 +304,124 @@ class SchedulingParameters(Element):
 
 
 class ParameterExtension(Element):
-    """AMALTHEA ParameterExtension. (AMALTHEA 0.9.7..1.2.0)"""
+    """Map entry from a key to a text, for parameters without a field. (AMALTHEA 0.9.7..1.2.0)"""
 
     key: str | None = attribute("key")
     value: str | None = attribute("value")
 
 
 class Algorithm(BaseObject, abstract=True):
-    """AMALTHEA Algorithm. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling algorithm as an object. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class InterruptSchedulingAlgorithm(Algorithm, abstract=True):
-    """AMALTHEA InterruptSchedulingAlgorithm. (AMALTHEA 0.9.7..1.2.0)"""
+    """Algorithm that an interrupt controller can use. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class TaskSchedulingAlgorithm(Algorithm, abstract=True):
-    """AMALTHEA TaskSchedulingAlgorithm. (AMALTHEA 0.9.7..1.2.0)"""
+    """Algorithm that a task scheduler can use. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class FixedPriority(TaskSchedulingAlgorithm, abstract=True):
-    """AMALTHEA FixedPriority. (AMALTHEA 0.9.7..1.2.0)"""
+    """Algorithm that keeps the priority of each task fixed. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class FixedPriorityPreemptive(FixedPriority):
-    """AMALTHEA FixedPriorityPreemptive. (AMALTHEA 0.9.7..1.2.0)"""
+    """Preemptive scheduling by fixed priority. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class FixedPriorityPreemptiveWithBudgetEnforcement(FixedPriority):
-    """AMALTHEA FixedPriorityPreemptiveWithBudgetEnforcement. (AMALTHEA 0.9.7..1.2.0)"""
+    """Preemptive scheduling by fixed priority with an execution budget per replenishment period. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class OSEK(FixedPriority):
-    """AMALTHEA OSEK. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling by fixed priority according to OSEK. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class DeadlineMonotonic(FixedPriority):
-    """AMALTHEA DeadlineMonotonic. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling by fixed priority in which the shortest deadline ranks highest. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class RateMonotonic(FixedPriority):
-    """AMALTHEA RateMonotonic. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling by fixed priority in which the shortest period ranks highest. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class Pfair(TaskSchedulingAlgorithm, abstract=True):
-    """AMALTHEA Pfair. (AMALTHEA 0.9.7..1.2.0)"""
+    """Proportionate fair scheduling, which allots time in quanta. (AMALTHEA 0.9.7..1.2.0)
+
+    Attributes
+    ----------
+    quant_size_ns : Length of a quantum in nanoseconds.
+    """
 
     quant_size_ns: int | None = attribute("quantSizeNs")
 
 
 class PfairPD2(Pfair):
-    """AMALTHEA PfairPD2. (AMALTHEA 0.9.7..1.2.0)"""
+    """Proportionate fair scheduling by the PD2 rule. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class PartlyPFairPD2(Pfair):
-    """AMALTHEA PartlyPFairPD2. (AMALTHEA 0.9.7..1.2.0)"""
+    """Variant named partly fair of proportionate fair scheduling by the PD2 rule. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class EarlyReleaseFairPD2(Pfair):
-    """AMALTHEA EarlyReleaseFairPD2. (AMALTHEA 0.9.7..1.2.0)"""
+    """Early-release variant of proportionate fair scheduling by the PD2 rule. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class PartlyEarlyReleaseFairPD2(Pfair):
-    """AMALTHEA PartlyEarlyReleaseFairPD2. (AMALTHEA 0.9.7..1.2.0)"""
+    """Variant named partly fair of early-release fair scheduling by the PD2 rule. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class DynamicPriority(TaskSchedulingAlgorithm, abstract=True):
-    """AMALTHEA DynamicPriority. (AMALTHEA 0.9.7..1.2.0)"""
+    """Algorithm whose ranking of tasks changes at run time. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class LeastLocalRemainingExecutionTimeFirst(DynamicPriority):
-    """AMALTHEA LeastLocalRemainingExecutionTimeFirst. (AMALTHEA 0.9.7..1.2.0)"""
+    """Global scheduling in which the smallest local remaining execution time goes first. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class EarliestDeadlineFirst(DynamicPriority):
-    """AMALTHEA EarliestDeadlineFirst. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling in which the earliest absolute deadline goes first. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class PriorityBasedRoundRobin(DynamicPriority):
-    """AMALTHEA PriorityBasedRoundRobin. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling by priority in which equal priorities share the processing unit in time slices. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class ReservationBasedServer(TaskSchedulingAlgorithm, abstract=True):
-    """AMALTHEA ReservationBasedServer. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduler that gives its tasks a budget of execution time. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class DeferrableServer(ReservationBasedServer):
-    """AMALTHEA DeferrableServer. (AMALTHEA 0.9.7..1.2.0)"""
+    """Server whose budget is restored periodically and kept while it is idle. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class PollingPeriodicServer(ReservationBasedServer):
-    """AMALTHEA PollingPeriodicServer. (AMALTHEA 0.9.7..1.2.0)"""
+    """Server whose budget is available at its polling instants and lost when it is idle. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class SporadicServer(ReservationBasedServer):
-    """AMALTHEA SporadicServer. (AMALTHEA 0.9.7..1.2.0)"""
+    """Server whose budget comes back one period after it was consumed. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class ConstantBandwidthServer(ReservationBasedServer):
-    """AMALTHEA ConstantBandwidthServer. (AMALTHEA 0.9.7..1.2.0)"""
+    """EDF server whose deadline is postponed when its budget is used up. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class ConstantBandwidthServerWithCASH(ReservationBasedServer):
-    """AMALTHEA ConstantBandwidthServerWithCASH. (AMALTHEA 0.9.7..1.2.0)"""
+    """Constant bandwidth server that reuses budget left over by other servers. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class Grouping(TaskSchedulingAlgorithm):
-    """AMALTHEA Grouping. (AMALTHEA 0.9.7..1.2.0)"""
+    """Logical group below a parent scheduler that takes no decisions itself. (AMALTHEA 0.9.7..1.2.0)"""
 
 
 class UserSpecificSchedulingAlgorithm(TaskSchedulingAlgorithm, InterruptSchedulingAlgorithm):
-    """AMALTHEA UserSpecificSchedulingAlgorithm. (AMALTHEA 0.9.7..1.2.0)"""
+    """Algorithm of a tool or user, described by keys and texts. (AMALTHEA 0.9.7..1.2.0)"""
 
     parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")
 
 
 class PriorityBased(InterruptSchedulingAlgorithm):
-    """AMALTHEA PriorityBased. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling of ISRs by the priority of their allocation. (AMALTHEA 0.9.7..1.2.0)"""

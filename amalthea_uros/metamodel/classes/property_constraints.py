@@ -17,62 +17,74 @@ if TYPE_CHECKING:
 
 
 class PropertyConstraintsModel(BaseObject):
-    """AMALTHEA PropertyConstraintsModel."""
+    """Sub-model of demands on the properties of cores and memories.
+
+    Attributes
+    ----------
+    allocation_constraints : Demands on the cores that execute something.
+    mapping_constraints : Demands on the memories that hold something.
+    """
 
     allocation_constraints: list[CoreAllocationConstraint] = containments("allocationConstraints")
     mapping_constraints: list[MemoryMappingConstraint] = containments("mappingConstraints")
 
 
 class CoreAllocationConstraint(BaseObject, abstract=True):
-    """AMALTHEA CoreAllocationConstraint."""
+    """Demand on the properties of the cores to which something may be allocated."""
 
     core_classification: CoreClassification | None = containment("coreClassification")
 
 
 class MemoryMappingConstraint(BaseObject, abstract=True):
-    """AMALTHEA MemoryMappingConstraint."""
+    """Demand on the properties of the memories into which something may be mapped."""
 
     memory_classification: MemoryClassification | None = containment("memoryClassification")
 
 
 class ProcessAllocationConstraint(CoreAllocationConstraint):
-    """AMALTHEA ProcessAllocationConstraint."""
+    """Demand on the cores that may execute a process."""
 
     process: Process | None = reference("process")
 
 
 class ProcessPrototypeAllocationConstraint(CoreAllocationConstraint):
-    """AMALTHEA ProcessPrototypeAllocationConstraint."""
+    """Demand on the cores that may execute the process made of a prototype."""
 
     process_prototype: ProcessPrototype | None = reference("processPrototype")
 
 
 class RunnableAllocationConstraint(CoreAllocationConstraint):
-    """AMALTHEA RunnableAllocationConstraint."""
+    """Demand on the cores that may execute a runnable."""
 
     runnable: Runnable | None = reference("runnable")
 
 
 class AbstractElementMappingConstraint(MemoryMappingConstraint):
-    """AMALTHEA AbstractElementMappingConstraint."""
+    """Demand on the memories that may hold a label or another memory element."""
 
     abstract_element: AbstractMemoryElement | None = reference("abstractElement")
 
 
 class Classification(BaseObject, abstract=True):
-    """AMALTHEA Classification."""
+    """Condition on the classifiers that a core or memory has.
+
+    Attributes
+    ----------
+    condition : Whether the classifiers are required or excluded.
+    grouping : Whether all of the classifiers count or at least one of them.
+    """
 
     condition: CombinatorialCondition | None = attribute("condition")
     grouping: GroupingType | None = attribute("grouping")
 
 
 class CoreClassification(Classification):
-    """AMALTHEA CoreClassification."""
+    """Condition on the classifiers of a core."""
 
     classifiers: list[CoreClassifier] = references("classifiers")
 
 
 class MemoryClassification(Classification):
-    """AMALTHEA MemoryClassification."""
+    """Condition on the classifiers of a memory."""
 
     classifiers: list[MemoryClassifier] = references("classifiers")

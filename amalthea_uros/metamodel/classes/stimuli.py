@@ -18,90 +18,122 @@ if TYPE_CHECKING:
 
 
 class StimuliModel(BaseObject):
-    """AMALTHEA StimuliModel."""
+    """Sub-model of the stimuli that activate processes, and of their clocks."""
 
     stimuli: list[Stimulus] = containments("stimuli")
     clocks: list[Clock] = containments("clocks")
 
 
 class Stimulus(ReferableBaseObject, ITaggable, abstract=True):
-    """AMALTHEA Stimulus."""
+    """Source of activations; each occurrence activates all its processes at the same instant.
+
+    Attributes
+    ----------
+    set_mode_value_list : Values assigned to mode labels at each occurrence, after the condition and before the activations.
+    execution_condition : Tested at each occurrence; if it is false, nothing is set and nothing activated.
+    """
 
     set_mode_value_list: ModeValueList | None = containment("setModeValueList")
     execution_condition: ConditionDisjunction | ModeConditionDisjunction | None = containment("executionCondition")
 
 
 class ModeValueList(BaseObject):
-    """AMALTHEA ModeValueList."""
+    """List of assignments to mode labels."""
 
     entries: list[ModeAssignment] = containments("entries")
 
 
 class ModeValueMapEntry(Element):
-    """AMALTHEA ModeValueMapEntry."""
+    """Map entry from a mode label to a value.
+
+    Attributes
+    ----------
+    value : Name of a literal for an enum mode, integer as text for a numeric mode.
+    """
 
     key: ModeLabel | None = reference("key")
     value: str | None = attribute("value")
 
 
 class ModeValue(BaseObject, abstract=True):
-    """AMALTHEA ModeValue."""
+    """Mode label together with a value.
+
+    Attributes
+    ----------
+    value : Name of a literal for an enum mode, integer as text for a numeric mode.
+    """
 
     label: ModeLabel | None = reference("label")
     value: str | None = attribute("value")
 
 
 class ModeAssignment(ModeValue):
-    """AMALTHEA ModeAssignment."""
+    """Assignment of a value to a mode label."""
 
 
 class ConditionDisjunctionEntry(Element, abstract=True):
-    """AMALTHEA ConditionDisjunctionEntry. (AMALTHEA 2.0.0..)"""
+    """Entry of a disjunction, a single condition or a conjunction. (AMALTHEA 2.0.0..)"""
 
 
 class Condition(ConditionDisjunctionEntry, abstract=True):
-    """AMALTHEA Condition. (AMALTHEA 2.0.0..)"""
+    """Single comparison that is true or false. (AMALTHEA 2.0.0..)"""
 
 
 class ISatisfiable(Element, abstract=True):
-    """AMALTHEA ISatisfiable. (AMALTHEA 2.0.0..2.2.0)"""
+    """Marker of conditions that can be evaluated. (AMALTHEA 2.0.0..2.2.0)"""
 
 
 class ModeConditionDisjunctionEntry(ISatisfiable, BaseObject, abstract=True):
-    """AMALTHEA ModeConditionDisjunctionEntry. (AMALTHEA 0.9.7..2.2.0)"""
+    """Entry of a disjunction, a single condition on modes or a conjunction. (AMALTHEA 0.9.7..2.2.0)"""
 
 
 class ModeCondition(Condition, ModeConditionDisjunctionEntry, abstract=True):
-    """AMALTHEA ModeCondition."""
+    """Comparison that involves mode labels.
+
+    Attributes
+    ----------
+    relation : Operator; enum modes can only be compared with EQUAL and NOT_EQUAL.
+    """
 
     relation: RelationalOperator | None = attribute("relation")
 
 
 class ModeValueCondition(ModeValue, ModeCondition):
-    """AMALTHEA ModeValueCondition."""
+    """Comparison of a mode label with a value."""
 
 
 class ModeLabelCondition(ModeCondition):
-    """AMALTHEA ModeLabelCondition."""
+    """Comparison of two mode labels, which should have the same mode.
+
+    Attributes
+    ----------
+    label1 : Left side of the comparison.
+    label2 : Right side of the comparison.
+    """
 
     label1: ModeLabel | None = reference("label1")
     label2: ModeLabel | None = reference("label2")
 
 
 class ConditionDisjunction(BaseObject):
-    """AMALTHEA ConditionDisjunction. (AMALTHEA 2.0.0..)"""
+    """Condition that is true if at least one of its entries is. (AMALTHEA 2.0.0..)"""
 
     entries: list[ConditionDisjunctionEntry] = containments("entries")
 
 
 class ConditionConjunction(BaseObject, ConditionDisjunctionEntry):
-    """AMALTHEA ConditionConjunction. (AMALTHEA 2.0.0..)"""
+    """Condition that is true if all of its entries are. (AMALTHEA 2.0.0..)"""
 
     entries: list[Condition] = containments("entries")
 
 
 class ChannelFillCondition(BaseObject, Condition):
-    """AMALTHEA ChannelFillCondition. (AMALTHEA 2.0.0..)"""
+    """Comparison of the number of elements in a channel with a number. (AMALTHEA 2.0.0..)
+
+    Attributes
+    ----------
+    fill_level : Number of elements, on the right side of the comparison.
+    """
 
     channel: Channel | None = reference("channel")
     relation: RelationalOperator | None = attribute("relation")  # 2.1.0..
@@ -109,28 +141,55 @@ class ChannelFillCondition(BaseObject, Condition):
 
 
 class FixedPeriodic(Element, abstract=True):
-    """AMALTHEA FixedPeriodic."""
+    """Stimulus with a fixed period.
+
+    Attributes
+    ----------
+    recurrence : Period, greater than zero.
+    offset : Time of the first period, zero or more; unset means zero.
+    """
 
     recurrence: Time | None = containment("recurrence")
     offset: Time | None = containment("offset")
 
 
 class PeriodicStimulus(Stimulus, FixedPeriodic):
-    """AMALTHEA PeriodicStimulus."""
+    """Periodic activation at offset + i * recurrence, shifted by jitter.
+
+    Attributes
+    ----------
+    jitter : Shift of each occurrence against the ideal grid, possibly negative; it does not accumulate.
+    min_distance : Shortest distance between two actual occurrences.
+    """
 
     jitter: ITimeDeviation | None = containment("jitter")
     min_distance: Time | None = containment("minDistance")
 
 
 class RelativePeriodicStimulus(Stimulus):
-    """AMALTHEA RelativePeriodicStimulus."""
+    """Activation at a varying distance from the previous one, so that it drifts; also used for sporadic tasks.
+
+    Attributes
+    ----------
+    offset : Time of the first occurrence; unset means zero.
+    next_occurrence : Distance to the next occurrence; its lower bound is the minimum inter-arrival time.
+    """
 
     offset: Time | None = containment("offset")
     next_occurrence: ITimeDeviation | None = containment("nextOccurrence")
 
 
 class VariableRateStimulus(Stimulus):
-    """AMALTHEA VariableRateStimulus."""
+    """Activation at a rate that varies, given by statistics or by a clock.
+
+    Attributes
+    ----------
+    step : Length of the time step to which the rate refers.
+    occurrences_per_step : Occurrences per step, not necessarily an integer.
+    max_increase_per_step : Largest rise of the rate from one step to the next; unset means no limit.
+    max_decrease_per_step : Largest fall of the rate from one step to the next; unset means no limit.
+    scenario : Clock that drives the occurrences; it replaces the statistical description.
+    """
 
     step: Time | None = containment("step")
     occurrences_per_step: IContinuousValueDeviation | None = containment("occurrencesPerStep")
@@ -140,7 +199,14 @@ class VariableRateStimulus(Stimulus):
 
 
 class Scenario(BaseObject):
-    """AMALTHEA Scenario."""
+    """Way in which a clock drives a variable rate stimulus.
+
+    Attributes
+    ----------
+    clock : Frequency over time, whose integral is sampled.
+    sampling_offset : Clock cycles before sampling starts; with 0 (default) the first occurrence comes after one recurrence.
+    sampling_recurrence : Clock cycles between two occurrences (default 1).
+    """
 
     clock: Clock | None = reference("clock")
     sampling_offset: float | None = attribute("samplingOffset")
@@ -148,29 +214,51 @@ class Scenario(BaseObject):
 
 
 class PeriodicSyntheticStimulus(Stimulus, FixedPeriodic):
-    """AMALTHEA PeriodicSyntheticStimulus."""
+    """Activation by a list of times that is repeated with the period.
+
+    Attributes
+    ----------
+    occurrence_times : Times relative to the start of the period, zero or more.
+    """
 
     occurrence_times: list[Time] = containments("occurrenceTimes")
 
 
 class CustomStimulus(Stimulus, IDescription):
-    """AMALTHEA CustomStimulus."""
+    """Stimulus without predefined meaning, described by text and custom properties."""
 
 
 class SingleStimulus(Stimulus):
-    """AMALTHEA SingleStimulus."""
+    """Activation that happens once.
+
+    Attributes
+    ----------
+    occurrence : Time of the occurrence, counted from the start.
+    """
 
     occurrence: Time | None = containment("occurrence")
 
 
 class InterProcessStimulus(Stimulus):
-    """AMALTHEA InterProcessStimulus."""
+    """Activation by inter-process triggers that other processes execute.
+
+    Attributes
+    ----------
+    counter : Lets only every n-th trigger through, in addition to the counter of the trigger.
+    """
 
     counter: Counter | None = containment("counter")
 
 
 class PeriodicBurstStimulus(Stimulus, FixedPeriodic):
-    """AMALTHEA PeriodicBurstStimulus."""
+    """Several activations in a burst that is repeated with the period.
+
+    Attributes
+    ----------
+    burst_length : Length of a burst; occurrences that would lie behind it are cut off.
+    occurrence_min_distance : Distance of the occurrences in a burst, the first of which is at its start.
+    occurrence_count : Occurrences per burst; the default is 1, but 0 until 1.1.0.
+    """
 
     burst_length: Time | None = containment("burstLength")
     occurrence_min_distance: Time | None = containment("occurrenceMinDistance")
@@ -178,20 +266,33 @@ class PeriodicBurstStimulus(Stimulus, FixedPeriodic):
 
 
 class EventStimulus(Stimulus):
-    """AMALTHEA EventStimulus."""
+    """Activation by events, such as a write access or a custom event.
+
+    Attributes
+    ----------
+    triggering_events : Events of which each one fires the stimulus; process events cannot do so.
+    counter : Lets only every n-th event through.
+    """
 
     triggering_events: list[TriggerEvent] = references("triggeringEvents")
     counter: Counter | None = containment("counter")
 
 
 class ArrivalCurveStimulus(Stimulus):
-    """AMALTHEA ArrivalCurveStimulus."""
+    """Activation described only by limits of how close and how far apart occurrences are."""
 
     entries: list[ArrivalCurveEntry] = containments("entries")
 
 
 class ArrivalCurveEntry(BaseObject):
-    """AMALTHEA ArrivalCurveEntry."""
+    """Limits of the time that a number of consecutive occurrences spans.
+
+    Attributes
+    ----------
+    number_of_occurrences : Number of consecutive occurrences; 2 limits the distance of neighbours.
+    lower_time_border : Shortest time from the first to the last of them; unset means no limit.
+    upper_time_border : Longest time from the first to the last of them; unset means no limit.
+    """
 
     number_of_occurrences: int | None = attribute("numberOfOccurrences")
     lower_time_border: Time | None = containment("lowerTimeBorder")
@@ -199,11 +300,18 @@ class ArrivalCurveEntry(BaseObject):
 
 
 class Clock(ReferableBaseObject, abstract=True):
-    """AMALTHEA Clock."""
+    """Frequency that varies over time."""
 
 
 class ClockFunction(Clock):
-    """AMALTHEA ClockFunction."""
+    """Clock whose frequency follows a sine or a triangle.
+
+    Attributes
+    ----------
+    peak_to_peak : Height of the curve from its minimum to its maximum.
+    x_offset : Time at which the rising curve passes the middle between minimum and maximum.
+    y_offset : Minimum of the curve, not its mean.
+    """
 
     curve_type: CurveType | None = attribute("curveType")
     period: Time | None = containment("period")
@@ -213,26 +321,32 @@ class ClockFunction(Clock):
 
 
 class ClockStepList(Clock):
-    """AMALTHEA ClockStepList."""
+    """Clock whose frequency changes in steps.
+
+    Attributes
+    ----------
+    entries : Steps; the frequency is 0 before the first one.
+    period : Time after which the steps repeat; without it the last frequency stays.
+    """
 
     entries: list[ClockStep] = containments("entries")
     period: Time | None = containment("period")
 
 
 class ClockStep(BaseObject):
-    """AMALTHEA ClockStep."""
+    """Frequency from a point in time on."""
 
     frequency: Frequency | None = containment("frequency")
     time: Time | None = containment("time")
 
 
 class ModeConditionDisjunction(BaseObject, ISatisfiable):
-    """AMALTHEA ModeConditionDisjunction. (AMALTHEA 0.9.7..2.2.0)"""
+    """Condition on modes that is true if at least one of its entries is. (AMALTHEA 0.9.7..2.2.0)"""
 
     entries: list[ModeConditionDisjunctionEntry] = containments("entries")
 
 
 class ModeConditionConjunction(ModeConditionDisjunctionEntry):
-    """AMALTHEA ModeConditionConjunction. (AMALTHEA 0.9.7..2.2.0)"""
+    """Condition on modes that is true if all of its entries are. (AMALTHEA 0.9.7..2.2.0)"""
 
     entries: list[ModeCondition] = containments("entries")

@@ -75,7 +75,13 @@ if TYPE_CHECKING:
 
 
 class SWModel(BaseObject):
-    """AMALTHEA SWModel."""
+    """Sub-model of the software with its tasks, ISRs, runnables, labels and types.
+
+    Attributes
+    ----------
+    activations : Intended activations of runnables and prototypes; what really activates a process is a stimulus.
+    events : Operating system events, not those of the event model.
+    """
 
     isrs: list[ISR] = containments("isrs")
     tasks: list[Task] = containments("tasks")
@@ -94,98 +100,153 @@ class SWModel(BaseObject):
 
 
 class AbstractMemoryElement(ReferableBaseObject, ITaggable, abstract=True):
-    """AMALTHEA AbstractMemoryElement."""
+    """Base of everything that takes up memory and can be mapped into one.
+
+    Attributes
+    ----------
+    size : Memory that the element needs, greater than zero.
+    """
 
     size: DataSize | None = containment("size")
 
 
 class AbstractProcess(AbstractMemoryElement, abstract=True):
-    """AMALTHEA AbstractProcess."""
+    """Base of processes and of their prototypes."""
 
 
 class CustomEntity(AbstractMemoryElement, IDescription):
-    """AMALTHEA CustomEntity."""
+    """Element of the software without predefined meaning.
+
+    Attributes
+    ----------
+    type_name : Free text that names the kind of the element.
+    """
 
     type_name: str | None = attribute("typeName")
 
 
 class ProcessChain(ReferableBaseObject):
-    """AMALTHEA ProcessChain."""
+    """List of processes that belong together; it does not say how they trigger each other."""
 
     processes: list[Process] = references("processes")
 
 
 class IExecutable(Element, abstract=True):
-    """AMALTHEA IExecutable. (AMALTHEA 1.2.0..)"""
+    """Object with a behaviour, that is a task, an ISR or a runnable. (AMALTHEA 1.2.0..)
+
+    Attributes
+    ----------
+    local_labels : Mode labels that exist once per execution.
+    activity_graph : What is executed; a process or runnable without it does nothing.
+    """
 
     local_labels: list[LocalModeLabel] = containments("localLabels")  # 2.1.0..
     activity_graph: ActivityGraph | None = containment("activityGraph")
 
 
 class Process(AbstractProcess, IExecutable, abstract=True):
-    """AMALTHEA Process."""
+    """Base of tasks and ISRs, the units of activation.
+
+    Attributes
+    ----------
+    stimuli : What activates the process; several stimuli activate it independently of each other.
+    """
 
     stimuli: list[Stimulus] = references("stimuli")
 
 
 class IActivityGraphItemContainer(Element, abstract=True):
-    """AMALTHEA IActivityGraphItemContainer."""
+    """Object that holds items of an activity graph.
+
+    Attributes
+    ----------
+    items : Items in the order of execution.
+    """
 
     items: list[ActivityGraphItem] = containments("items")
 
 
 class ActivityGraph(BaseObject, IActivityGraphItemContainer):
-    """AMALTHEA ActivityGraph."""
+    """Behaviour of a task, ISR or runnable as a sequence of items."""
 
 
 class ActivityGraphItem(BaseObject, abstract=True):
-    """AMALTHEA ActivityGraphItem."""
+    """Step of an activity graph."""
 
 
 class Switch(ActivityGraphItem):
-    """AMALTHEA Switch. (AMALTHEA 2.0.0..)"""
+    """Branch on conditions. (AMALTHEA 2.0.0..)
+
+    Attributes
+    ----------
+    entries : Branches in the order in which they are tested; the first satisfied one is executed.
+    default_entry : Branch for the case that no condition is satisfied; without it nothing happens.
+    """
 
     entries: list[SwitchEntry] = containments("entries")
     default_entry: SwitchDefault | None = containment("defaultEntry")
 
 
 class SwitchEntry(BaseObject, INamed, IActivityGraphItemContainer):
-    """AMALTHEA SwitchEntry. (AMALTHEA 2.0.0..)"""
+    """Branch of a switch with its condition. (AMALTHEA 2.0.0..)"""
 
     condition: ConditionDisjunction | None = containment("condition")
 
 
 class SwitchDefault(BaseObject, IActivityGraphItemContainer):
-    """AMALTHEA SwitchDefault. (AMALTHEA 2.0.0..)"""
+    """Branch of a switch for all other cases. (AMALTHEA 2.0.0..)"""
 
 
 class ProbabilitySwitch(ActivityGraphItem):
-    """AMALTHEA ProbabilitySwitch."""
+    """Branch chosen at random."""
 
     entries: list[ProbabilitySwitchEntry] = containments("entries")
 
 
 class ProbabilitySwitchEntry(BaseObject, IActivityGraphItemContainer):
-    """AMALTHEA ProbabilitySwitchEntry."""
+    """Branch of a probability switch with its weight.
+
+    Attributes
+    ----------
+    probability : Weight, relative to the sum over all entries, which need not be 1.
+    """
 
     probability: float | None = attribute("probability")
 
 
 class WhileLoop(ActivityGraphItem, IActivityGraphItemContainer):
-    """AMALTHEA WhileLoop. (AMALTHEA 1.2.0..)"""
+    """Items that are repeated as long as a condition holds. (AMALTHEA 1.2.0..)
+
+    Attributes
+    ----------
+    condition : Tested before each iteration; the loop ends only if the items change what it depends on.
+    """
 
     condition: ConditionDisjunction | ModeConditionDisjunction | None = containment("condition")
 
 
 class Counter(BaseObject):
-    """AMALTHEA Counter."""
+    """Prescaler that lets only every n-th execution take effect.
+
+    Attributes
+    ----------
+    prescaler : The n of every n-th time (default 1); counting goes on across the instances of a process.
+    offset : Number of the first effective execution, counted from 1; 0 (default) stands for the prescaler itself.
+    """
 
     prescaler: int | None = attribute("prescaler")
     offset: int | None = attribute("offset")
 
 
 class WaitEvent(ActivityGraphItem):
-    """AMALTHEA WaitEvent."""
+    """Waiting of the process for operating system events; it does not clear them.
+
+    Attributes
+    ----------
+    mask_type : Whether all events of the mask must be set or one is enough.
+    waiting_behaviour : Active waiting polls and keeps the core, passive waiting releases it.
+    counter : Waits only every n-th time.
+    """
 
     event_mask: EventMask | None = containment("eventMask")
     mask_type: WaitEventType | None = attribute("maskType")
@@ -194,7 +255,13 @@ class WaitEvent(ActivityGraphItem):
 
 
 class SetEvent(ActivityGraphItem):
-    """AMALTHEA SetEvent."""
+    """Setting of operating system events.
+
+    Attributes
+    ----------
+    process : Process for which the events are set; unset means for every process.
+    counter : Sets the events only every n-th time.
+    """
 
     event_mask: EventMask | None = containment("eventMask")
     process: Process | None = reference("process")
@@ -202,62 +269,110 @@ class SetEvent(ActivityGraphItem):
 
 
 class ClearEvent(ActivityGraphItem):
-    """AMALTHEA ClearEvent."""
+    """Clearing of operating system events.
+
+    Attributes
+    ----------
+    counter : Clears the events only every n-th time.
+    """
 
     event_mask: EventMask | None = containment("eventMask")
     counter: Counter | None = containment("counter")
 
 
 class EventMask(BaseObject):
-    """AMALTHEA EventMask."""
+    """Set of operating system events."""
 
     events: list[OsEvent] = references("events")
 
 
 class OsEvent(ReferableBaseObject, ITaggable):
-    """AMALTHEA OsEvent."""
+    """Event of the operating system (OSEK) that a process can set, clear and wait for.
+
+    Attributes
+    ----------
+    communication_overhead_in_bit : Amount of data, in bit, that the event costs in communication.
+    """
 
     communication_overhead_in_bit: int | None = attribute("communicationOverheadInBit")
 
 
 class InterProcessTrigger(ActivityGraphItem):
-    """AMALTHEA InterProcessTrigger."""
+    """Firing of an inter-process stimulus, which activates all its processes.
+
+    Attributes
+    ----------
+    counter : Fires only every n-th time, in addition to the counter of the stimulus.
+    """
 
     stimulus: InterProcessStimulus | None = reference("stimulus")
     counter: Counter | None = containment("counter")
 
 
 class EnforcedMigration(ActivityGraphItem):
-    """AMALTHEA EnforcedMigration."""
+    """Move of the task to another scheduler.
+
+    Attributes
+    ----------
+    resource_owner : Scheduler to which the task moves.
+    """
 
     resource_owner: TaskScheduler | None = reference("resourceOwner")
 
 
 class SchedulePoint(ActivityGraphItem):
-    """AMALTHEA SchedulePoint."""
+    """Explicit call of the scheduler, at which cooperative tasks can be preempted."""
 
 
 class TerminateProcess(ActivityGraphItem):
-    """AMALTHEA TerminateProcess."""
+    """Immediate end of the process; it is not needed at the end of the graph.
+
+    Attributes
+    ----------
+    counter : Terminates only every n-th time.
+    """
 
     counter: Counter | None = containment("counter")
 
 
 class Task(Process):
-    """AMALTHEA Task."""
+    """Process that the scheduler of an operating system dispatches.
+
+    Attributes
+    ----------
+    preemption : Whether other tasks may preempt it always, at schedule points only, or never; ISRs always may.
+    multiple_task_activation_limit : Most instances at a time; activations beyond are lost, not queued. Read the default 0 as 1.
+    """
 
     preemption: Preemption | None = attribute("preemption")
     multiple_task_activation_limit: int | None = attribute("multipleTaskActivationLimit")
 
 
 class ISR(Process):
-    """AMALTHEA ISR."""
+    """Interrupt service routine, a process that an interrupt controller dispatches.
+
+    Attributes
+    ----------
+    category : Category of OSEK, which decides the overhead that applies.
+    """
 
     category: ISRCategory | None = attribute("category")
 
 
 class ProcessPrototype(AbstractProcess):
-    """AMALTHEA ProcessPrototype."""
+    """Specification from which tasks are made; it never runs anything itself.
+
+    Attributes
+    ----------
+    preemption : Intended preemption of the process to be made.
+    first_runnable : Runnable that must come first.
+    last_runnable : Runnable that must come last.
+    access_precedence_spec : Precedences of runnables that follow from accesses to labels.
+    order_precedence_spec : Precedences of runnables that are stated directly.
+    chained_prototypes : Prototypes that are chained to this one.
+    activation : Intended activation, which triggers nothing.
+    runnable_calls : Runnables of the prototype, as calls.
+    """
 
     preemption: Preemption | None = attribute("preemption")
     first_runnable: Runnable | None = reference("firstRunnable")
@@ -270,7 +385,7 @@ class ProcessPrototype(AbstractProcess):
 
 
 class ChainedProcessPrototype(BaseObject):
-    """AMALTHEA ChainedProcessPrototype."""
+    """Link to a prototype that is chained to another."""
 
     prototype: ProcessPrototype | None = reference("prototype")
     apply: int | None = attribute("apply")
@@ -278,33 +393,51 @@ class ChainedProcessPrototype(BaseObject):
 
 
 class GeneralPrecedence(BaseObject, abstract=True):
-    """AMALTHEA GeneralPrecedence."""
+    """Precedence between two runnables.
+
+    Attributes
+    ----------
+    origin : Runnable on the first side of the precedence.
+    target : Runnable on the second side of the precedence.
+    """
 
     origin: Runnable | None = reference("origin")
     target: Runnable | None = reference("target")
 
 
 class AccessPrecedenceSpec(GeneralPrecedence):
-    """AMALTHEA AccessPrecedenceSpec."""
+    """Precedence between two runnables due to a label that both access."""
 
     label: Label | None = reference("label")
     order_type: AccessPrecedenceType | None = attribute("orderType")
 
 
 class OrderPrecedenceSpec(GeneralPrecedence):
-    """AMALTHEA OrderPrecedenceSpec."""
+    """Precedence between two runnables that is stated directly."""
 
     order_type: OrderType | None = attribute("orderType")
 
 
 class IDependsOn(Element, abstract=True):
-    """AMALTHEA IDependsOn."""
+    """Object whose value is computed from other data.
+
+    Attributes
+    ----------
+    depends_on : Data from which the written label, the outgoing parameter or the argument is computed.
+    """
 
     depends_on: DataDependency | None = containment("dependsOn")
 
 
 class DataDependency(BaseObject):
-    """AMALTHEA DataDependency."""
+    """Data from which a value is computed.
+
+    Attributes
+    ----------
+    labels : Labels whose values are used.
+    parameters : Incoming parameters of the containing runnable whose values are used.
+    call_arguments : Results of calls in the containing runnable that are used.
+    """
 
     labels: list[Label] = references("labels")
     parameters: list[RunnableParameter] = references("parameters")
@@ -312,14 +445,22 @@ class DataDependency(BaseObject):
 
 
 class RunnableParameter(ReferableBaseObject, IDependsOn):
-    """AMALTHEA RunnableParameter."""
+    """Formal parameter of a runnable."""
 
     direction: DirectionType | None = attribute("direction")
     data_type: TypeDefinition | None = reference("dataType")
 
 
 class Runnable(AbstractMemoryElement, IExecutable, INamespaceMember):
-    """AMALTHEA Runnable."""
+    """Executable unit of software that runs in the context of the process that calls it.
+
+    Attributes
+    ----------
+    execution_condition : Tested when the runnable is called; if it is false, the call is skipped.
+    activations : Intended activations; they never trigger anything, only calls make a runnable run.
+    service : Whether it is a service, called by other runnables and not directly by a task.
+    section : Section into which the code is placed.
+    """
 
     execution_condition: ConditionDisjunction | ModeConditionDisjunction | None = containment("executionCondition")
     parameters: list[RunnableParameter] = containments("parameters")
@@ -331,7 +472,16 @@ class Runnable(AbstractMemoryElement, IExecutable, INamespaceMember):
 
 
 class Label(AbstractMemoryElement, IDisplayName, INamespaceMember):
-    """AMALTHEA Label."""
+    """Data element that runnables read and write.
+
+    Attributes
+    ----------
+    data_type : Reference to a type from 3.0.0 on; until 2.2.0 the data type itself is contained.
+    b_volatile : Whether the label is volatile in the sense of the programming language.
+    data_stability : How the value is kept stable; it overrides the operating system and is overridden by the label access.
+    stability_level : Interval in which all reads see the same value.
+    section : Section into which the data is placed.
+    """
 
     data_type: TypeDefinition | DataType | None = containment_or_reference("dataType")
     constant: bool | None = attribute("constant")
@@ -342,7 +492,14 @@ class Label(AbstractMemoryElement, IDisplayName, INamespaceMember):
 
 
 class Channel(AbstractMemoryElement, IDisplayName, INamespaceMember):
-    """AMALTHEA Channel."""
+    """Queue of elements between runnables.
+
+    Attributes
+    ----------
+    element_type : Reference to a type from 3.0.0 on; until 2.2.0 the data type itself is contained.
+    default_elements : Number of elements at the start, at most maxElements.
+    max_elements : Capacity as a number of elements.
+    """
 
     element_type: TypeDefinition | DataType | None = containment_or_reference("elementType")
     default_elements: int | None = attribute("defaultElements")
@@ -350,51 +507,79 @@ class Channel(AbstractMemoryElement, IDisplayName, INamespaceMember):
 
 
 class ModeLabel(AbstractMemoryElement, IDisplayName):
-    """AMALTHEA ModeLabel."""
+    """Variable that holds a mode, on which branches and stimuli depend.
+
+    Attributes
+    ----------
+    initial_value : Name of a literal for an enum mode, integer as text for a numeric mode.
+    """
 
     mode: Mode | None = reference("mode")
     initial_value: str | None = attribute("initialValue")
 
 
 class Section(ReferableBaseObject):
-    """AMALTHEA Section."""
+    """Named collection of labels and runnables that is placed in memory as a whole."""
 
     asil_level: ASILType | None = attribute("asilLevel")
 
 
 class ComputationItem(ActivityGraphItem, abstract=True):
-    """AMALTHEA ComputationItem."""
+    """Step that costs execution time; a scheduler may hold such steps as its overhead."""
 
 
 class ExecutionNeed(ActivityGraphItem):
-    """AMALTHEA ExecutionNeed."""
+    """Execution demand in units that hardware features convert to ticks.
+
+    Attributes
+    ----------
+    needs : Amounts by name of a hardware feature category; the amounts add up.
+    """
 
     needs: list[NeedEntry] = containments("needs")
 
 
 class NeedEntry(Element):
-    """AMALTHEA NeedEntry."""
+    """Map entry from the name of a hardware feature category to an amount.
+
+    Attributes
+    ----------
+    key : Name of a hardware feature category as plain text, which nothing keeps in step with the category.
+    """
 
     key: str | None = attribute("key")
     value: IDiscreteValueDeviation | None = containment("value")
 
 
 class Ticks(ComputationItem):
-    """AMALTHEA Ticks."""
+    """Execution demand in processor cycles; divided by the frequency of the processing unit it is a time.
+
+    Attributes
+    ----------
+    default : Cycles on every processing unit whose definition has no extended entry.
+    extended : Cycles by definition of the processing unit; such an entry takes precedence over the default.
+    """
 
     default: IDiscreteValueDeviation | None = containment("default")
     extended: list[TicksEntry] = containments("extended")
 
 
 class TicksEntry(Element):
-    """AMALTHEA TicksEntry."""
+    """Map entry from a processing unit definition to a number of cycles."""
 
     key: ProcessingUnitDefinition | None = reference("key")
     value: IDiscreteValueDeviation | None = containment("value")
 
 
 class ModeLabelAccess(ActivityGraphItem):
-    """AMALTHEA ModeLabelAccess."""
+    """Reading or changing of a mode label.
+
+    Attributes
+    ----------
+    access : Reading has no effect of its own; set uses the value, increment and decrement use the step.
+    value : Value to set, the name of a literal or an integer as text; other accesses ignore it.
+    step : Width of an increment or decrement (default 1); an enum mode stops at its first or last literal.
+    """
 
     data: ModeLabel | None = reference("data")
     access: ModeLabelAccessEnum | None = attribute("access")
@@ -403,7 +588,15 @@ class ModeLabelAccess(ActivityGraphItem):
 
 
 class LabelAccess(ComputationItem, ITaggable, IDependsOn):
-    """AMALTHEA LabelAccess."""
+    """Reading or writing of a label.
+
+    Attributes
+    ----------
+    statistic : How many accesses this item stands for, and how many miss the cache.
+    transmission_policy : Cost of the transmission on top of the memory access.
+    data_stability : How the value is kept stable; inherited or undefined leaves it to the label.
+    implementation : Explicit access in place, implicit access with copies around the execution, or timed access as in LET.
+    """
 
     data: Label | None = reference("data")
     access: LabelAccessEnum | None = attribute("access")
@@ -414,7 +607,13 @@ class LabelAccess(ComputationItem, ITaggable, IDependsOn):
 
 
 class ChannelAccess(ActivityGraphItem, abstract=True):
-    """AMALTHEA ChannelAccess."""
+    """Sending to or receiving from a channel.
+
+    Attributes
+    ----------
+    elements : Number of elements; for receiving the largest number.
+    transmission_policy : Cost of the transmission; the size of all elements together is divided into chunks.
+    """
 
     data: Channel | None = reference("data")
     elements: int | None = attribute("elements")
@@ -422,11 +621,19 @@ class ChannelAccess(ActivityGraphItem, abstract=True):
 
 
 class ChannelSend(ChannelAccess):
-    """AMALTHEA ChannelSend."""
+    """Writing of elements to a channel."""
 
 
 class ChannelReceive(ChannelAccess):
-    """AMALTHEA ChannelReceive."""
+    """Reading of elements from a channel.
+
+    Attributes
+    ----------
+    receive_operation : FIFO starts at the oldest and LIFO at the newest element; take removes elements, read leaves them.
+    data_must_be_new : Whether only elements count that this runnable has not read before.
+    element_index : Position of the first element, counted from the end at which the operation starts.
+    lower_bound : Least number of elements to return, 0 to elements. The format defaults to 0; elements is meant by some.
+    """
 
     receive_operation: ReceiveOperation | None = attribute("receiveOperation")
     data_must_be_new: bool | None = attribute("dataMustBeNew")
@@ -435,7 +642,13 @@ class ChannelReceive(ChannelAccess):
 
 
 class SemaphoreAccess(ActivityGraphItem):
-    """AMALTHEA SemaphoreAccess."""
+    """Requesting or releasing of a semaphore.
+
+    Attributes
+    ----------
+    access : An exclusive request is granted only when nobody else holds the semaphore.
+    waiting_behaviour : Active waiting polls and keeps the core, passive waiting releases it.
+    """
 
     semaphore: Semaphore | None = reference("semaphore")
     access: SemaphoreAccessEnum | None = attribute("access")
@@ -443,7 +656,12 @@ class SemaphoreAccess(ActivityGraphItem):
 
 
 class SenderReceiverCommunication(ActivityGraphItem, abstract=True):
-    """AMALTHEA SenderReceiverCommunication."""
+    """Access to a label by sender-receiver communication.
+
+    Attributes
+    ----------
+    buffered : Whether the access works on a buffer.
+    """
 
     buffered: bool | None = attribute("buffered")
     label: Label | None = reference("label")
@@ -451,55 +669,93 @@ class SenderReceiverCommunication(ActivityGraphItem, abstract=True):
 
 
 class SenderReceiverRead(SenderReceiverCommunication):
-    """AMALTHEA SenderReceiverRead."""
+    """Reading by sender-receiver communication."""
 
 
 class SenderReceiverWrite(SenderReceiverCommunication):
-    """AMALTHEA SenderReceiverWrite."""
+    """Writing by sender-receiver communication.
+
+    Attributes
+    ----------
+    notified_runnables : Runnables that are told of the write.
+    """
 
     notified_runnables: list[Runnable] = references("notifiedRunnables")
 
 
 class ServerCall(ActivityGraphItem, abstract=True):
-    """AMALTHEA ServerCall."""
+    """Call of a runnable by client-server communication."""
 
     server_runnable: Runnable | None = reference("serverRunnable")
     port: ComponentPort | None = reference("port")
 
 
 class SynchronousServerCall(ServerCall):
-    """AMALTHEA SynchronousServerCall."""
+    """Server call that waits until the server runnable has finished.
+
+    Attributes
+    ----------
+    waiting_behaviour : Active waiting polls and keeps the core, passive waiting releases it.
+    """
 
     waiting_behaviour: WaitingBehaviour | None = attribute("waitingBehaviour")
 
 
 class AsynchronousServerCall(ServerCall):
-    """AMALTHEA AsynchronousServerCall."""
+    """Server call that goes on at once.
+
+    Attributes
+    ----------
+    result_runnable : Runnable that runs when the result has arrived.
+    """
 
     result_runnable: Runnable | None = reference("resultRunnable")
 
 
 class GetResultServerCall(ServerCall):
-    """AMALTHEA GetResultServerCall."""
+    """Fetching of the result of an asynchronous server call.
+
+    Attributes
+    ----------
+    blocking_type : Whether and how to wait for a result that is not there yet.
+    """
 
     blocking_type: BlockingType | None = attribute("blockingType")
 
 
 class Group(ActivityGraphItem, INamed, IActivityGraphItemContainer):
-    """AMALTHEA Group."""
+    """Items of an activity graph under a common name.
+
+    Attributes
+    ----------
+    ordered : Whether the items run in their order (true, default) or in any order.
+    interruptible : Whether the group may be preempted (true, default).
+    """
 
     ordered: bool | None = attribute("ordered")
     interruptible: bool | None = attribute("interruptible")  # 1.2.0..
 
 
 class CallArgument(ReferableObject, IDependsOn):
-    """AMALTHEA CallArgument."""
+    """Actual value for a parameter of the called runnable.
+
+    Attributes
+    ----------
+    parameter : Parameter of the runnable that is called.
+    """
 
     parameter: RunnableParameter | None = reference("parameter")
 
 
 class RunnableCall(ActivityGraphItem, ITaggable):
-    """AMALTHEA RunnableCall."""
+    """Execution of a runnable in the context of the calling process; the caller continues after it.
+
+    Attributes
+    ----------
+    context : Values given to local mode labels of the called runnable.
+    counter : Calls the runnable only every n-th time.
+    statistic : How often the call is performed.
+    """
 
     runnable: Runnable | None = reference("runnable")
     arguments: list[CallArgument] = containments("arguments")
@@ -509,81 +765,103 @@ class RunnableCall(ActivityGraphItem, ITaggable):
 
 
 class CustomEventTrigger(ActivityGraphItem):
-    """AMALTHEA CustomEventTrigger."""
+    """Raising of a custom event, which event stimuli can react to."""
 
     event: CustomEvent | None = reference("event")
 
 
 class DataType(Element, abstract=True):
-    """AMALTHEA DataType."""
+    """Structure of data, as a compound or by reference to a definition."""
 
 
 class CompoundType(BaseObject, DataType, abstract=True):
-    """AMALTHEA CompoundType."""
+    """Data type that is built of others."""
 
 
 class Struct(CompoundType, ITaggable):
-    """AMALTHEA Struct."""
+    """Data type of several named entries."""
 
     entries: list[StructEntry] = containments("entries")
 
 
 class StructEntry(BaseObject, INamed, ITaggable):
-    """AMALTHEA StructEntry."""
+    """Entry of a struct."""
 
     data_type: DataType | None = containment("dataType")
 
 
 class Array(CompoundType):
-    """AMALTHEA Array."""
+    """Data type of several elements of the same type.
+
+    Attributes
+    ----------
+    number_elements : Number of elements.
+    """
 
     number_elements: int | None = attribute("numberElements")
     data_type: DataType | None = containment("dataType")
 
 
 class Pointer(CompoundType):
-    """AMALTHEA Pointer."""
+    """Data type of a pointer.
+
+    Attributes
+    ----------
+    data_type : Type of the data pointed to.
+    """
 
     data_type: DataType | None = containment("dataType")
 
 
 class TypeRef(BaseObject, DataType):
-    """AMALTHEA TypeRef."""
+    """Data type that is defined elsewhere."""
 
     type_def: TypeDefinition | None = reference("typeDef")
 
 
 class Alias(BaseObject):
-    """AMALTHEA Alias."""
+    """Name of a base type in a certain environment.
+
+    Attributes
+    ----------
+    target : Environment in which the alias is used, as free text.
+    alias : Name of the type in that environment.
+    """
 
     target: str | None = attribute("target")
     alias: str | None = attribute("alias")
 
 
 class TypeDefinition(ReferableBaseObject, INamespaceMember, abstract=True):
-    """AMALTHEA TypeDefinition."""
+    """Named data type."""
 
     size: DataSize | None = containment("size")
 
 
 class DataTypeDefinition(TypeDefinition):
-    """AMALTHEA DataTypeDefinition."""
+    """Named data type that is built of others."""
 
     data_type: DataType | None = containment("dataType")
 
 
 class BaseTypeDefinition(TypeDefinition):
-    """AMALTHEA BaseTypeDefinition."""
+    """Elementary data type with its names in different environments."""
 
     aliases: list[Alias] = containments("aliases")
 
 
 class Activation(ReferableBaseObject, ITaggable, abstract=True):
-    """AMALTHEA Activation."""
+    """Intended activation, a specification that never triggers anything; stimuli do that."""
 
 
 class PeriodicActivation(Activation):
-    """AMALTHEA PeriodicActivation."""
+    """Intended activation with a period.
+
+    Attributes
+    ----------
+    recurrence : Period, greater than zero.
+    offset : Time of the first activation; unset means zero.
+    """
 
     min: Time | None = containment("min")
     max: Time | None = containment("max")
@@ -592,109 +870,147 @@ class PeriodicActivation(Activation):
 
 
 class VariableRateActivation(Activation, IDescription):
-    """AMALTHEA VariableRateActivation."""
+    """Intended activation at a rate that varies.
+
+    Attributes
+    ----------
+    step : Length of the time step to which the rate refers.
+    occurrences_per_step : Occurrences per step, not necessarily an integer.
+    """
 
     step: Time | None = containment("step")
     occurrences_per_step: IContinuousValueDeviation | None = containment("occurrencesPerStep")
 
 
 class SporadicActivation(Activation, IDescription):
-    """AMALTHEA SporadicActivation."""
+    """Intended activation at irregular times.
+
+    Attributes
+    ----------
+    occurrence : Time deviation that describes the irregular occurrence.
+    """
 
     occurrence: ITimeDeviation | None = containment("occurrence")
 
 
 class SingleActivation(Activation):
-    """AMALTHEA SingleActivation."""
+    """Intended activation that happens once.
+
+    Attributes
+    ----------
+    min : Lower limit of its time, zero or more.
+    max : Upper limit of its time, zero or more.
+    """
 
     min: Time | None = containment("min")
     max: Time | None = containment("max")
 
 
 class EventActivation(Activation):
-    """AMALTHEA EventActivation."""
+    """Intended activation by events.
+
+    Attributes
+    ----------
+    counter : Counts only every n-th event.
+    """
 
     triggering_events: list[TriggerEvent] = references("triggeringEvents")
     counter: Counter | None = containment("counter")
 
 
 class CustomActivation(Activation, IDescription):
-    """AMALTHEA CustomActivation."""
+    """Intended activation without predefined meaning."""
 
 
 class LabelAccessStatistic(BaseObject):
-    """AMALTHEA LabelAccessStatistic."""
+    """How often a label is accessed and how often the cache is missed.
+
+    Attributes
+    ----------
+    value : Number of accesses.
+    cache_misses : Number of accesses that miss the cache.
+    """
 
     value: NumericStatistic | None = containment("value")
     cache_misses: NumericStatistic | None = containment("cacheMisses")
 
 
 class RunEntityCallStatistic(BaseObject):
-    """AMALTHEA RunEntityCallStatistic."""
+    """How often a runnable is called.
+
+    Attributes
+    ----------
+    statistic : Number of calls.
+    """
 
     statistic: NumericStatistic | None = containment("statistic")
 
 
 class LocalModeLabel(ReferableBaseObject):
-    """AMALTHEA LocalModeLabel. (AMALTHEA 2.1.0..)"""
+    """Mode label that exists once per execution of a task, ISR or runnable. (AMALTHEA 2.1.0..)
+
+    Attributes
+    ----------
+    default_value : Value unless the caller or an assignment gives another, as the name of a literal or an integer.
+    """
 
     mode: Mode | None = reference("mode")
     default_value: str | None = attribute("defaultValue")
 
 
 class LocalModeValue(Element, abstract=True):
-    """AMALTHEA LocalModeValue. (AMALTHEA 2.1.0..)"""
+    """Local mode label together with a source of a value. (AMALTHEA 2.1.0..)"""
 
     label: LocalModeLabel | None = reference("label")
     value_source: ILocalModeValueSource | None = containment("valueSource")
 
 
 class LocalModeLabelAssignment(LocalModeValue, ActivityGraphItem):
-    """AMALTHEA LocalModeLabelAssignment. (AMALTHEA 2.1.0..)"""
+    """Assignment of a value to a local mode label. (AMALTHEA 2.1.0..)"""
 
 
 class LocalModeCondition(LocalModeValue, Condition, IAnnotatable):
-    """AMALTHEA LocalModeCondition. (AMALTHEA 2.1.0..)"""
+    """Comparison of a local mode label with a value. (AMALTHEA 2.1.0..)"""
 
     relation: RelationalOperator | None = attribute("relation")
 
 
 class ILocalModeValueSource(Element, abstract=True):
-    """AMALTHEA ILocalModeValueSource. (AMALTHEA 2.1.0..)"""
+    """Source of a value for a local mode label. (AMALTHEA 2.1.0..)"""
 
 
 class ModeLiteralConst(ILocalModeValueSource):
-    """AMALTHEA ModeLiteralConst. (AMALTHEA 2.1.0..)"""
+    """Literal of an enum mode as a value. (AMALTHEA 2.1.0..)"""
 
     value: ModeLiteral | None = reference("value")
 
 
 class IntegerConst(ILocalModeValueSource):
-    """AMALTHEA IntegerConst. (AMALTHEA 2.1.0..)"""
+    """Integer as a value. (AMALTHEA 2.1.0..)"""
 
     value: int | None = attribute("value")
 
 
 class ModeLabelRef(ILocalModeValueSource):
-    """AMALTHEA ModeLabelRef. (AMALTHEA 2.1.0..)"""
+    """Current value of a mode label. (AMALTHEA 2.1.0..)"""
 
     value: ModeLabel | None = reference("value")
 
 
 class LocalModeLabelRef(ILocalModeValueSource):
-    """AMALTHEA LocalModeLabelRef. (AMALTHEA 2.1.0..)"""
+    """Current value of a local mode label. (AMALTHEA 2.1.0..)"""
 
     value: LocalModeLabel | None = reference("value")
 
 
 class ChannelFillRef(ILocalModeValueSource):
-    """AMALTHEA ChannelFillRef. (AMALTHEA 2.1.0..)"""
+    """Current number of elements in a channel as a value. (AMALTHEA 2.1.0..)"""
 
     value: Channel | None = reference("value")
 
 
 class ArithmeticExpression(ILocalModeValueSource):
-    """AMALTHEA ArithmeticExpression. (AMALTHEA 2.1.0..)"""
+    """Value computed from two operands. (AMALTHEA 2.1.0..)"""
 
     operand1: ILocalModeValueSource | None = containment("operand1")
     operand2: ILocalModeValueSource | None = containment("operand2")
@@ -702,24 +1018,30 @@ class ArithmeticExpression(ILocalModeValueSource):
 
 
 class ModeLabelAssignment(ActivityGraphItem):
-    """AMALTHEA ModeLabelAssignment. (AMALTHEA 2.1.0..)"""
+    """Assignment between a mode label and a local mode label. (AMALTHEA 2.1.0..)"""
 
     global_label: ModeLabel | None = reference("globalLabel")
     local_label: LocalModeLabel | None = reference("localLabel")
 
 
 class ModeSwitch(ActivityGraphItem):
-    """AMALTHEA ModeSwitch. (AMALTHEA 0.9.7..2.2.0)"""
+    """Branch on conditions on modes; Switch replaces it. (AMALTHEA 0.9.7..2.2.0)
+
+    Attributes
+    ----------
+    entries : Branches in the order in which they are tested; the first satisfied one is executed.
+    default_entry : Branch for the case that no condition is satisfied; without it nothing happens.
+    """
 
     entries: list[ModeSwitchEntry] = containments("entries")
     default_entry: ModeSwitchDefault | None = containment("defaultEntry")
 
 
 class ModeSwitchEntry(BaseObject, INamed, IActivityGraphItemContainer):
-    """AMALTHEA ModeSwitchEntry. (AMALTHEA 0.9.7..2.2.0)"""
+    """Branch of a mode switch with its condition. (AMALTHEA 0.9.7..2.2.0)"""
 
     condition: ModeConditionDisjunction | None = containment("condition")
 
 
 class ModeSwitchDefault(BaseObject, IActivityGraphItemContainer):
-    """AMALTHEA ModeSwitchDefault. (AMALTHEA 0.9.7..2.2.0)"""
+    """Branch of a mode switch for all other cases. (AMALTHEA 0.9.7..2.2.0)"""
