@@ -1,0 +1,63 @@
+"""AMALTHEA models (Eclipse APP4MC `.amxmi`) in Python.
+
+>>> import amalthea_uros as amuros
+>>> model = amuros.load("app.amxmi")                                        # doctest: +SKIP
+>>> model[amuros.Task, "Executor_Task"].multiple_task_activation_limit = 2  # doctest: +SKIP
+>>> amuros.save(model, "app.amxmi")                                         # doctest: +SKIP
+
+The names of this module are the public interface: `load` and `save`, the model and its documents, findings and errors, and every
+AMALTHEA class and enumeration.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from amalthea_uros.diagnostics import Finding, Location, Severity
+    from amalthea_uros.errors import AmurosError, ReadError, WriteError
+    from amalthea_uros.metamodel.classes import *  # noqa: F403
+    from amalthea_uros.metamodel.element import Element
+    from amalthea_uros.metamodel.model import Document, Model, Reference
+    from amalthea_uros.xmi.load import load
+    from amalthea_uros.xmi.save import save
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "Finding": "diagnostics",
+    "Location": "diagnostics",
+    "Severity": "diagnostics",
+    "AmurosError": "errors",
+    "ReadError": "errors",
+    "WriteError": "errors",
+    "Element": "metamodel.element",
+    "Document": "metamodel.model",
+    "Model": "metamodel.model",
+    "Reference": "metamodel.model",
+    "load": "xmi.load",
+    "save": "xmi.save",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is asked for: the command line starts without the four hundred classes."""
+    if name in _HOMES:
+        value = getattr(import_module(f"amalthea_uros.{_HOMES[name]}"), name)
+    elif name == "__all__":
+        classes = import_module("amalthea_uros.metamodel.classes")
+        value = sorted({*_HOMES, *classes.__all__})
+    elif name.startswith("_"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    else:
+        classes = import_module("amalthea_uros.metamodel.classes")
+        if name not in classes.__all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        value = getattr(classes, name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return [*__getattr__("__all__"), "__version__"]

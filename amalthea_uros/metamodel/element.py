@@ -14,8 +14,8 @@ that a read costs no more than that of an ordinary attribute and an object of wh
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from difflib import get_close_matches
-from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, SupportsIndex, TypeVar, dataclass_transform
 
 if TYPE_CHECKING:
@@ -101,6 +101,21 @@ def containment_or_reference(xml_name: str) -> Any:
     return Feature(xml_name, "either")
 
 
+@dataclass
+class Extras:
+    """What stands at an object in a file and has no place in the metamodel; it is written back.
+
+    Attributes
+    ----------
+    attributes : unknown attributes, name and value, and known ones whose text is no value of their type
+    content : unknown elements, comments, processing instructions and text as they stand in the file, each with the part in
+        front of which it stands (None: at the end)
+    """
+
+    attributes: dict[str, str] = field(default_factory=dict)
+    content: list[tuple[Element | None, str]] = field(default_factory=list)
+
+
 @dataclass_transform(kw_only_default=True, eq_default=False)
 class Element:
     """Any object of an AMALTHEA model.
@@ -110,6 +125,8 @@ class Element:
     """
 
     __slots__ = ("_container", "_document", "_reference")
+
+    _container: Element | None
 
     is_abstract: ClassVar[bool] = True
     is_referable: ClassVar[bool] = False
@@ -172,7 +189,7 @@ class Element:
     @property
     def container(self) -> Element | None:
         """The object that this one is part of; None for a root, an unresolved or a detached object."""
-        return self._container  # type: ignore[no-any-return]
+        return self._container
 
     @property
     def document(self) -> Document | None:
@@ -195,6 +212,12 @@ class Element:
         A reference into a file that was not read, or to nothing at all, leads to such a stand-in of the right class.
         """
         return getattr(self, "_reference", None)
+
+    @property
+    def extras(self) -> Extras | None:
+        """What stands at the object in its file and is unknown to the metamodel, None if nothing."""
+        found: Extras | None = self.__dict__.get("_extras")
+        return found
 
     @property
     def unique_name(self) -> str:
@@ -311,6 +334,12 @@ class ContainmentList(list[E]):
         return (list, (list(self),))
 
 
+def extras_of(element: Element) -> Extras:
+    """The extras of an object, to be added to."""
+    found: Extras = element.__dict__.setdefault("_extras", Extras())
+    return found
+
+
 def _release(value: Element) -> None:
     """Forget the container of an object that was just taken out."""
     _set(value, "_container", None)
@@ -343,19 +372,28 @@ def _take_out(value: Element) -> None:
             list.remove(held, value)
 
 
-@cache
+_FEATURES: dict[type, dict[str, Feature]] = {}
+_CONTAINMENTS: dict[type, tuple[Feature, ...]] = {}
+
+
 def features_of(cls: type[Element]) -> dict[str, Feature]:
     """All features of a class by their Python names, those of the supertypes first."""
-    found: dict[str, Feature] = {}
-    for base in reversed(cls.__mro__):
-        found.update((name, value) for name, value in vars(base).items() if isinstance(value, Feature))
+    found = _FEATURES.get(cls)
+    if found is None:
+        found = {}
+        for base in reversed(cls.__mro__):
+            found.update((name, value) for name, value in vars(base).items() if isinstance(value, Feature))
+        _FEATURES[cls] = found
     return found
 
 
-@cache
 def containments_of(cls: type[Element]) -> tuple[Feature, ...]:
     """The features of a class that may hold parts."""
-    return tuple(f for f in features_of(cls).values() if f.kind in ("containment", "either"))
+    found = _CONTAINMENTS.get(cls)
+    if found is None:
+        found = tuple(f for f in features_of(cls).values() if f.kind in ("containment", "either"))
+        _CONTAINMENTS[cls] = found
+    return found
 
 
 def _unknown_feature(cls: type[Element], name: str) -> str:

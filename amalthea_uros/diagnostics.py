@@ -1,0 +1,66 @@
+"""Findings: what is wrong, where, and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+
+class Severity(StrEnum):
+    """How much a finding matters."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    INFO = "info"
+
+
+@dataclass(frozen=True, slots=True)
+class Location:
+    """A place in a file.
+
+    Attributes
+    ----------
+    path : the file, as it was given
+    line, column : counted from 1; None where a finding concerns the whole file
+    text : the line itself, for showing it
+    """
+
+    path: Path
+    line: int | None = None
+    column: int | None = None
+    text: str | None = None
+
+    def __str__(self) -> str:
+        return ":".join(str(part) for part in (self.path, self.line, self.column) if part is not None)
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing to tell.
+
+    Attributes
+    ----------
+    rule : id of the rule, e.g. "XMI020"
+    message : what is wrong
+    help : what to do about it, "" if there is nothing to add
+    object : qualified name of the object concerned, "" if none
+    """
+
+    rule: str
+    severity: Severity
+    message: str
+    location: Location | None = None
+    help: str = ""
+    object: str = ""
+
+    def __str__(self) -> str:
+        where = f"{self.location}: " if self.location else ""
+        return f"{where}{self.rule} {self.severity}: {self.message}"
+
+
+def worst(findings: Iterable[Finding]) -> Severity | None:
+    """The highest severity among findings, None if there are none."""
+    present = {finding.severity for finding in findings}
+    return next((severity for severity in Severity if severity in present), None)

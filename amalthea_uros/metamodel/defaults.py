@@ -1,0 +1,46 @@
+"""What the absence of an attribute stands for; it depends on the AMALTHEA version."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Any
+
+from amalthea_uros.metamodel import classes
+from amalthea_uros.metamodel.element import Element, features_of
+from amalthea_uros.metamodel.versions import Facts, facts, nearest_version, newest_version
+
+#: The enumeration lost its name to a class in 2.0.0.
+_RENAMED_ENUMS = {"Condition": "CombinatorialCondition"}
+
+_FLOATS = {"EDouble", "EDoubleObject", "EFloat", "PositiveDouble", "NonNegativeDouble"}
+
+
+def enum_class(name: str) -> type[StrEnum]:
+    """The enumeration of that name in the facts."""
+    found: type[StrEnum] = getattr(classes, _RENAMED_ENUMS.get(name, name))
+    return found
+
+
+def default_value(declared: Facts, class_name: str, feature_name: str) -> Any:
+    """The default of an attribute (names as in files) in one version; None if it stands for nothing."""
+    feature = declared.feature(class_name, feature_name)
+    text = declared.default(feature) if feature else None
+    if feature is None or text is None:
+        return None
+    if feature.type in declared.enums:
+        return enum_class(feature.type)(text)
+    if feature.type == "EString":
+        return text
+    if feature.type == "EBoolean":
+        return text == "true"
+    return float(text) if feature.type in _FLOATS else int(text)
+
+
+def effective(element: Element, feature_name: str) -> Any:
+    """See `Element.effective`."""
+    value = getattr(element, feature_name)
+    if value is not None:
+        return value
+    document = element.document
+    declared = facts(nearest_version(document.version) if document else newest_version())
+    return default_value(declared, type(element).__name__, features_of(type(element))[feature_name].xml_name)

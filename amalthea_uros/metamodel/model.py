@@ -1,0 +1,184 @@
+"""A model: one or several documents that refer to each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from difflib import get_close_matches
+from pathlib import Path
+from typing import NamedTuple, TypeVar
+
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.metamodel.classes.base import Amalthea
+from amalthea_uros.metamodel.element import Element, Revision, features_of
+from amalthea_uros.metamodel.naming import qualified_name
+from amalthea_uros.metamodel.source import Source
+from amalthea_uros.metamodel.versions import nearest_version, newest_version
+
+E = TypeVar("E", bound=Element)
+
+
+class Spelling(NamedTuple):
+    """A text of the file and the text we would write for the same; while ours stays the same, the file's is kept."""
+
+    written: str
+    canonical: str
+
+
+class Reference(NamedTuple):
+    """A use of an object: the object that refers to it and the feature (its Python name) by which it does."""
+
+    holder: Element
+    feature: str
+
+
+class Document:
+    """One file of a model, read or to be written.
+
+    Attributes
+    ----------
+    root : the content
+    version : AMALTHEA version of the file; may be newer than what is known
+    path : the file, None for a new one
+    source : the text it was read from, None for a new one
+    prolog : comments and processing instructions before the root element, `epilog` those behind it
+    spellings : odd ids and references, by object and XML name
+    href_features : references that stand as `href` elements although ours would be an attribute (or the reverse: False)
+    """
+
+    def __init__(self, root: Amalthea, version: str | None = None, path: Path | None = None) -> None:
+        self.root = root
+        self.version = version or newest_version()
+        self.path = path
+        self.source: Source | None = None
+        self.prolog: list[str] = []
+        self.epilog: list[str] = []
+        self.spellings: dict[tuple[Element, str], Spelling] = {}
+        self.href_features: dict[tuple[Element, str], bool] = {}
+        self._model: Model | None = None
+        object.__setattr__(root, "_document", self)
+
+    @property
+    def facts_version(self) -> str:
+        """The version whose facts apply: that of the file, or the nearest older one."""
+        return nearest_version(self.version)
+
+    @property
+    def model(self) -> Model:
+        """The model that this document is part of."""
+        return self._model or Model([self])
+
+    def __repr__(self) -> str:
+        return f"<Document {self.path or 'unsaved'} AMALTHEA {self.version}>"
+
+
+class Model:
+    """Documents that refer to each other by unique names, as the files of one folder do.
+
+    Attributes
+    ----------
+    documents : the files
+    findings : what was odd when they were read
+    """
+
+    def __init__(self, documents: Iterable[Document]) -> None:
+        self.documents = tuple(documents)
+        self.findings: tuple[Finding, ...] = ()
+        self._by_name: dict[str, list[Element]] = {}
+        self._revision = -1
+        for document in self.documents:
+            document._model = self
+
+    @classmethod
+    def of(cls, root: Amalthea, version: str | None = None) -> Model:
+        """A new model with one document; the newest known version if none is given."""
+        return cls([Document(root, version)])
+
+    @property
+    def root(self) -> Amalthea:
+        """The content of the only document.
+
+        Raises
+        ------
+        ValueError : the model has several documents.
+        """
+        if len(self.documents) != 1:
+            raise ValueError(f"the model has {len(self.documents)} documents, ask each for its root")
+        return self.documents[0].root
+
+    def walk(self) -> Iterator[Element]:
+        """Every object, document by document, containers before their parts."""
+        for document in self.documents:
+            yield from document.root.walk()
+
+    def all(self, cls: type[E]) -> Iterator[E]:
+        """Every object of a class or its subclasses."""
+        return (element for element in self.walk() if isinstance(element, cls))
+
+    def find(self, cls: type[E], name: str) -> E | None:
+        """The first object of a class with a name or qualified name (`Board.eth0`), None if there is none."""
+        found = self._hit(cls, name)
+        if found is None and self._revision != Revision.number:
+            self._index()
+            found = self._hit(cls, name)
+        return found
+
+    def __getitem__(self, key: tuple[type[E], str]) -> E:
+        """`model[Task, "Executor_Task"]`: the object of that class and name.
+
+        Raises
+        ------
+        KeyError : there is none; the text names near ones.
+        """
+        cls, name = key
+        found = self.find(cls, name)
+        if found is None:
+            names = [n for n, elements in self._by_name.items() if any(isinstance(e, cls) for e in elements)]
+            near = get_close_matches(name, names, n=3)
+            hint = f", did you mean {', '.join(map(repr, near))}?" if near else ""
+            raise KeyError(f"no {cls.__name__} named {name!r}{hint}")
+        return found
+
+    def references_to(self, target: Element) -> list[Reference]:
+        """Every use of an object, in the order of the model."""
+        found = []
+        for holder in self.walk():
+            for name, value in holder.__dict__.items():
+                if value is target or (type(value) is list and any(item is target for item in value)):
+                    if not features_of(type(holder))[name].contains(value):
+                        found.append(Reference(holder, name))
+        return found
+
+    def unresolved(self) -> Iterator[tuple[Reference, str]]:
+        """Every reference for which no object was found, with its text."""
+        for holder in self.walk():
+            for name, value in holder.__dict__.items():
+                for item in value if type(value) is list else (value,):
+                    if isinstance(item, Element) and item.unresolved is not None:
+                        yield Reference(holder, name), item.unresolved
+
+    def _hit(self, cls: type[E], name: str) -> E | None:
+        for element in self._by_name.get(name, ()):
+            if isinstance(element, cls) and self._still_has(element, name):
+                return element
+        return None
+
+    def _still_has(self, element: Element, name: str) -> bool:
+        """Whether an entry of the look-up table, which may be stale, still holds."""
+        if self._revision == Revision.number:
+            return True
+        document = element.document
+        return document in self.documents and name in (element.__dict__.get("name"), qualified_name(element))
+
+    def _index(self) -> None:
+        self._by_name = {}
+        for element in self.walk():
+            name = element.__dict__.get("name")
+            if name:
+                self._by_name.setdefault(name, []).append(element)
+                qualified = qualified_name(element) if element.is_referable else name
+                if qualified != name:
+                    self._by_name.setdefault(qualified, []).append(element)
+        self._revision = Revision.number
+
+    def __repr__(self) -> str:
+        return f"<Model {', '.join(str(d.path or 'unsaved') for d in self.documents)}>"

@@ -1,0 +1,161 @@
+"""Names under which objects are found: the unique name (the id in files) and the qualified name (for people).
+
+The unique name is that of APP4MC: segments in Java's form encoding, joined by `/`, then `?type=` and the class. Most objects have
+one segment, their name; the exceptions are listed in `_PREFIXES`, and members of a namespace carry its segments in front.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from urllib.parse import quote_plus, unquote_plus
+
+from amalthea_uros.metamodel.classes.base import INamed
+from amalthea_uros.metamodel.classes.common import ModeLiteral, Namespace
+from amalthea_uros.metamodel.classes.components import (
+    Component,
+    ComponentInstance,
+    ComponentPort,
+    ComponentStructure,
+    SubInterface,
+)
+from amalthea_uros.metamodel.classes.hw import HwConnection, HwFeature, HwPort
+from amalthea_uros.metamodel.classes.sw import (
+    CallArgument,
+    LocalModeLabel,
+    Process,
+    Runnable,
+    RunnableCall,
+    RunnableParameter,
+)
+from amalthea_uros.metamodel.element import Element
+
+NO_NAME = "no-name"
+TYPE_MARK = "?type="
+
+_PLAIN = re.compile(r"[A-Za-z0-9._*-]+").fullmatch
+
+
+def encode(name: str | None) -> str:
+    """One segment of a unique name, as `java.net.URLEncoder` writes it.
+
+    >>> encode("E/E System")
+    'E%2FE+System'
+    """
+    if not name:
+        return NO_NAME
+    if _PLAIN(name):
+        return name
+    # quote_plus also leaves the tilde alone, Java does not.
+    return quote_plus(name, safe="*").replace("~", "%7E")
+
+
+def decode(segment: str) -> str:
+    """The name behind one segment of a unique name."""
+    return unquote_plus(segment)
+
+
+def name_of(element: Element | None) -> str:
+    """The raw name of an object, "" if it has none."""
+    return getattr(element, "name", None) or ""
+
+
+def unique_name(element: Element) -> str:
+    """The id of a referable object; the verbatim reference text for an unresolved one."""
+    if element.unresolved is not None:
+        return element.unresolved
+    return "/".join(map(encode, segments(element))) + TYPE_MARK + type(element).__name__
+
+
+def segments(element: Element) -> list[str]:
+    """The raw names that make an object unique among those of its class."""
+    if element.unresolved is not None:
+        return [decode(segment) for segment in element.unresolved.partition(TYPE_MARK)[0].split("/")]
+    cls = type(element)
+    prefix = _PREFIXES.get(cls)
+    if prefix is not None:
+        return [*prefix(element), name_of(element)]
+    namespace = element.__dict__.get("namespace")
+    if namespace is not None:
+        return [*segments(namespace), name_of(element)]
+    return [name_of(element)]
+
+
+def has_prefix(cls: type[Element]) -> bool:
+    """Whether names of that class start with those of other objects."""
+    return cls in _PREFIXES
+
+
+def qualified_name(element: Element) -> str:
+    """A name for people: `Board.eth0`; for an object without a name, where it stands: `Task1.activityGraph.items[2]`."""
+    if element.is_referable:
+        return ".".join(segment or NO_NAME for segment in segments(element))
+    return place(element)
+
+
+def place(element: Element) -> str:
+    """Where an object stands, from the nearest referable object on: `Task1.activityGraph.items[2]`."""
+    steps: list[str] = []
+    while not element.is_referable and element.container is not None:
+        steps.append(_step(element.container, element))
+        element = element.container
+    start = qualified_name(element) if element.is_referable else type(element).__name__
+    return ".".join([start, *reversed(steps)])
+
+
+def _step(holder: Element, part: Element) -> str:
+    from amalthea_uros.metamodel.element import containments_of
+
+    for feature in containments_of(type(holder)):
+        held = holder.__dict__.get(feature.name)
+        if held is part:
+            return feature.xml_name
+        if feature.many and held:
+            for index, element in enumerate(held):
+                if element is part:
+                    return f"{feature.xml_name}[{index}]"
+    raise ValueError(f"{part!r} is not a part of {holder!r}")
+
+
+def _container_name(element: Element) -> list[str]:
+    """One level only: neither the container's own prefix nor its containers."""
+    holder = element.container
+    return [name_of(holder)] if isinstance(holder, INamed) else []
+
+
+def _container_segments(*classes: type[Element]) -> Callable[[Element], list[str]]:
+    def prefix(element: Element) -> list[str]:
+        holder = element.container
+        return segments(holder) if isinstance(holder, classes) else []
+
+    return prefix
+
+
+def _call_argument_prefix(element: Element) -> list[str]:
+    holder = element.enclosing(Runnable) or element.enclosing(Process)
+    call = element.container
+    called = call.runnable if isinstance(call, RunnableCall) else None
+    parameter = element.parameter if isinstance(element, CallArgument) else None
+    return [
+        *(segments(holder) if holder else []),
+        "calls",
+        *(segments(called) if called else []),
+        "param",
+        name_of(parameter),
+    ]
+
+
+_PREFIXES: dict[type[Element], Callable[[Element], list[str]]] = {
+    HwFeature: _container_name,
+    HwPort: _container_name,
+    HwConnection: _container_name,
+    ComponentInstance: _container_name,
+    ModeLiteral: _container_name,
+    ComponentPort: _container_segments(Component),
+    SubInterface: _container_segments(Element),
+    ComponentStructure: _container_segments(ComponentStructure),
+    Namespace: _container_segments(Namespace),
+    RunnableParameter: _container_segments(Runnable),
+    LocalModeLabel: _container_segments(Process, Runnable),
+    CallArgument: _call_argument_prefix,
+}

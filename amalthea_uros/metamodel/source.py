@@ -1,0 +1,107 @@
+"""The text that a document was read from, and where its objects stand in it.
+
+The text is kept as long as the document: it answers for line and column of every object and attribute, and it is what a saved
+document is compared with, so that whatever was not changed is written as it was.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from amalthea_uros.metamodel.element import Element
+
+
+_TAG_NAME = re.compile(r"<[^\s/>]+")
+_ATTRIBUTE = re.compile(r"""\s+(?P<name>[^\s=/>]+)\s*=\s*(?P<quoted>"[^"]*"|'[^']*')""")
+
+
+def attributes_of_tag(text: str, start: int) -> Iterator[re.Match[str]]:
+    """The attributes of the start tag at an offset of well-formed text, as matches with `name` and `quoted`."""
+    tag = _TAG_NAME.match(text, start)
+    at = tag.end() if tag else start
+    while attribute := _ATTRIBUTE.match(text, at):
+        yield attribute
+        at = attribute.end()
+
+
+class Position(NamedTuple):
+    """Line and column, both counted from 1; columns count characters."""
+
+    line: int
+    column: int
+
+
+class Prefixes(NamedTuple):
+    """How a document names the special attributes; only the namespaces are fixed, the prefixes are not."""
+
+    xmi_id: str = "xmi:id"
+    xsi_type: str = "xsi:type"
+    type_prefix: str = "am:"
+
+
+@dataclass(frozen=True)
+class Source:
+    """Text and layout of one file.
+
+    Attributes
+    ----------
+    text : the decoded file
+    encoding : its character encoding, a Python codec name ("utf-8-sig" with a byte order mark)
+    zip_entry : name of the entry if the file was a ZIP, else None
+    prefixes : names of the special attributes
+    elements : every object read from the text, in its order
+    starts : offset in `text` of the start tag of each of them
+    ends : offset behind its content: of the end tag, or behind the tag of an empty element
+    """
+
+    text: str
+    encoding: str = "utf-8"
+    zip_entry: str | None = None
+    prefixes: Prefixes = Prefixes()
+    elements: Sequence[Element] = ()
+    starts: Sequence[int] = ()
+    ends: Sequence[int] = ()
+
+    @cached_property
+    def index(self) -> dict[Element, int]:
+        """Where an object stands in `elements`."""
+        return {element: i for i, element in enumerate(self.elements)}
+
+    @cached_property
+    def _line_starts(self) -> list[int]:
+        starts = [0]
+        find = self.text.find
+        at = find("\n") + 1
+        while at:
+            starts.append(at)
+            at = find("\n", at) + 1
+        return starts
+
+    def position(self, offset: int) -> Position:
+        """Line and column of an offset."""
+        line = bisect_right(self._line_starts, offset)
+        return Position(line, offset - self._line_starts[line - 1] + 1)
+
+    def line(self, number: int) -> str:
+        """The text of one line, counted from 1, without its end."""
+        starts = self._line_starts
+        end = starts[number] if number < len(starts) else len(self.text)
+        return self.text[starts[number - 1] : end].rstrip("\r\n")
+
+    def attribute_offset(self, start: int, name: str) -> int:
+        """Offset of an attribute of the tag that starts at `start`; of the tag itself if it has no such attribute."""
+        for attribute in attributes_of_tag(self.text, start):
+            if attribute["name"] == name:
+                return attribute.start("name")
+        return start
+
+    @property
+    def newline(self) -> str:
+        """The line end that the file uses."""
+        first = self.text.find("\n")
+        return "\r\n" if first > 0 and self.text[first - 1] == "\r" else "\n"

@@ -1,0 +1,1 @@
+"""The file format: reading, writing, references, multi-file models, compression."""

@@ -1,0 +1,85 @@
+"""The library's doors: files -> model -> files."""
+
+from __future__ import annotations
+
+import gc
+import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import ReadError
+from amalthea_uros.metamodel.model import Model
+from amalthea_uros.xmi.files import MAX_SIZE, read_text
+from amalthea_uros.xmi.reader import ReadResult, read
+from amalthea_uros.xmi.references import resolve
+
+SUFFIX = ".amxmi"
+
+StrPath = str | os.PathLike[str]
+
+
+def load(*paths: StrPath, max_size: int = MAX_SIZE) -> Model:
+    """Read a model.
+
+    Parameters
+    ----------
+    paths : files (plain or zipped), or folders, which stand for all `.amxmi` files in them. Several files make one model, in
+        which every object can refer to every other
+    max_size : bytes, unpacked, beyond which a file is refused
+
+    Returns
+    -------
+    Model : its `findings` tell what was odd: dangling references, unknown elements, an unknown version
+
+    Raises
+    ------
+    ReadError : a file is missing, not a model, too old or refused for safety; carries all findings.
+    """
+    results: list[ReadResult] = []
+    refused: list[Finding] = []
+    with _paused_garbage_collection():
+        for path in _files(paths):
+            try:
+                results.append(read(path, read_text(path, max_size)))
+            except ReadError as error:
+                refused += error.findings
+        if refused:
+            raise ReadError(refused)
+        model = Model(result.document for result in results)
+        model.findings = tuple(resolve(results))
+    return model
+
+
+@contextmanager
+def _paused_garbage_collection() -> Iterator[None]:
+    """Reading makes many objects and no garbage: scanning them again and again would take half of the time."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+        if was_enabled and not gc.get_freeze_count():
+            # Moves the new objects to the oldest generation, unscanned; else the first collection would go through them all.
+            gc.freeze()
+            gc.unfreeze()
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+def _files(paths: Iterable[StrPath]) -> list[Path]:
+    found: dict[Path, None] = {}
+    for path in map(Path, paths):
+        if path.is_dir():
+            inside = sorted(entry for entry in path.iterdir() if entry.suffix == SUFFIX and entry.is_file())
+            if not inside:
+                raise ReadError(
+                    [Finding("XMI001", Severity.ERROR, f"there is no {SUFFIX} file in this folder", Location(path))]
+                )
+            found |= dict.fromkeys(inside)
+        else:
+            found[path] = None
+    if not found:
+        raise TypeError("load() needs at least one path")
+    return list(found)

@@ -1,0 +1,128 @@
+"""How objects of each class are read and written in one AMALTHEA version: the facts, prepared for the inner loops."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from amalthea_uros.metamodel import classes
+from amalthea_uros.metamodel.element import Element, features_of
+from amalthea_uros.metamodel.factfile import FeatureFact, Kind
+from amalthea_uros.metamodel.versions import Facts, facts
+from amalthea_uros.xmi.literals import Literal, literal_of
+
+
+class FeaturePlan:
+    """One feature of a class in one version.
+
+    Attributes
+    ----------
+    name, xml_name : the Python name and that of the file format
+    literal : how values are spelled, None for references and parts
+    parse : text -> value for the reader, None where the text is the value
+    omitted : the value that EMF does not write because absence says the same; None if there is no such value
+    default_text : what EMF writes for an unset attribute (it has an explicit default), None if nothing
+    target : the class of references and parts
+    """
+
+    __slots__ = (
+        "default_text",
+        "is_reference",
+        "is_string",
+        "literal",
+        "many",
+        "name",
+        "omitted",
+        "parse",
+        "target",
+        "target_is_abstract",
+        "typed",
+        "xml_name",
+    )
+
+    def __init__(self, name: str, fact: FeatureFact, declared: Facts) -> None:
+        self.name = name
+        self.xml_name = fact.name
+        self.many = fact.many
+        self.is_reference = fact.kind is Kind.REFERENCE
+        self.literal: Literal | None = None
+        self.target: type[Element] = Element
+        self.target_is_abstract = False
+        self.default_text: str | None = None
+        self.omitted: Any = None
+        if fact.kind is Kind.ATTRIBUTE:
+            self.literal = literal_of(declared, fact.type)
+            self.default_text = fact.default
+            default = declared.default(fact)
+            if default is not None:
+                value = self.literal.parse(default)
+                if fact.default is None:
+                    self.omitted = value
+                else:
+                    self.default_text = self.literal.format(value)
+        else:
+            self.target = getattr(classes, fact.type)
+            self.target_is_abstract = declared.classes[fact.type].abstract
+        self.is_string = fact.type == "EString"
+        self.parse = self.literal.parse if self.literal and not self.is_string else None
+        #: Plans of the objects that may stand here, by class name; filled by the reader as it meets them.
+        self.typed: dict[str | None, ClassPlan | None] = {}
+
+
+class ClassPlan:
+    """One class in one version.
+
+    Attributes
+    ----------
+    features : every stored feature in the order of serialisation
+    attributes : by XML name, what may stand as an XML attribute: data and references
+    children : by XML name, what may stand as a child element: parts, and references as `href`
+    """
+
+    __slots__ = ("attributes", "children", "cls", "features", "referable", "xsi_type")
+
+    def __init__(self, class_name: str, declared: Facts) -> None:
+        self.cls: type[Element] = getattr(classes, class_name)
+        python_names = {feature.xml_name: name for name, feature in features_of(self.cls).items()}
+        self.features = tuple(
+            FeaturePlan(python_names[fact.name], fact, declared) for fact in declared.features(class_name) if fact.stored
+        )
+        self.attributes = {f.xml_name: f for f in self.features if f.literal or f.is_reference}
+        self.children = {f.xml_name: f for f in self.features if not f.literal}
+        self.referable = self.cls.is_referable
+        self.xsi_type = f"am:{class_name}"
+
+
+class Plans:
+    """The class plans of one version, made when first asked for."""
+
+    def __init__(self, version: str) -> None:
+        self.facts = facts(version)
+        self._plans: dict[str, ClassPlan] = {}
+
+    def of(self, class_name: str) -> ClassPlan | None:
+        """The plan of a class that can have objects in this version, else None."""
+        plan = self._plans.get(class_name)
+        if plan is None:
+            fact = self.facts.classes.get(class_name)
+            if fact is None or fact.abstract:
+                return None
+            plan = self._plans[class_name] = ClassPlan(class_name, self.facts)
+        return plan
+
+    def part(self, feature: FeaturePlan, class_name: str | None) -> ClassPlan | None:
+        """The plan of an object that stands in a containment; None if the class (None: the declared one) cannot."""
+        try:
+            return feature.typed[class_name]
+        except KeyError:
+            plan = self.of(class_name or feature.target.__name__)
+            if plan is not None and feature.target.__name__ not in self.facts.supertypes(plan.cls.__name__):
+                plan = None
+            feature.typed[class_name] = plan
+            return plan
+
+
+@cache
+def plans(version: str) -> Plans:
+    """The plans of a version with facts."""
+    return Plans(version)

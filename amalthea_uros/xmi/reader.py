@@ -1,0 +1,442 @@
+"""Text of one file -> document: objects, and the references that are still to be resolved.
+
+The parser is expat, driven in one pass; where objects stand is kept as offsets, so that line and column (also of attributes, also
+beyond line 65,535, where libxml2 stops counting) can be told at any time.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+from xml.parsers import expat
+
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.errors import ReadError
+from amalthea_uros.metamodel.classes import Amalthea
+from amalthea_uros.metamodel.element import ContainmentList, Element, extras_of
+from amalthea_uros.metamodel.model import Document
+from amalthea_uros.metamodel.source import Prefixes, Source
+from amalthea_uros.xmi.files import FileText
+from amalthea_uros.xmi.header import Header, NotAModelError, read_header
+from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan, plans
+from amalthea_uros.xmi.remarks import Remarks, did_you_mean, location
+
+#: Real models nest about 15 deep; far beyond, recursion over a model would fail with less clear words.
+MAX_DEPTH = 200
+
+_KEPT = "It is kept and written back, but not understood."
+
+_set = object.__setattr__
+_new = object.__new__
+_append = list.append
+_new_list = list.__new__
+_tuple: Any = tuple.__new__  # makes a named tuple without its own constructor, which is slower
+
+StartHandler = Callable[[str, dict[str, str]], None]
+EndHandler = Callable[[str], None]
+
+#: Finds text between the tags (and sometimes a `>` in an attribute, which does no harm).
+_TEXT = re.compile(r">\s*[^\s<]|<!\[CDATA\[").search
+
+
+class PendingReference(NamedTuple):
+    """A reference as text, to be resolved when all documents are read.
+
+    Attributes
+    ----------
+    texts : the ids, in order
+    is_href : whether it stands as `href` elements rather than as an attribute
+    """
+
+    holder: Element
+    feature: FeaturePlan
+    texts: list[str]
+    is_href: bool
+
+
+class Frame(NamedTuple):
+    """An open element.
+
+    Attributes
+    ----------
+    element, plan : the object and how it is read, None for an `href` element
+    place : where the object stands in document order, -1 for an `href` element
+    held : by feature name, what was read so far: the list of parts or of `href` texts; True where there can be no more
+    """
+
+    element: Any
+    plan: Any
+    place: int
+    held: dict[str, Any]
+
+
+class ReadResult(NamedTuple):
+    """One file as read.
+
+    Attributes
+    ----------
+    referables : every object that can be referred to
+    xmi_ids : the `xmi:id` of every object that has one
+    findings : what was odd; nothing of it prevented reading
+    """
+
+    document: Document
+    references: list[PendingReference]
+    referables: list[Element]
+    xmi_ids: list[tuple[Element, str]]
+    findings: list[Finding]
+
+
+def read(path: Path, content: FileText) -> ReadResult:
+    """Read one file.
+
+    Raises
+    ------
+    ReadError : not XML, not an AMALTHEA model, a version too old, or refused for safety.
+    """
+    reader = _Reader(path, content)
+    try:
+        return reader.read()
+    finally:
+        reader.disconnect()
+
+
+class _Reader:
+    def __init__(self, path: Path, content: FileText) -> None:
+        self.path = path
+        self.content = content
+        self.parser = expat.ParserCreate()
+        self.header: Header | None = None
+        self.elements: list[Element] = []
+        self.starts: list[int] = []
+        self.ends: list[int] = []
+        #: The open elements; an `href` element has no object of its own.
+        self.stack: list[Frame] = []
+        self.references: list[PendingReference] = []
+        self.referables: list[Element] = []
+        self.xmi_ids: list[tuple[Element, str]] = []
+        #: Comments and the like that wait for the part in front of which they stand.
+        self.loose: dict[Element, list[str]] = {}
+        self.prolog: list[str] = []
+        self.epilog: list[str] = []
+        self.skipped_depth = 0
+        self.skipped_start = 0
+        self.start_part: StartHandler | None = None
+        self.end_part: EndHandler = self.end_handler()
+        self.remarks = Remarks()
+
+    def read(self) -> ReadResult:
+        parser = self.parser
+        parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
+        parser.buffer_text = True
+        parser.StartDoctypeDeclHandler = self.refuse_doctype
+        parser.StartElementHandler = self.start_root
+        parser.EndElementHandler = self.end_part
+        if _TEXT(self.content.text):
+            # Most models have none, and a call for every line break would take a tenth of the time.
+            parser.CharacterDataHandler = self.characters
+        parser.CommentHandler = self.comment
+        parser.ProcessingInstructionHandler = self.processing_instruction
+        try:
+            # As str: then offsets count UTF-8 bytes, whatever the encoding of the file.
+            parser.Parse(self.content.text, True)
+        except expat.ExpatError as error:
+            raise self.malformed(error) from None
+        return self.result()
+
+    def disconnect(self) -> None:
+        """Break the cycle of parser and reader, which would keep the text alive until the next collection."""
+        for handler in ("StartElement", "EndElement", "CharacterData", "Comment", "ProcessingInstruction", "StartDoctypeDecl"):
+            setattr(self.parser, f"{handler}Handler", None)
+
+    def result(self) -> ReadResult:
+        root, header = self.elements[0], self.header
+        assert isinstance(root, Amalthea)
+        assert header is not None
+        document = Document(root, header.version, self.path)
+        document.source = source = self.source()
+        document.prolog, document.epilog = self.prolog, self.epilog
+        findings = [remark.finding(self.path, source) for remark in self.remarks]
+        return ReadResult(document, self.references, self.referables, self.xmi_ids, findings)
+
+    def source(self) -> Source:
+        text, offsets = self.content.text, [self.starts, self.ends]
+        if not text.isascii():
+            marks = [remark.offset for remark in self.remarks]
+            *offsets, marks = _character_offsets(self.encoded, self.starts, self.ends, marks)
+            for remark, offset in zip(self.remarks, marks, strict=True):
+                remark.offset = offset
+        header = self.header
+        assert header is not None
+        spelling = Prefixes(header.xmi_id, header.xsi_type, header.type_prefix)
+        return Source(text, self.content.encoding, self.content.zip_entry, spelling, self.elements, *offsets)
+
+    @cached_property
+    def encoded(self) -> bytes:
+        """The text as expat counts it."""
+        return self.content.text.encode()
+
+    # Elements
+
+    def start_root(self, name: str, attributes: dict[str, str]) -> None:
+        try:
+            self.header = header = read_header(name, attributes)
+        except NotAModelError as error:
+            raise self.refuse(error.rule, error.message, error.help) from None
+        if header.remark:
+            added = "What that version added is kept and written back, but not understood."
+            self.remarks.add("XMI007", Severity.WARNING, header.remark, added, self.offset)
+        self.parser.StartElementHandler = self.start_part = self.start_handler(header)
+        plan = plans(header.facts_version).of("Amalthea")
+        assert plan is not None
+        root = _new(plan.cls)
+        _set(root, "_container", None)
+        self.stack.append(Frame(root, plan, 0, {}))
+        self.elements.append(root)
+        self.starts.append(self.offset)
+        self.ends.append(0)
+        for key in attributes.keys() - header.own_attributes:
+            self.unknown_attribute(root, plan, key, attributes[key])
+
+    def start_handler(self, header: Header) -> StartHandler:
+        """The handler of start tags, with everything it needs in local names: it runs once per element."""
+        parser, stack, part = self.parser, self.stack, plans(header.facts_version).part
+        xmi_id, xsi_type, type_prefix = header.xmi_id, header.xsi_type, header.type_prefix
+        elements, add_element, add_start, add_end = self.elements, self.elements.append, self.starts.append, self.ends.append
+        add_referable, add_id, add_reference = self.referables.append, self.xmi_ids.append, self.references.append
+        loose = self.loose
+
+        def start(name: str, attributes: dict[str, str]) -> None:
+            parent, parent_plan, _, held = stack[-1]
+            feature = parent_plan.children.get(name) if parent_plan is not None else None
+            if feature is None:
+                self.start_unknown(name)
+                return
+            type_name = attributes.pop(xsi_type, None)
+            if feature.is_reference:
+                self.start_href(stack[-1], feature, attributes)
+                return
+            if type_name is not None:
+                type_name = type_name.removeprefix(type_prefix)
+            plan = part(feature, type_name)
+            if plan is None:
+                self.start_misplaced(feature, type_name)
+                return
+            feature_name = feature.name
+            element = _new(plan.cls)
+            if feature.many:
+                parts = held.get(feature_name)
+                if parts is None:
+                    parts = held[feature_name] = _new_list(ContainmentList)
+                    parts._owner = parent
+                    _set(parent, feature_name, parts)
+                _append(parts, element)
+            elif feature_name in held:
+                self.start_second(feature)
+                return
+            else:
+                held[feature_name] = True
+                _set(parent, feature_name, element)
+            _set(element, "_container", parent)
+            own_held: dict[str, Any] = {}
+            stack.append(_tuple(Frame, (element, plan, len(elements), own_held)))
+            add_element(element)
+            add_start(parser.CurrentByteIndex)
+            add_end(0)
+            if plan.referable:
+                add_referable(element)
+            known = plan.attributes
+            for key, value in attributes.items():
+                attribute = known.get(key)
+                if attribute is None:
+                    if key == xmi_id:
+                        add_id((element, value))
+                    else:
+                        self.unknown_attribute(element, plan, key, value)
+                elif attribute.is_reference:
+                    add_reference(_tuple(PendingReference, (element, attribute, value.split(), False)))
+                    own_held[attribute.name] = True
+                elif attribute.parse is None:
+                    _set(element, attribute.name, value)
+                else:
+                    try:
+                        _set(element, attribute.name, attribute.parse(value))
+                    except ValueError as error:
+                        self.no_value(element, key, value, error)
+            if loose:
+                self.settle_loose(parent, element)
+            if len(stack) > MAX_DEPTH:
+                raise self.too_deep()
+
+        return start
+
+    def end_handler(self) -> EndHandler:
+        """The handler of end tags."""
+        parser, stack, ends, loose = self.parser, self.stack, self.ends, self.loose
+
+        def end(_name: str) -> None:
+            element, _, place, _ = stack.pop()
+            if place >= 0:
+                ends[place] = parser.CurrentByteIndex
+                if loose:
+                    self.settle_loose(element, None)
+
+        return end
+
+    def start_href(self, frame: Frame, feature: FeaturePlan, attributes: dict[str, str]) -> None:
+        """A reference to another file: `<task href="amlt:/#T?type=Task"/>`."""
+        href = attributes.get("href")
+        if href is None or len(attributes) > 1:
+            self.start_unknown(feature.xml_name)
+            return
+        text = href.partition("#")[2] or href
+        texts = frame.held.get(feature.name)
+        if texts is None:
+            texts = frame.held[feature.name] = []
+            self.references.append(PendingReference(frame.element, feature, texts, True))
+        elif texts is True or not feature.many:
+            self.start_second(feature)
+            return
+        texts.append(text)
+        self.stack.append(Frame(None, None, -1, {}))
+
+    # What the metamodel does not know
+
+    def start_unknown(self, name: str) -> None:
+        holder, plan, *_ = self.stack[-1]
+        where = type(holder).__name__ if plan is not None else "a reference"
+        hint = did_you_mean(name, plan.children) if plan is not None else ""
+        self.remark("XMI010", Severity.WARNING, f"AMALTHEA {self.version} knows no <{name}> in {where}", hint + _KEPT)
+        self.skip()
+
+    def start_misplaced(self, feature: FeaturePlan, type_name: str | None) -> None:
+        where, target = type(self.stack[-1].element).__name__, feature.target.__name__
+        if type_name is None:
+            message = f"<{feature.xml_name}> in {where} has no xsi:type, but {target} is abstract"
+            hint = "Add xsi:type to say which object it is. "
+        else:
+            message = f"<{feature.xml_name}> in {where} must be a {target} of AMALTHEA {self.version}, not a {type_name}"
+            hint = ""
+        self.remark("XMI012", Severity.ERROR, message, hint + _KEPT)
+        self.skip()
+
+    def start_second(self, feature: FeaturePlan) -> None:
+        where = type(self.stack[-1].element).__name__
+        message = f"{where} takes only one <{feature.xml_name}>, this is a second one"
+        if feature.many:
+            message = f"{feature.xml_name!r} of {where} stands as an attribute and as an element"
+        self.remark("XMI014", Severity.ERROR, message, "The first one counts; the second is kept and written back.")
+        self.skip()
+
+    def skip(self) -> None:
+        """Pass over the element of the current start tag and everything in it."""
+        self.skipped_depth = 1
+        self.skipped_start = self.offset
+        self.parser.StartElementHandler = self.start_skipped
+        self.parser.EndElementHandler = self.end_skipped
+
+    def start_skipped(self, _name: str, _attributes: dict[str, str]) -> None:
+        self.skipped_depth += 1
+
+    def end_skipped(self, _name: str) -> None:
+        self.skipped_depth -= 1
+        if self.skipped_depth:
+            return
+        self.parser.StartElementHandler = self.start_part
+        self.parser.EndElementHandler = self.end_part
+        start, end = self.skipped_start, self.offset
+        # Expat stands at the end tag of an element with content, but behind the tag of an empty one.
+        is_empty = self.encoded[end - 2 : end] == b"/>" and self.encoded.find(b"<", start + 1, end) < 0
+        if not is_empty:
+            end = self.encoded.index(b">", end) + 1
+        self.keep_extra(self.encoded[start:end].decode())
+
+    def characters(self, data: str) -> None:
+        if data.isspace() or self.skipped_depth:
+            return
+        message = f"text {data.strip()[:30]!r} stands between the elements, where a model has none"
+        self.remark("XMI015", Severity.WARNING, message, "It is kept and written back; remove it.")
+        self.keep_extra(data.strip().replace("&", "&amp;").replace("<", "&lt;"))
+
+    def comment(self, data: str) -> None:
+        self.keep_extra(f"<!--{data}-->")
+
+    def processing_instruction(self, target: str, data: str) -> None:
+        self.keep_extra(f"<?{target} {data}?>" if data else f"<?{target}?>")
+
+    def keep_extra(self, raw: str) -> None:
+        """Keep what has no place in the metamodel at the element that is open."""
+        if self.skipped_depth:
+            return
+        holder = next((frame.element for frame in reversed(self.stack) if frame.element is not None), None)
+        if holder is not None:
+            self.loose.setdefault(holder, []).append(raw)
+        else:
+            (self.epilog if self.elements else self.prolog).append(raw)
+
+    def settle_loose(self, holder: Element, anchor: Element | None) -> None:
+        """Tie what was kept inside `holder` to the part in front of which it stands."""
+        for raw in self.loose.pop(holder, ()):
+            extras_of(holder).content.append((anchor, raw))
+
+    def unknown_attribute(self, element: Element, plan: ClassPlan, key: str, value: str) -> None:
+        extras_of(element).attributes[key] = value
+        if key.startswith("xmlns"):
+            return
+        message = f"AMALTHEA {self.version} knows no attribute {key!r} of {type(element).__name__}"
+        self.remark("XMI011", Severity.WARNING, message, did_you_mean(key, plan.attributes) + _KEPT, key)
+
+    def no_value(self, element: Element, key: str, value: str, error: ValueError) -> None:
+        extras_of(element).attributes[key] = value
+        message = f"attribute {key!r} of {type(element).__name__}: {error}"
+        self.remark("XMI013", Severity.ERROR, message, "It is kept and written back, but counts as not set.", key)
+
+    # Findings
+
+    @property
+    def offset(self) -> int:
+        return self.parser.CurrentByteIndex
+
+    @property
+    def version(self) -> str:
+        return self.header.facts_version if self.header else ""
+
+    def remark(self, rule: str, severity: Severity, message: str, help_text: str, attribute: str = "") -> None:
+        self.remarks.add(rule, severity, message, help_text, self.offset, attribute)
+
+    def refuse(self, rule: str, message: str, help_text: str, offset: int | None = None) -> ReadError:
+        at = len(self.encoded[: self.offset if offset is None else offset].decode(errors="ignore"))
+        where = location(self.path, Source(self.content.text), at)
+        return ReadError([Finding(rule, Severity.ERROR, message, where, help_text)])
+
+    def refuse_doctype(self, *_declaration: Any) -> None:
+        message = "the file has a document type declaration (DTD), which may define entities"
+        raise self.refuse("XMI003", message, "Models have none; for safety it is refused. Remove the declaration.")
+
+    def too_deep(self) -> ReadError:
+        message = f"the elements are nested more than {MAX_DEPTH} deep"
+        return self.refuse("XMI004", message, "No real model is; for safety it is refused.")
+
+    def malformed(self, error: expat.ExpatError) -> ReadError:
+        if not self.content.text.lstrip().startswith("<"):
+            return self.refuse("XMI002", "this is not XML", "AMALTHEA models are XML files, plain or zipped.", 0)
+        reason = expat.errors.messages[error.code]
+        if self.stack and reason == expat.errors.XML_ERROR_NO_ELEMENTS:
+            frame = next(frame for frame in reversed(self.stack) if frame.element is not None)
+            line = self.encoded.count(b"\n", 0, self.starts[frame.place]) + 1
+            reason = f"the file ends in the middle, the {type(frame.element).__name__} of line {line} is still open"
+        return self.refuse("XMI002", f"not well-formed XML: {reason}", "", self.parser.ErrorByteIndex)
+
+
+def _character_offsets(encoded: bytes, *offset_lists: list[int]) -> list[list[int]]:
+    """Offsets in UTF-8 bytes -> offsets in characters."""
+    found = {}
+    at_byte = at_character = 0
+    for offset in sorted({offset for offsets in offset_lists for offset in offsets}):
+        at_character += len(encoded[at_byte:offset].decode())
+        at_byte = offset
+        found[offset] = at_character
+    return [[found[offset] for offset in offsets] for offsets in offset_lists]

@@ -1,0 +1,221 @@
+"""References between objects, also of several files: text -> object.
+
+Objects are found by unique name over all documents. A reference for which there is no object leads to an unresolved stand-in that
+keeps the text, so that nothing is lost and everything else can go on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from urllib.parse import unquote
+
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.metamodel.classes import CallArgument, Namespace
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.model import Document, Spelling
+from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix, unique_name
+from amalthea_uros.xmi.plan import FeaturePlan, plans
+from amalthea_uros.xmi.reader import PendingReference, ReadResult
+from amalthea_uros.xmi.remarks import location
+
+_set = object.__setattr__
+
+
+def resolve(results: Sequence[ReadResult]) -> list[Finding]:
+    """Resolve the references of all documents in place; tells which have no target, several, or one of a wrong class."""
+    resolver = _Resolver(results)
+    # The names of namespace members need their namespace; those of call arguments need the call and the parameter.
+    waves: list[list[tuple[ReadResult, PendingReference]]] = [[], [], []]
+    for result in results:
+        for pending in result.references:
+            target = pending.feature.target
+            wave = 0 if target is Namespace else 2 if target is CallArgument else 1
+            waves[wave].append((result, pending))
+    resolver.index(_referables(results, Namespace))
+    resolver.link_all(waves[0])
+    resolver.index(_referables(results, None))
+    resolver.link_all(waves[1])
+    resolver.index(_referables(results, CallArgument))
+    resolver.link_all(waves[2])
+    for result in results:
+        resolver.note_odd_ids(result)
+    return resolver.findings()
+
+
+def _referables(results: Sequence[ReadResult], cls: type[Element] | None) -> Iterable[Element]:
+    """The objects of a class to which references are possible; None: all that need no wave of their own."""
+    for result in results:
+        if cls is None:
+            yield from (e for e in result.referables if type(e) is not Namespace and type(e) is not CallArgument)
+        else:
+            yield from (e for e in result.referables if type(e) is cls)
+
+
+class _Resolver:
+    def __init__(self, results: Sequence[ReadResult]) -> None:
+        self.results = results
+        self.by_id: dict[str, Element] = {}
+        #: Ids that several objects share; the first one of a document is meant by its references.
+        self.shared: dict[str, list[Element]] = {}
+        self.suffixes: dict[type[Element], str] = {}
+        self.in_namespace = {p.holder for r in results for p in r.references if p.feature.target is Namespace}
+        self.by_xmi_id = [{xmi_id: element for element, xmi_id in reversed(result.xmi_ids)} for result in results]
+        self.stand_ins: dict[tuple[str, type[Element]], Element] = {}
+        self.problems: dict[tuple[str, str], list[tuple[Document, Element, FeaturePlan]]] = {}
+
+    def index(self, elements: Iterable[Element]) -> None:
+        """Make objects known under their unique names."""
+        by_id, in_namespace, suffixes = self.by_id, self.in_namespace, self.suffixes
+        for element in elements:
+            cls = type(element)
+            suffix = suffixes.get(cls)
+            if suffix is None:
+                suffix = suffixes[cls] = "" if has_prefix(cls) else TYPE_MARK + cls.__name__
+            # Most names are just that; the general way takes three times as long.
+            name = encode(element.name) + suffix if suffix and element not in in_namespace else unique_name(element)  # type: ignore[attr-defined]
+            first = by_id.setdefault(name, element)
+            if first is not element:
+                self.shared.setdefault(name, [first]).append(element)
+
+    def link_all(self, wave: list[tuple[ReadResult, PendingReference]]) -> None:
+        """Give every holder its targets; remember where the form (attribute or `href`) is not the usual one."""
+        by_id, shared, is_single = self.by_id, self.shared, len(self.results) == 1
+        for result, (holder, feature, texts, is_href) in wave:
+            document = result.document
+            targets = []
+            local = True
+            for text in texts:
+                target = by_id.get(text)
+                if target is None or text in shared or not isinstance(target, feature.target):
+                    target = self.find(document, holder, feature, text)
+                    local = local and target.unresolved is None
+                targets.append(target)
+                local = local and (is_single or target.document is document)
+            if targets:
+                _set(holder, feature.name, targets if feature.many else targets[0])
+            if is_href is local and targets:
+                document.href_features[holder, feature.xml_name] = is_href
+
+    def find(self, document: Document, holder: Element, feature: FeaturePlan, text: str) -> Element:
+        """The target of a reference that the plain look-up does not settle."""
+        candidates = self.candidates(document, text)
+        fitting = [element for element in candidates if isinstance(element, feature.target)]
+        if not fitting:
+            self.problems.setdefault(("XMI023" if candidates else "XMI020", text), []).append((document, holder, feature))
+            return self.stand_in(text, feature)
+        if len(fitting) > 1:
+            self.problems.setdefault(("XMI021", text), []).append((document, holder, feature))
+        target = next((element for element in fitting if element.document is document), fitting[0])
+        canonical = unique_name(target)
+        if canonical != text:
+            self.problems.setdefault(("XMI024", text), []).append((document, holder, feature))
+            document.spellings[holder, f"{feature.xml_name} {text}"] = Spelling(text, canonical)
+        return target
+
+    def candidates(self, document: Document, text: str) -> list[Element]:
+        if text in self.shared:
+            return self.shared[text]
+        if text in self.by_id:
+            return [self.by_id[text]]
+        own_ids = next(ids for ids, result in zip(self.by_xmi_id, self.results, strict=True) if result.document is document)
+        found = own_ids.get(text)
+        if found is not None:
+            return [found]
+        # APP4MC before 0.9.7 encoded the whole id of some hrefs a second time; people type names as they are.
+        for respelled in (unquote(text), _respell(text)):
+            if respelled in self.by_id:
+                return self.shared.get(respelled, [self.by_id[respelled]])
+        return []
+
+    def stand_in(self, text: str, feature: FeaturePlan) -> Element:
+        """An unresolved object of the class that the text names, or else of the class that the feature expects."""
+        name, mark, class_name = text.rpartition(TYPE_MARK)
+        document_plans = [plans(result.document.facts_version) for result in self.results]
+        plan = document_plans[0].of(class_name) if mark else None
+        cls = plan.cls if plan and issubclass(plan.cls, feature.target) else feature.target
+        found = self.stand_ins.get((text, cls))
+        if found is None:
+            found = self.stand_ins[text, cls] = object.__new__(cls)
+            _set(found, "_container", None)
+            _set(found, "_reference", text)
+            _set(found, "name", decode((name if mark else text).rpartition("/")[2]))
+        return found
+
+    def note_odd_ids(self, result: ReadResult) -> None:
+        """Remember every `xmi:id` that is not the unique name, as after renaming an object with a text editor."""
+        for element, xmi_id in result.xmi_ids:
+            canonical = unique_name(element) if element.is_referable else ""
+            if canonical == xmi_id:
+                continue
+            result.document.spellings[element, "xmi:id"] = Spelling(xmi_id, canonical)
+            if canonical:
+                message = f"xmi:id {xmi_id!r} is not the name of the object, {canonical!r}"
+                help_text = "References find it by its name. Rename the object or correct the id."
+            else:
+                message = f"a {type(element).__name__} has an xmi:id, {xmi_id!r}, but cannot be referred to"
+                help_text = "It is kept and written back."
+            result.findings.append(self.finding("XMI022", Severity.INFO, message, help_text, result.document, element, "xmi:id"))
+
+    # Findings
+
+    def findings(self) -> list[Finding]:
+        found = [finding for result in self.results for finding in result.findings]
+        for (rule, text), uses in self.problems.items():
+            document, holder, feature = uses[0]
+            severity, message, help_text = self.describe(rule, text, feature)
+            times = f" ({len(uses)} references, the first one is here)" if len(uses) > 1 else ""
+            found.append(self.finding(rule, severity, message + times, help_text, document, holder, feature.xml_name))
+        paths = [result.document.path for result in self.results]
+        return sorted(found, key=lambda f: _file_order(f, paths))
+
+    def describe(self, rule: str, text: str, feature: FeaturePlan) -> tuple[Severity, str, str]:
+        where = f"{feature.xml_name!r} refers to {text!r}"
+        if rule == "XMI020":
+            return Severity.WARNING, f"{where}, which is not there", self.advice(text)
+        if rule == "XMI021":
+            places = [self.place(element) for element in self.candidates(self.results[0].document, text)]
+            return Severity.WARNING, f"{where}, which is there {len(places)} times", f"Taken: the first of {', '.join(places)}."
+        if rule == "XMI023":
+            return Severity.ERROR, f"{where}, but must refer to a {feature.target.__name__}", "It is kept, but counts as unresolved."
+        target = self.candidates(self.results[0].document, text)[0]
+        return Severity.INFO, f"{where}, an odd spelling of {unique_name(target)!r}", "It is understood and kept."
+
+    def advice(self, text: str) -> str:
+        from difflib import get_close_matches
+
+        near = get_close_matches(text, self.by_id, n=1, cutoff=0.8) if len(self.by_id) < 20_000 else []
+        hint = f"Did you mean {near[0]!r}? " if near else ""
+        if len(self.results) == 1:
+            hint += "If it lives in another file of the model, load the folder or name that file too. "
+        return hint + "The reference is kept and written back."
+
+    def place(self, element: Element) -> str:
+        document = element.document
+        assert document
+        assert document.source
+        assert document.path
+        line, _ = document.source.position(document.source.starts[document.source.index[element]])
+        return f"{document.path.name}:{line}"
+
+    def finding(
+        self, rule: str, severity: Severity, message: str, help_text: str, document: Document, element: Element, attribute: str
+    ) -> Finding:
+        source, path = document.source, document.path
+        assert source
+        assert path
+        offset = source.attribute_offset(source.starts[source.index[element]], attribute)
+        return Finding(rule, severity, message, location(path, source, offset), help_text, element.qualified_name)
+
+
+def _respell(text: str) -> str:
+    """The unique name for a reference whose segments are not, or oddly, encoded."""
+    path, mark, class_name = text.rpartition(TYPE_MARK)
+    return "/".join(encode(decode(segment)) for segment in path.split("/")) + mark + class_name
+
+
+def _file_order(finding: Finding, paths: list[Path | None]) -> tuple[int, int, int]:
+    place = finding.location
+    if place is None:
+        return (len(paths), 0, 0)
+    return (paths.index(place.path), place.line or 0, place.column or 0)

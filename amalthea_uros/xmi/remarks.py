@@ -1,0 +1,63 @@
+"""What is odd in a file that can nevertheless be read: each kind of oddity is reported once, with the number of its occurrences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from difflib import get_close_matches
+from pathlib import Path
+
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.metamodel.source import Source
+
+
+class Remark:
+    """A finding in the making."""
+
+    __slots__ = ("attribute", "count", "help", "message", "offset", "rule", "severity")
+
+    def __init__(self, rule: str, severity: Severity, message: str, help_text: str, offset: int, attribute: str) -> None:
+        self.rule = rule
+        self.severity = severity
+        self.message = message
+        self.help = help_text
+        self.offset = offset
+        self.attribute = attribute
+        self.count = 1
+
+    def finding(self, path: Path, source: Source) -> Finding:
+        """The finding, at the first occurrence."""
+        offset = source.attribute_offset(self.offset, self.attribute) if self.attribute else self.offset
+        times = f" ({self.count} times, the first one is here)" if self.count > 1 else ""
+        return Finding(self.rule, self.severity, self.message + times, location(path, source, offset), self.help)
+
+
+class Remarks:
+    """The oddities of one file."""
+
+    def __init__(self) -> None:
+        self._remarks: dict[tuple[str, str], Remark] = {}
+
+    def add(
+        self, rule: str, severity: Severity, message: str, help_text: str, offset: int, attribute: str = ""
+    ) -> None:
+        """Note an oddity of the tag at `offset`, or of one of its attributes."""
+        known = self._remarks.get((rule, message))
+        if known is None:
+            self._remarks[rule, message] = Remark(rule, severity, message, help_text, offset, attribute)
+        else:
+            known.count += 1
+
+    def __iter__(self) -> Iterator[Remark]:
+        return iter(self._remarks.values())
+
+
+def location(path: Path, source: Source, offset: int) -> Location:
+    """An offset as a place to show."""
+    line, column = source.position(offset)
+    return Location(path, line, column, source.line(line))
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """A hint, "" if nothing is near."""
+    near = get_close_matches(name, list(known), n=1)
+    return f"Did you mean {near[0]!r}? " if near else ""

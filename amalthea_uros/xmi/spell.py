@@ -1,0 +1,278 @@
+"""What EMF would write for an object: its attributes and children, in order.
+
+Values are checked on the way; whatever the metamodel of the version does not allow becomes a finding that names the object.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.model import Document
+from amalthea_uros.metamodel.naming import place, unique_name
+from amalthea_uros.metamodel.source import Prefixes
+from amalthea_uros.xmi.escape import escape, impossible_character
+from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan, plans
+
+
+class Part(NamedTuple):
+    """A child element that holds an object."""
+
+    feature: FeaturePlan
+    element: Element
+
+
+class Href(NamedTuple):
+    """A child element that refers to an object of another file.
+
+    Attributes
+    ----------
+    reference : the id behind `amlt:/#`
+    tag : the whole element as text
+    """
+
+    feature: FeaturePlan
+    reference: str
+    tag: str
+
+
+Child = Part | Href
+
+
+class Shape(NamedTuple):
+    """What is to be written for objects of one class of which the same features are set.
+
+    Attributes
+    ----------
+    attributes : (text in front of the value, feature, whether it is set)
+    children : features that may give child elements
+    """
+
+    attributes: tuple[tuple[str, FeaturePlan, bool], ...]
+    children: tuple[FeaturePlan, ...]
+    has_extras: bool
+
+
+class Speller:
+    """Spells the objects of one document."""
+
+    def __init__(self, document: Document, prefixes: Prefixes) -> None:
+        self.document = document
+        self.plans = plans(document.facts_version)
+        self.prefixes = prefixes
+        self.findings: list[Finding] = []
+        self.uses_xsi = False
+        self._shapes: dict[tuple[type[Element], tuple[str, ...]], Shape] = {}
+        #: Reference text of a target, and whether it lives in this document.
+        self._targets: dict[Element, tuple[str, bool]] = {}
+
+    def plan(self, element: Element) -> ClassPlan | None:
+        """How the object is written; None, with a finding, if the version has no such class."""
+        plan = self.plans.of(type(element).__name__)
+        if plan is None:
+            kind = "is abstract" if type(element).is_abstract else "does not exist"
+            self.refuse(element, f"class {type(element).__name__} {kind} in AMALTHEA {self.document.facts_version}")
+        return plan
+
+    def shape(self, plan: ClassPlan, element: Element) -> Shape:
+        """What is to be written of the object."""
+        present = tuple(element.__dict__)
+        shape = self._shapes.get((plan.cls, present))
+        if shape is None:
+            shape = self._shapes[plan.cls, present] = self._new_shape(plan, element)
+        return shape
+
+    def _new_shape(self, plan: ClassPlan, element: Element) -> Shape:
+        present = element.__dict__
+        unknown = present.keys() - {feature.name for feature in plan.features} - {"_extras"}
+        for name in sorted(unknown):
+            if present[name] not in (None, []):
+                version = self.document.facts_version
+                self.refuse(element, f"{name!r} does not exist in {type(element).__name__} of AMALTHEA {version}")
+        attributes = []
+        for feature in plan.features:
+            is_set = feature.name in present
+            if feature.xml_name in plan.attributes and (is_set or feature.default_text is not None):
+                attributes.append((f' {feature.xml_name}="', feature, is_set))
+        children = tuple(f for f in plan.features if f.xml_name in plan.children and f.name in present)
+        # A shape with features unknown to the version is not shared, so that every object with one is named.
+        shape = Shape(tuple(attributes), children, "_extras" in present)
+        if unknown:
+            self._shapes.pop((plan.cls, tuple(present)), None)
+        return shape
+
+    # Attributes
+
+    def tag(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, shape: Shape) -> str:
+        """The start tag behind the element name and without its end, as EMF writes it."""
+        pieces = []
+        if part is not None and plan.cls is not part.target:
+            self.uses_xsi = True
+            pieces.append(f' {self.prefixes.xsi_type}="{self.prefixes.type_prefix}{plan.cls.__name__}"')
+        if plan.referable:
+            pieces.append(f' {self.prefixes.xmi_id}="{escape(self.target(element)[0])}"')
+        values = element.__dict__
+        for opening, feature, is_set in shape.attributes:
+            value = values[feature.name] if is_set else None
+            if value is None:
+                if feature.default_text is not None:
+                    pieces.append(f'{opening}{feature.default_text}"')
+                continue
+            text = self.value_text(element, feature, value)
+            if text is not None:
+                pieces.append(f'{opening}{escape(text)}"')
+        return "".join(pieces)
+
+    def attributes(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, shape: Shape) -> dict[str, str]:
+        """The same as `tag`, one by one: attribute name -> value."""
+        found = {}
+        if part is not None and plan.cls is not part.target:
+            found[self.prefixes.xsi_type] = f"{self.prefixes.type_prefix}{plan.cls.__name__}"
+        if plan.referable:
+            found[self.prefixes.xmi_id] = self.target(element)[0]
+        for _, feature, is_set in shape.attributes:
+            value = element.__dict__[feature.name] if is_set else None
+            text = feature.default_text if value is None else self.value_text(element, feature, value)
+            if text is not None:
+                found[feature.xml_name] = text
+        return found
+
+    def value_text(self, element: Element, feature: FeaturePlan, value: Any) -> str | None:
+        """A set value as text; None if it is not to stand as an attribute."""
+        if feature.is_reference:
+            return self.reference_text(element, feature, value)
+        literal = feature.literal
+        assert literal
+        if type(value) is not literal.python_type:
+            checked = _converted(value, literal.python_type)
+            if checked is None:
+                expected = literal.python_type.__name__
+                self.refuse(element, f"{feature.name!r} must be of type {expected}, not {value!r}")
+                return None
+            value = checked
+        if feature.is_string:
+            wrong = impossible_character(value)
+            if wrong is not None:
+                self.refuse(element, f"{feature.name!r} holds the character U+{ord(wrong):04X}, which XML cannot hold")
+                return None
+            return str(value)
+        if value == feature.omitted:
+            return None
+        text = literal.format(value)
+        try:
+            literal.parse(text)
+        except ValueError as error:
+            self.refuse(element, f"{feature.name!r}: {error}")
+            return None
+        return text
+
+    def reference_text(self, element: Element, feature: FeaturePlan, value: Any) -> str | None:
+        """The ids of the targets, None if they stand as `href` elements (or there are none)."""
+        if not feature.many:
+            if not isinstance(value, feature.target):
+                self.refuse_target(element, feature, value)
+                return None
+            text, is_local = self.target(value)
+            return text if self.is_attribute(element, feature, is_local) else None
+        targets = self.checked_targets(element, feature, value)
+        if not targets:
+            return None
+        is_local = all(self.target(target)[1] for target in targets)
+        if not self.is_attribute(element, feature, is_local):
+            return None
+        return " ".join([self.target(target)[0] for target in targets])
+
+    def is_attribute(self, element: Element, feature: FeaturePlan, is_local: bool) -> bool:
+        """Whether a reference stands as an attribute: if all its targets live in this file, or as it was read."""
+        forms = self.document.href_features
+        if forms:
+            is_href = forms.get((element, feature.xml_name))
+            if is_href is not None:
+                return not is_href
+        return is_local
+
+    def checked_targets(self, element: Element, feature: FeaturePlan, value: Any) -> list[Element]:
+        if type(value) is not list:
+            self.refuse_target(element, feature, value)
+            return []
+        fitting = [target for target in value if isinstance(target, feature.target)]
+        for target in value:
+            if not isinstance(target, feature.target):
+                self.refuse_target(element, feature, target)
+        return fitting
+
+    def target(self, element: Element) -> tuple[str, bool]:
+        """The reference text of an object and whether it lives in this document."""
+        found = self._targets.get(element)
+        if found is None:
+            document = element.document
+            found = self._targets[element] = (unique_name(element), document is self.document)
+            if document is None and element.unresolved is None:
+                self.findings.append(
+                    self.finding(element, f"{element!r} is referred to, but is not part of the model", "Add it, or clear the references.")
+                )
+        return found
+
+    # Children
+
+    def children(self, element: Element, shape: Shape) -> list[Child]:
+        """The child elements in order."""
+        found: list[Child] = []
+        values = element.__dict__
+        for feature in shape.children:
+            value = values[feature.name]
+            if value is None:
+                continue
+            if feature.is_reference:
+                found += self.hrefs(element, feature, value)
+            elif feature.many:
+                found += [Part(feature, part) for part in value if self.check_part(element, feature, part)]
+            elif self.check_part(element, feature, value):
+                found.append(Part(feature, value))
+        return found
+
+    def hrefs(self, element: Element, feature: FeaturePlan, value: Any) -> list[Child]:
+        targets = [t for t in (value if type(value) is list else [value]) if isinstance(t, feature.target)]
+        is_local = all(self.target(target)[1] for target in targets)
+        if self.is_attribute(element, feature, is_local):
+            return []
+        return [self.href(feature, target) for target in targets]
+
+    def href(self, feature: FeaturePlan, target: Element) -> Href:
+        """`<task href="amlt:/#T?type=Task"/>`, with `xsi:type` where the declared class is abstract."""
+        text = self.target(target)[0]
+        typed = ""
+        if feature.target_is_abstract:
+            self.uses_xsi = True
+            typed = f' {self.prefixes.xsi_type}="{self.prefixes.type_prefix}{type(target).__name__}"'
+        return Href(feature, text, f'<{feature.xml_name}{typed} href="amlt:/#{escape(text)}"/>')
+
+    def check_part(self, element: Element, feature: FeaturePlan, part: Any) -> bool:
+        if isinstance(part, feature.target):
+            return True
+        self.refuse_target(element, feature, part)
+        return False
+
+    # Findings
+
+    def refuse_target(self, element: Element, feature: FeaturePlan, value: object) -> None:
+        expected = f"a list of {feature.target.__name__}" if feature.many and not isinstance(value, Element) else feature.target.__name__
+        self.refuse(element, f"{feature.name!r} takes {expected}, not {value!r}")
+
+    def refuse(self, element: Element, message: str) -> None:
+        self.findings.append(self.finding(element, message, ""))
+
+    def finding(self, element: Element, message: str, help_text: str) -> Finding:
+        name = place(element)
+        path = self.document.path
+        return Finding("XMI100", Severity.ERROR, f"{name}: {message}", Location(path) if path else None, help_text, name)
+
+
+def _converted(value: object, expected: type) -> Any:
+    """A value that may stand for one of the expected type: whole numbers for floating point, literals as text."""
+    if expected is float and isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    if isinstance(value, expected) and not isinstance(value, bool):
+        return value
+    return None

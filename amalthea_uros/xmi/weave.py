@@ -1,0 +1,302 @@
+"""Merging changed objects into the text they were read from, where that text is not laid out as EMF does.
+
+Two questions are answered here: how does a start tag look in which some attributes changed (`tag`), and how does the content of an
+element look in which children came, went or moved (`content`)? Whatever still says the same stays to the letter: order, white
+space, quotes, comments, unknown attributes and elements.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.model import Document
+from amalthea_uros.metamodel.source import Source, attributes_of_tag
+from amalthea_uros.xmi.escape import escape, unescape
+from amalthea_uros.xmi.plan import ClassPlan
+from amalthea_uros.xmi.spell import Child, Href, Part, Speller
+
+_NAME = re.compile(r"[^\s/>]+")
+_NODE = re.compile(
+    r"(?P<space>\s+)|(?P<comment><!--.*?-->|<\?.*?\?>)|(?P<text>(?:<!\[CDATA\[.*?\]\]>|[^<])+)|(?P<close></[^>]*>)"
+    r"|<(?P<open>[^\s/>]+)(?:[^>\"']|\"[^\"]*\"|'[^']*')*>",
+    re.DOTALL,
+)
+
+
+class Node(NamedTuple):
+    """A piece of the content of an element in the source.
+
+    Attributes
+    ----------
+    child : the part or reference of now that it stands for, None for everything else
+    kept : whether it is written again; what is gone from the model is not
+    """
+
+    text: str
+    child: Child | None
+    kept: bool
+
+
+class Weaver:
+    """Reads the source of one document again, where it matters how something was written."""
+
+    def __init__(self, document: Document, source: Source, speller: Speller) -> None:
+        self.document = document
+        self.source = source
+        self.text = source.text
+        self.speller = speller
+
+    @cached_property
+    def _by_start(self) -> dict[int, int]:
+        """Offset of a start tag -> place of its object in document order."""
+        return {start: place for place, start in enumerate(self.source.starts)}
+
+    def end(self, place: int) -> int:
+        """Offset behind an element."""
+        source, text = self.source, self.text
+        end = source.ends[place]
+        # Behind the tag of an empty element, but at the end tag of one with content.
+        if text.startswith("/>", end - 2) and text.find("<", source.starts[place] + 1, end) < 0:
+            return end
+        return text.index(">", end) + 1
+
+    def stands_as(self, tag: str, place: int) -> bool:
+        """Whether the object was the same kind of part when it was read."""
+        start = self.source.starts[place]
+        return self.text.startswith(tag, start + 1) and self.text[start + 1 + len(tag)] in " \t\r\n/>"
+
+    def is_regular(self, children: list[Child], at: int, end: int, separator: str) -> bool:
+        """Whether the content between two offsets is just these children, one after the other, laid out as EMF does."""
+        text, starts, index = self.text, self.source.starts, self.source.index
+        for child in children:
+            if not text.startswith(separator, at):
+                return False
+            at += len(separator)
+            if isinstance(child, Href):
+                if not text.startswith(child.tag, at):
+                    return False
+                at += len(child.tag)
+            else:
+                place = index.get(child.element)
+                if place is None or starts[place] != at or not self.stands_as(child.feature.xml_name, place):
+                    return False
+                at = self.end(place)
+        return at <= end and text[at:end] == separator[: -len("  ")]
+
+    # Start tags
+
+    def tag(self, element: Element, plan: ClassPlan, wanted: dict[str, str], place: int) -> tuple[str, int]:
+        """A start tag with the wanted attributes, without its `>` or `/>`, and the offset at which that stands."""
+        start = self.source.starts[place]
+        name = _NAME.match(self.text, start + 1)
+        assert name
+        at = name.end()
+        pieces: dict[str, str] = {}
+        for attribute in attributes_of_tag(self.text, start):
+            at = attribute.end()
+            key, value = attribute["name"], unescape(attribute["quoted"][1:-1])
+            if self.still_says(element, plan, key, value, wanted.get(key)):
+                pieces[key] = attribute[0]
+            elif key in wanted:
+                lead = attribute[0][: attribute.start("quoted") - attribute.start()]
+                pieces[key] = f'{lead}"{escape(wanted[key])}"'
+        tag = name[0] + "".join(self.with_new(element, plan, pieces, wanted))
+        tail = re.compile(r"\s*").match(self.text, at)
+        assert tail
+        return f"<{tag}{tail[0]}", tail.end()
+
+    def with_new(self, element: Element, plan: ClassPlan, pieces: dict[str, str], wanted: dict[str, str]) -> list[str]:
+        """The attributes that stay, and those that were set since, each behind its predecessor in EMF's order."""
+        order = list(pieces)
+        before = None
+        for key, value in wanted.items():
+            if key not in pieces:
+                if not self.was_set(element, plan, key):
+                    continue
+                pieces[key] = f' {key}="{escape(value)}"'
+                order.insert(order.index(before) + 1 if before else 0, key)
+            before = key
+        return [pieces[key] for key in order]
+
+    def was_set(self, element: Element, plan: ClassPlan, key: str) -> bool:
+        """Whether an attribute that the source does not have was set since; defaults and ids may be absent in a file."""
+        feature = plan.attributes.get(key)
+        if feature is not None:
+            return element.__dict__.get(feature.name) is not None
+        return key == self.speller.prefixes.xsi_type
+
+    def still_says(self, element: Element, plan: ClassPlan, key: str, value: str, wanted: str | None) -> bool:
+        """Whether an attribute of the source means what the object says now."""
+        if value == wanted:
+            return True
+        if key == self.speller.prefixes.xsi_type:
+            return value.removeprefix(self.speller.prefixes.type_prefix) == plan.cls.__name__
+        spelling = self.document.spellings.get((element, "xmi:id" if key == self.speller.prefixes.xmi_id else key))
+        if spelling is not None:
+            return spelling == (value, wanted or "")
+        feature = plan.attributes.get(key)
+        extras = element.extras
+        if feature is None or (extras and extras.attributes.get(key) == value):
+            is_own = element is self.document.root and (extras is None or key not in extras.attributes)
+            return is_own or bool(extras and extras.attributes.get(key) == value)
+        if feature.is_reference:
+            return wanted is not None and self.respelled(element, key, value.split()) == wanted.split()
+        assert feature.literal
+        current = element.__dict__.get(feature.name)
+        if current is None:
+            return wanted is not None and _parsed(feature.literal.parse, value) == feature.literal.parse(wanted)
+        return bool(_parsed(feature.literal.parse, value) == current)
+
+    def respelled(self, element: Element, key: str, references: list[str]) -> list[str]:
+        """References as we would write them, as far as they were odd but understood."""
+        spellings = self.document.spellings
+        found = (spellings.get((element, f"{key} {reference}")) for reference in references)
+        return [
+            spelling.canonical if spelling else reference for spelling, reference in zip(found, references, strict=True)
+        ]
+
+    # Content
+
+    def content(self, element: Element, children: list[Child], at: int, end: int, separator: str) -> list[str | Part]:
+        """The content between two offsets of the source, with the children of now: text to copy and parts to write.
+
+        Parameters
+        ----------
+        separator : what stands in front of a child where the source gives no example
+        """
+        extra = [raw for _, raw in element.extras.content if _is_element(raw)] if element.extras else []
+        nodes = list(self.nodes(element, children, extra, at, end))
+        separator = next((n.text for n in nodes if n.text.isspace() and "\n" in n.text), separator if not nodes else "")
+        new_extra = [piece for raw in extra for piece in (separator, raw)]
+        if not _in_order(nodes, children):
+            return _rearranged(nodes, children, new_extra, separator)
+        added = _added_behind(nodes, children)
+        found: list[str | Part] = [item for child in added.get(None, ()) for item in (separator, _item(child))]
+        for node in nodes:
+            if node.kept:
+                found.append(node.child if isinstance(node.child, Part) else node.text)
+                found += [item for child in added.get(node, ()) for item in (separator, _item(child))]
+            elif found and isinstance(found[-1], str) and found[-1].isspace():
+                found.pop()
+        if len(new_extra) > 0:
+            found[_before_last_space(found) : _before_last_space(found)] = new_extra
+        is_blank = all(isinstance(item, str) and item.isspace() for item in found)
+        return [] if is_blank and not all(node.kept for node in nodes) else found
+
+    def nodes(self, element: Element, children: list[Child], extra: list[str], at: int, end: int) -> Iterator[Node]:
+        """The pieces of the content of an element; unknown elements that are found are taken out of `extra`."""
+        parts = {child.element: child for child in children if isinstance(child, Part)}
+        hrefs = [child for child in children if isinstance(child, Href)]
+        while at < end:
+            start = at
+            place = self._by_start.get(start)
+            if place is not None:
+                at = self.end(place)
+                part = parts.get(self.source.elements[place])
+                stays = part is not None and self.stands_as(part.feature.xml_name, place)
+                yield Node(self.text[start:at], part if stays else None, stays)
+                continue
+            match = _NODE.match(self.text, start)
+            assert match
+            if not match["open"]:
+                at = match.end()
+                yield Node(match[0], None, True)
+                continue
+            at = self._element_end(match)
+            raw = self.text[start:at]
+            href = self._take_href(element, match, hrefs)
+            if href is None and raw in extra:
+                extra.remove(raw)
+                yield Node(raw, None, True)
+            else:
+                yield Node(raw, href, href is not None)
+
+    def _element_end(self, opening: re.Match[str]) -> int:
+        """Offset behind an element without an object, whose start tag is given."""
+        depth, match = 1, opening
+        if opening[0].endswith("/>"):
+            return opening.end()
+        while depth:
+            found = _NODE.match(self.text, match.end())
+            assert found
+            match = found
+            if match["close"]:
+                depth -= 1
+            elif match["open"] and not match[0].endswith("/>"):
+                depth += 1
+        return match.end()
+
+    def _take_href(self, element: Element, opening: re.Match[str], hrefs: list[Href]) -> Href | None:
+        """The reference of now that an element of the source stands for; each is taken once."""
+        for attribute in attributes_of_tag(self.text, opening.start()):
+            if attribute["name"] != "href":
+                continue
+            value = unescape(attribute["quoted"][1:-1])
+            (reference,) = self.respelled(element, opening["open"], [value.partition("#")[2] or value])
+            for i, href in enumerate(hrefs):
+                if href.feature.xml_name == opening["open"] and href.reference == reference:
+                    return hrefs.pop(i)
+        return None
+
+
+def _parsed(parse: Callable[[str], Any], text: str) -> Any:
+    try:
+        return parse(text)
+    except ValueError:
+        return None
+
+
+def _item(child: Child) -> str | Part:
+    return child if isinstance(child, Part) else child.tag
+
+
+def _is_element(raw: str) -> bool:
+    return raw.startswith("<") and raw[1] not in "!?"
+
+
+def _before_last_space(found: list[str | Part]) -> int:
+    last = found[-1] if found else None
+    return len(found) - 1 if isinstance(last, str) and last.isspace() else len(found)
+
+
+def _in_order(nodes: list[Node], children: list[Child]) -> bool:
+    """Whether the children that stay have the order of the source, feature by feature; between features it says nothing."""
+    positions = {id(child): position for position, child in enumerate(children)}
+    last: dict[str, int] = {}
+    for node in nodes:
+        if node.child is not None:
+            position = positions[id(node.child)]
+            if position < last.get(node.child.feature.xml_name, -1):
+                return False
+            last[node.child.feature.xml_name] = position
+    return True
+
+
+def _added_behind(nodes: list[Node], children: list[Child]) -> dict[Node | None, list[Child]]:
+    """The children that the source does not have, by the node behind which they belong (None: at the start)."""
+    by_child = {id(node.child): node for node in nodes if node.child is not None}
+    added: dict[Node | None, list[Child]] = {}
+    before = None
+    for child in children:
+        node = by_child.get(id(child))
+        if node is None:
+            added.setdefault(before, []).append(child)
+        else:
+            before = node
+    return added
+
+
+def _rearranged(nodes: list[Node], children: list[Child], extra: list[str], separator: str) -> list[str | Part]:
+    """The children in EMF's order, because the old order and the new one cannot be reconciled; comments come first."""
+    found: list[str | Part] = []
+    for node in nodes:
+        if node.kept and node.child is None and not node.text.isspace():
+            found += [separator, node.text]
+    by_child = {id(node.child): node for node in nodes if isinstance(node.child, Href)}
+    for child in children:
+        found += [separator, by_child[id(child)].text if id(child) in by_child else _item(child)]
+    return [*found, *extra, nodes[-1].text if nodes[-1].text.isspace() else ""]
