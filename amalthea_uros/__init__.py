@@ -15,7 +15,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from amalthea_uros.diagnostics import Finding, Location, Severity
+    from amalthea_uros.diagnostics import Finding, Location
     from amalthea_uros.errors import AmurosError, ReadError, WriteError
     from amalthea_uros.metamodel.classes import *  # noqa: F403
     from amalthea_uros.metamodel.element import Element
@@ -28,7 +28,6 @@ __version__ = "0.1.0"
 _HOMES = {
     "Finding": "diagnostics",
     "Location": "diagnostics",
-    "Severity": "diagnostics",
     "AmurosError": "errors",
     "ReadError": "errors",
     "WriteError": "errors",

@@ -35,6 +35,10 @@ class Revision:
     number: ClassVar[int] = 0
 
 
+#: Features on which the unique name of their holder, or of its parts, may depend.
+_NAMING = frozenset({"name", "namespace", "parameter", "runnable"})
+
+
 class Feature:
     """One feature of a class; as a descriptor it answers for the unset value."""
 
@@ -54,9 +58,13 @@ class Feature:
             return self
         if not self.many:
             return None
-        empty: list[Any] = ContainmentList(instance) if self.kind == "containment" else []
+        empty: list[Any] = self.new_list(instance, ())
         _set(instance, self.name, empty)
         return empty
+
+    def new_list(self, owner: Element, values: Iterable[Any]) -> list[Any]:
+        """A list for the values of this feature."""
+        return (ContainmentList if self.kind == "containment" else ReferenceList)(owner, values)
 
     def contains(self, value: object) -> bool:
         """Whether an object held by this feature is part of its holder."""
@@ -151,33 +159,27 @@ class Element:
         if feature is None:
             raise AttributeError(_unknown_feature(type(self), name))
         if feature.many:
-            value = self._new_list(feature, value)
+            value = list(value)
+            held = self.__dict__.get(name)
+            if held and feature.kind == "containment":
+                held.clear()
+            value = feature.new_list(self, value)
         elif feature.kind != "attribute":
             old = self.__dict__.get(name)
             if old is value:
                 return
             if old is not None and feature.contains(old):
-                _release(old)
+                release(old)
             if value is not None and feature.contains(value):
                 adopt(self, value)
-        if name == "name":
-            Revision.number += 1
         _set(self, name, value)
+        touch(self, renames=name in _NAMING)
 
     def __delattr__(self, name: str) -> None:
         feature = features_of(type(self)).get(name)
         if feature is None:
             raise AttributeError(_unknown_feature(type(self), name))
         setattr(self, name, [] if feature.many else None)
-
-    def _new_list(self, feature: Feature, values: Iterable[Any]) -> list[Any]:
-        if feature.kind != "containment":
-            return list(values)
-        values = list(values)
-        old = self.__dict__.get(feature.name)
-        if old:
-            old.clear()
-        return ContainmentList(self, values)
 
     def __repr__(self) -> str:
         name = self.__dict__.get("name")
@@ -215,8 +217,10 @@ class Element:
 
     @property
     def extras(self) -> Extras | None:
-        """What stands at the object in its file and is unknown to the metamodel, None if nothing."""
+        """What stands at the object in its file and is unknown to the metamodel, None if nothing. It may be changed."""
         found: Extras | None = self.__dict__.get("_extras")
+        if found is not None:
+            touch(self)
         return found
 
     @property
@@ -272,15 +276,78 @@ class Element:
         return element
 
 
-class ContainmentList(list[E]):
-    """Parts of one object, in order. Every way of putting an object in makes the owner its container."""
+class ReferenceList(list[E]):
+    """References of one object, in order; its document learns of every change."""
 
     __slots__ = ("_owner",)
 
     def __init__(self, owner: Element, values: Iterable[E] = ()) -> None:
-        super().__init__()
+        super().__init__(values)
         self._owner = owner
+
+    def append(self, value: E) -> None:
+        super().append(value)
+        touch(self._owner)
+
+    def insert(self, index: SupportsIndex, value: E) -> None:
+        super().insert(index, value)
+        touch(self._owner)
+
+    def extend(self, values: Iterable[E]) -> None:
+        super().extend(values)
+        touch(self._owner)
+
+    def __iadd__(self, values: Iterable[E]) -> Self:  # type: ignore[override, misc]
         self.extend(values)
+        return self
+
+    def __imul__(self, times: SupportsIndex) -> Self:
+        super().__imul__(times)
+        touch(self._owner)
+        return self
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        super().__setitem__(index, value)
+        touch(self._owner)
+
+    def __delitem__(self, index: Any) -> None:
+        super().__delitem__(index)
+        touch(self._owner)
+
+    def remove(self, value: E) -> None:
+        super().remove(value)
+        touch(self._owner)
+
+    def pop(self, index: SupportsIndex = -1) -> E:
+        value = super().pop(index)
+        touch(self._owner)
+        return value
+
+    def clear(self) -> None:
+        super().clear()
+        touch(self._owner)
+
+    def sort(self, *, key: Any = None, reverse: bool = False) -> None:
+        super().sort(key=key, reverse=reverse)
+        touch(self._owner)
+
+    def reverse(self) -> None:
+        super().reverse()
+        touch(self._owner)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (list, (list(self),))
+
+
+class ContainmentList(ReferenceList[E]):
+    """Parts of one object, in order. Every way of putting an object in makes the owner its container."""
+
+    __slots__ = ()
+
+    def __init__(self, owner: Element, values: Iterable[E] = ()) -> None:
+        super().__init__(owner)
+        for value in values:
+            self.append(value)
 
     def append(self, value: E) -> None:
         adopt(self._owner, value)
@@ -294,44 +361,29 @@ class ContainmentList(list[E]):
         for value in list(values):
             self.append(value)
 
-    def __iadd__(self, values: Iterable[E]) -> ContainmentList[E]:  # type: ignore[override, misc]
-        self.extend(values)
-        return self
+    def __imul__(self, times: SupportsIndex) -> Self:
+        raise TypeError("an object can be a part only once")
 
     def __setitem__(self, index: Any, value: Any) -> None:
-        if isinstance(index, slice):
-            kept = list(self)
-            kept[index] = list(value)
-            self.clear()
-            self.extend(kept)
-            return
-        old = self[index]
-        if old is value:
-            return
-        adopt(self._owner, value)
-        position = next(i for i, element in enumerate(self) if element is old)
-        _release(old)
-        super().__setitem__(position, value)
+        values = list(self)
+        values[index] = value
+        self.clear()
+        self.extend(values)
 
     def __delitem__(self, index: Any) -> None:
-        gone = self[index] if isinstance(index, slice) else [self[index]]
+        for value in self[index] if isinstance(index, slice) else [self[index]]:
+            release(value)
         super().__delitem__(index)
-        for value in gone:
-            _release(value)
 
     def remove(self, value: E) -> None:
         del self[self.index(value)]
 
     def pop(self, index: SupportsIndex = -1) -> E:
-        value = super().pop(index)
-        _release(value)
-        return value
+        release(self[index])
+        return super().pop(index)
 
     def clear(self) -> None:
         del self[:]
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (list, (list(self),))
 
 
 def extras_of(element: Element) -> Extras:
@@ -340,10 +392,28 @@ def extras_of(element: Element) -> Extras:
     return found
 
 
-def _release(value: Element) -> None:
-    """Forget the container of an object that was just taken out."""
+def touch(element: Element, renames: bool = False) -> None:
+    """Tell the document that an object changed, and whether references to it, or to its parts, may have to as well."""
+    path = path_of(element)
+    if renames:
+        Revision.number += 1
+    document: Document | None = getattr(path[-1], "_document", None)
+    if document is not None:
+        document.changes.note(path, renames)
+
+
+def path_of(element: Element) -> list[Element]:
+    """The object, its container, and so on up to the root."""
+    path = [element]
+    while (holder := path[-1]._container) is not None:
+        path.append(holder)
+    return path
+
+
+def release(value: Element) -> None:
+    """Take the container from an object that is about to be taken out of it."""
+    touch(value, renames=True)
     _set(value, "_container", None)
-    Revision.number += 1
 
 
 def adopt(owner: Element, value: Element) -> None:
@@ -357,7 +427,7 @@ def adopt(owner: Element, value: Element) -> None:
         ancestor = ancestor._container
     _take_out(value)
     _set(value, "_container", owner)
-    Revision.number += 1
+    touch(value, renames=True)
 
 
 def _take_out(value: Element) -> None:
@@ -367,9 +437,10 @@ def _take_out(value: Element) -> None:
     for feature in containments_of(type(holder)):
         held = holder.__dict__.get(feature.name)
         if held is value:
+            release(value)
             _set(holder, feature.name, None)
         elif feature.many and held and any(element is value for element in held):
-            list.remove(held, value)
+            held.remove(value)
 
 
 _FEATURES: dict[type, dict[str, Feature]] = {}
@@ -394,6 +465,16 @@ def containments_of(cls: type[Element]) -> tuple[Feature, ...]:
         found = tuple(f for f in features_of(cls).values() if f.kind in ("containment", "either"))
         _CONTAINMENTS[cls] = found
     return found
+
+
+def references_of(element: Element) -> Iterator[tuple[str, Any]]:
+    """The references of an object that are set: feature name, and the target or the list of targets."""
+    for name, value in element.__dict__.items():
+        if isinstance(value, Element):
+            if not features_of(type(element))[name].contains(value):
+                yield name, value
+        elif type(value) is ReferenceList and value:
+            yield name, value
 
 
 def _unknown_feature(cls: type[Element], name: str) -> str:

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.metamodel.changes import Changes
 from amalthea_uros.metamodel.classes.base import Amalthea
-from amalthea_uros.metamodel.element import Element, Revision, features_of
+from amalthea_uros.metamodel.element import Element, Revision, references_of
 from amalthea_uros.metamodel.naming import qualified_name
 from amalthea_uros.metamodel.source import Source
 from amalthea_uros.metamodel.versions import nearest_version, newest_version
@@ -40,6 +41,7 @@ class Document:
     version : AMALTHEA version of the file; may be newer than what is known
     path : the file, None for a new one
     source : the text it was read from, None for a new one
+    changes : what changed since it was read
     prolog : comments and processing instructions before the root element, `epilog` those behind it
     spellings : odd ids and references, by object and XML name
     href_features : references that stand as `href` elements although ours would be an attribute (or the reverse: False)
@@ -54,6 +56,7 @@ class Document:
         self.epilog: list[str] = []
         self.spellings: dict[tuple[Element, str], Spelling] = {}
         self.href_features: dict[tuple[Element, str], bool] = {}
+        self.changes = Changes()
         self._model: Model | None = None
         object.__setattr__(root, "_document", self)
 
@@ -142,18 +145,17 @@ class Model:
         """Every use of an object, in the order of the model."""
         found = []
         for holder in self.walk():
-            for name, value in holder.__dict__.items():
-                if value is target or (type(value) is list and any(item is target for item in value)):
-                    if not features_of(type(holder))[name].contains(value):
-                        found.append(Reference(holder, name))
+            for name, value in references_of(holder):
+                if value is target or (isinstance(value, list) and any(item is target for item in value)):
+                    found.append(Reference(holder, name))
         return found
 
     def unresolved(self) -> Iterator[tuple[Reference, str]]:
         """Every reference for which no object was found, with its text."""
         for holder in self.walk():
-            for name, value in holder.__dict__.items():
-                for item in value if type(value) is list else (value,):
-                    if isinstance(item, Element) and item.unresolved is not None:
+            for name, value in references_of(holder):
+                for item in value if isinstance(value, list) else (value,):
+                    if item.unresolved is not None:
                         yield Reference(holder, name), item.unresolved
 
     def _hit(self, cls: type[E], name: str) -> E | None:

@@ -51,6 +51,7 @@ class Source:
     Attributes
     ----------
     text : the decoded file
+    version : AMALTHEA version that it declares
     encoding : its character encoding, a Python codec name ("utf-8-sig" with a byte order mark)
     zip_entry : name of the entry if the file was a ZIP, else None
     prefixes : names of the special attributes
@@ -60,6 +61,7 @@ class Source:
     """
 
     text: str
+    version: str = ""
     encoding: str = "utf-8"
     zip_entry: str | None = None
     prefixes: Prefixes = Prefixes()

@@ -172,7 +172,7 @@ class _Reader:
         header = self.header
         assert header is not None
         spelling = Prefixes(header.xmi_id, header.xsi_type, header.type_prefix)
-        return Source(text, self.content.encoding, self.content.zip_entry, spelling, self.elements, *offsets)
+        return Source(text, header.version, self.content.encoding, self.content.zip_entry, spelling, self.elements, *offsets)
 
     @cached_property
     def encoded(self) -> bytes:

@@ -12,7 +12,7 @@ from urllib.parse import unquote
 
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.classes import CallArgument, Namespace
-from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.element import Element, ReferenceList
 from amalthea_uros.metamodel.model import Document, Spelling
 from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix, unique_name
 from amalthea_uros.xmi.plan import FeaturePlan, plans
@@ -93,7 +93,7 @@ class _Resolver:
                 targets.append(target)
                 local = local and (is_single or target.document is document)
             if targets:
-                _set(holder, feature.name, targets if feature.many else targets[0])
+                _set(holder, feature.name, ReferenceList(holder, targets) if feature.many else targets[0])
             if is_href is local and targets:
                 document.href_features[holder, feature.xml_name] = is_href
 

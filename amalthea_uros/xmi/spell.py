@@ -193,7 +193,7 @@ class Speller:
         return is_local
 
     def checked_targets(self, element: Element, feature: FeaturePlan, value: Any) -> list[Element]:
-        if type(value) is not list:
+        if not isinstance(value, list):
             self.refuse_target(element, feature, value)
             return []
         fitting = [target for target in value if isinstance(target, feature.target)]
@@ -233,7 +233,7 @@ class Speller:
         return found
 
     def hrefs(self, element: Element, feature: FeaturePlan, value: Any) -> list[Child]:
-        targets = [t for t in (value if type(value) is list else [value]) if isinstance(t, feature.target)]
+        targets = [t for t in (value if isinstance(value, list) else [value]) if isinstance(t, feature.target)]
         is_local = all(self.target(target)[1] for target in targets)
         if self.is_attribute(element, feature, is_local):
             return []

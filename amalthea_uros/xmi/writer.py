@@ -1,15 +1,17 @@
 """Document -> text.
 
-An object that was read and not changed is written as it stands in the source; everything else as EMF writes it. So a file that EMF
-wrote, and also one that a person laid out and commented, differs after saving only where the model differs.
+What was read and not changed is copied from the source. A changed object is compared with its place in the source, and whatever of
+it still says the same stays to the letter; the rest is written as EMF does. So a file that EMF wrote, and also one that a person laid
+out and commented, differs after saving only where the model differs.
 """
 
 from __future__ import annotations
 
 from amalthea_uros.errors import WriteError
+from amalthea_uros.metamodel.changes import spread_renames
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
-from amalthea_uros.metamodel.source import Prefixes
+from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, version_key
 from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
@@ -31,18 +33,30 @@ def document_text(document: Document, canonical: bool = False) -> str:
     ------
     WriteError : something in the document is not allowed in its AMALTHEA version; carries a finding for each.
     """
-    writer = _Writer(document, canonical)
+    source = None if canonical else _usable_source(document)
+    if source is not None:
+        spread_renames((d.root, d.changes) for d in document.model.documents)
+        if not document.changes.touched:
+            return source.text
+    writer = _Writer(document, source)
     text = writer.document()
     if writer.speller.findings:
         raise WriteError(writer.speller.findings)
     return text
 
 
+def _usable_source(document: Document) -> Source | None:
+    """The source, unless the document got another root or is to become one of another version."""
+    source = document.source
+    if source is None or source.elements[0] is not document.root or source.version != document.version:
+        return None
+    return source
+
+
 class _Writer:
-    def __init__(self, document: Document, canonical: bool) -> None:
-        root = document.root
-        source = document.source if not canonical and document.source and root in document.source.index else None
-        self.root = root
+    def __init__(self, document: Document, source: Source | None) -> None:
+        self.root = document.root
+        self.touched = document.changes.touched
         self.source = source
         self.index = source.index if source else {}
         self.newline = source.newline if source else "\n"
@@ -91,15 +105,20 @@ class _Writer:
     def part(self, part: Part, indent: str) -> None:
         """Write an object and everything in it."""
         feature, element = part
+        tag = feature.xml_name
+        place = self.index.get(element)
+        if self.weaver is None or self.source is None or (place is not None and not self.weaver.stands_as(tag, place)):
+            place = None
+        elif place is not None and element not in self.touched:
+            self.out.append(self.source.text[self.source.starts[place] : self.weaver.end(place)])
+            return
         plan = self.speller.plan(element)
         if plan is None:
             return
-        tag = feature.xml_name
         shape = self.speller.shape(plan, element)
         children = self.speller.children(element, shape) if shape.children else []
         attributes = self.speller.tag(feature, plan, element, shape)
-        place = self.index.get(element)
-        if self.weaver is None or self.source is None or place is None or not self.weaver.stands_as(tag, place):
+        if self.weaver is None or self.source is None or place is None:
             self.out.append(f"<{tag}{attributes}{_extra_attributes(element) if shape.has_extras else ''}")
             self.fresh_content(element, tag, children, indent)
             return

@@ -1,0 +1,50 @@
+"""What changed since a document was read: only that has to be written anew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from amalthea_uros.metamodel.classes.sw import CallArgument, RunnableCall
+from amalthea_uros.metamodel.element import Element, path_of, references_of
+
+
+class Changes:
+    """What changed in a document since it was read; the rest can be written as it was.
+
+    Attributes
+    ----------
+    touched : changed objects and everything that they are part of
+    renamed : objects whose unique names may have changed, or which came or went
+    """
+
+    def __init__(self) -> None:
+        self.touched: set[Element] = set()
+        self.renamed: set[Element] = set()
+
+    def note(self, path: list[Element], renames: bool) -> None:
+        """Note the change of an object, given with its containers."""
+        self.touched.update(path)
+        if renames:
+            self.renamed.add(path[0])
+
+
+def spread_renames(documents: Iterable[tuple[Element, Changes]]) -> None:
+    """Mark the holders of references to renamed objects as touched, in all documents (root and changes) of a model."""
+    documents = tuple(documents)
+    renamed = {element for _, changes in documents for element in changes.renamed}
+    affected: set[Element] = set()
+    while renamed - affected:
+        affected |= {part for element in renamed for part in element.walk()}
+        for root, changes in documents:
+            for holder in root.walk():
+                for name, value in references_of(holder):
+                    if not _meets(value, affected):
+                        continue
+                    changes.touched.update(path_of(holder))
+                    # The names of namespace members and of call arguments are made from those of their references.
+                    if name == "namespace" or isinstance(holder, RunnableCall | CallArgument):
+                        renamed.add(holder)
+
+
+def _meets(value: Element | list[Element], affected: set[Element]) -> bool:
+    return not affected.isdisjoint(value) if isinstance(value, list) else value in affected
