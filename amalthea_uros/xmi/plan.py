@@ -18,6 +18,7 @@ class FeaturePlan:
     Attributes
     ----------
     name, xml_name : the Python name and that of the file format
+    many : whether it is held as a list; `only_one` if the version nevertheless takes one value at most
     literal : how values are spelled, None for references and parts
     parse : text -> value for the reader, None where the text is the value
     omitted : the value that EMF does not write because absence says the same; None if there is no such value
@@ -33,6 +34,7 @@ class FeaturePlan:
         "many",
         "name",
         "omitted",
+        "only_one",
         "parse",
         "target",
         "target_is_abstract",
@@ -40,10 +42,11 @@ class FeaturePlan:
         "xml_name",
     )
 
-    def __init__(self, name: str, fact: FeatureFact, declared: Facts) -> None:
+    def __init__(self, name: str, many: bool, fact: FeatureFact, declared: Facts) -> None:
         self.name = name
         self.xml_name = fact.name
-        self.many = fact.many
+        self.many = many
+        self.only_one = many and not fact.many
         self.is_reference = fact.kind is Kind.REFERENCE
         self.literal: Literal | None = None
         self.target: type[Element] = Element
@@ -83,9 +86,11 @@ class ClassPlan:
 
     def __init__(self, class_name: str, declared: Facts) -> None:
         self.cls: type[Element] = getattr(classes, class_name)
-        python_names = {feature.xml_name: name for name, feature in features_of(self.cls).items()}
+        held = {feature.xml_name: feature for feature in features_of(self.cls).values()}
         self.features = tuple(
-            FeaturePlan(python_names[fact.name], fact, declared) for fact in declared.features(class_name) if fact.stored
+            FeaturePlan(held[fact.name].name, held[fact.name].many, fact, declared)
+            for fact in declared.features(class_name)
+            if fact.stored
         )
         self.attributes = {f.xml_name: f for f in self.features if f.literal or f.is_reference}
         self.children = {f.xml_name: f for f in self.features if not f.literal}

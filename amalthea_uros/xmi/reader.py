@@ -233,6 +233,9 @@ class _Reader:
                     parts = held[feature_name] = _new_list(ContainmentList)
                     parts._owner = parent
                     _set(parent, feature_name, parts)
+                elif feature.only_one:
+                    self.start_second(feature)
+                    return
                 _append(parts, element)
             elif feature_name in held:
                 self.start_second(feature)
@@ -326,7 +329,7 @@ class _Reader:
     def start_second(self, feature: FeaturePlan) -> None:
         where = type(self.stack[-1].element).__name__
         message = f"{where} takes only one <{feature.xml_name}>, this is a second one"
-        if feature.many:
+        if feature.is_reference and feature.many:
             message = f"{feature.xml_name!r} of {where} stands as an attribute and as an element"
         self.remark("XMI014", Severity.ERROR, message, "The first one counts; the second is kept and written back.")
         self.skip()

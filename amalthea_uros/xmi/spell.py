@@ -227,6 +227,8 @@ class Speller:
             if feature.is_reference:
                 found += self.hrefs(element, feature, value)
             elif feature.many:
+                if feature.only_one and len(value) > 1:
+                    self.refuse(element, f"{feature.name!r} takes only one object in AMALTHEA {self.document.facts_version}")
                 found += [Part(feature, part) for part in value if self.check_part(element, feature, part)]
             elif self.check_part(element, feature, value):
                 found.append(Part(feature, value))
