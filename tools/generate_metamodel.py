@@ -5,6 +5,7 @@ Usage: python tools/generate_metamodel.py [TARGET]
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -97,6 +98,7 @@ def main(target: Path) -> None:
     target.mkdir(parents=True, exist_ok=True)
     for name, text in render().items():
         (target / name).write_text(text, encoding="utf-8")
+    subprocess.run([sys.executable, "-m", "ruff", "format", "--quiet", "--config", ROOT / "pyproject.toml", target], check=True)
 
 
 if __name__ == "__main__":

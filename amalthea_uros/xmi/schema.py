@@ -1,0 +1,328 @@
+"""Validation of a file against the XML schema of its AMALTHEA version, with problems told in words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import cache, partial
+from typing import TYPE_CHECKING, cast
+
+from lxml import etree
+
+from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, Facts, facts, held_versions
+from amalthea_uros.resources import resource_folder
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+
+    import xmlschema
+
+    from amalthea_uros.metamodel.factfile import FeatureFact
+
+#: So many problems are told; more are only counted.
+MOST_PROBLEMS = 100
+
+#: A reason and advice, and where they belong; words and paths are made only for the problems told.
+_Words = tuple[str, str | None]
+_Finding = tuple[etree._Element, Callable[[], _Words]]
+
+_XSI = "{http://www.w3.org/2001/XMLSchema-instance}"
+_XMI = "{http://www.omg.org/XMI}"
+_LOCATIONS = (f"{_XSI}schemaLocation", f"{_XSI}noNamespaceSchemaLocation")
+
+#: How xmlschema words what is told by its reason only.
+_CANNOT_SUBSTITUTE = "cannot substitute"
+_IS_ABSTRACT = "is abstract"
+
+_WHOLE_NUMBERS = {
+    "EInt": "a whole number of 32 bits",
+    "EIntegerObject": "a whole number of 32 bits",
+    "ELong": "a whole number of 64 bits",
+    "ELongObject": "a whole number of 64 bits",
+    "EBigInteger": "a whole number",
+}
+
+
+class NoSchemaError(LookupError):
+    """There is no schema of an AMALTHEA version."""
+
+    def __init__(self, version: str) -> None:
+        super().__init__(f"there is no schema of AMALTHEA {version}, only of {', '.join(held_versions())}")
+        self.version = version
+
+
+@dataclass(frozen=True, slots=True)
+class SchemaProblem:
+    """A place where a file breaks the schema of its version.
+
+    Attributes
+    ----------
+    line : line of the start tag, or of the end of what could be parsed
+    column : known only where the file is not well-formed
+    path : XPath of the element, such as "/am:Amalthea/swModel/tasks[2]"
+    reason : what is wrong
+    advice : what would be allowed
+    """
+
+    line: int
+    column: int | None
+    path: str
+    reason: str
+    advice: str | None = None
+
+
+def schema_path(version: str) -> Path:
+    """The schema file of an AMALTHEA version.
+
+    Raises
+    ------
+    NoSchemaError : if there is none.
+    """
+    if version not in held_versions():
+        raise NoSchemaError(version)
+    return resource_folder("schemas") / f"amalthea-{version}.xsd"
+
+
+def validate(data: bytes, version: str) -> list[SchemaProblem]:
+    """Everything in which the text of a file breaks the schema of a version, in the order of the lines.
+
+    Raises
+    ------
+    NoSchemaError : if there is no schema of the version.
+    """
+    schema = _schema(version)
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
+    try:
+        root = etree.fromstring(data, parser)
+    except etree.XMLSyntaxError as error:
+        line, column = error.position
+        return [SchemaProblem(line, column, "/", "not well-formed XML: " + error.msg.split(", line ")[0])]
+    if entities := list(_entities(root)):
+        return _told(entities)
+    _drop_locations(root)
+    if schema.validate(root):
+        return []
+    return _told(_Explanation(root, facts(version)).findings()) or _plain(schema)
+
+
+@cache
+def _schema(version: str) -> etree.XMLSchema:
+    return etree.XMLSchema(file=str(schema_path(version)))
+
+
+@cache
+def _explaining_schema(version: str) -> xmlschema.XMLSchema10:
+    import xmlschema  # slow to import, and needed for invalid files only
+
+    return xmlschema.XMLSchema10(str(schema_path(version)), allow="local")
+
+
+def _told(findings: list[_Finding]) -> list[SchemaProblem]:
+    """The problems by line, those at the end of a long list as a number only."""
+    findings.sort(key=lambda finding: cast("int", finding[0].sourceline))
+    problems = [_at(element, *words()) for element, words in findings[:MOST_PROBLEMS]]
+    more = findings[MOST_PROBLEMS:]
+    return [*problems, _at(more[0][0], f"from here on {len(more)} more problems, not listed")] if more else problems
+
+
+def _at(element: etree._Element, reason: str, advice: str | None = None) -> SchemaProblem:
+    line = cast("int", element.sourceline)
+    return SchemaProblem(line, None, element.getroottree().getpath(element), reason, advice)
+
+
+def _entities(root: etree._Element) -> Iterator[_Finding]:
+    """Entity references between the elements: they are not replaced, and no validator sees through them."""
+    for entity in root.iter(etree.Entity):
+        yield cast("etree._Element", entity.getparent()), partial(_unreplaced, entity)
+
+
+def _unreplaced(entity: etree._Element) -> _Words:
+    return f"{entity.text} is not allowed between the elements", None
+
+
+def _drop_locations(root: etree._Element) -> None:
+    """Keep the validators from loading what the file names as its schema."""
+    for element in root.iter("*"):
+        for name in _LOCATIONS:
+            if name in element.attrib:
+                del element.attrib[name]
+
+
+def _plain(schema: etree.XMLSchema) -> list[SchemaProblem]:
+    """The problems in the words of the validator."""
+    errors = cast("Iterable[etree._LogEntry]", schema.error_log)
+    return [SchemaProblem(e.line, None, e.path or "/", re.sub(r"\{.*?\}", "", e.message)) for e in errors]
+
+
+def _quoted(names: Sequence[str]) -> str:
+    return ", ".join(f'"{name}"' for name in names)
+
+
+def _nearest(name: str, allowed: Sequence[str]) -> str | None:
+    """Advice which name might have been meant, or which there are."""
+    close = get_close_matches(name, allowed, n=1)
+    if close:
+        return f'did you mean "{close[0]}"?'
+    return f"allowed: {_quoted(sorted(allowed))}" if allowed else None
+
+
+def _is_of_class(error: xmlschema.XMLSchemaValidationError) -> bool:
+    """Whether the class of an element is wrong or missing."""
+    reason = error.reason or ""
+    return _CANNOT_SUBSTITUTE in reason or reason.endswith(_IS_ABSTRACT)
+
+
+def _repeats(error: xmlschema.XMLSchemaValidationError) -> bool:
+    """Whether the error is said of the parent of a faulty element."""
+    from xmlschema.validators import XsdGroup
+
+    return _CANNOT_SUBSTITUTE in (error.reason or "") and isinstance(error.validator, XsdGroup)
+
+
+class _Explanation:
+    """Finds the problems of an invalid file one by one and puts them into words."""
+
+    def __init__(self, root: etree._Element, declared: Facts) -> None:
+        self.root = root
+        self.declared = declared
+        #: Elements of unknown or wrong class: nothing can be said about what they have and contain.
+        self.opaque: set[etree._Element] = set()
+
+    def findings(self) -> list[_Finding]:
+        """All problems found, in no particular order; none if only the schema validator sees them."""
+        if self.root.tag != f"{{{self.declared.namespace}}}Amalthea":
+            return [(self.root, self._wrong_root)]
+        found = list(self._unknown_classes())
+        for error in _explaining_schema(self.declared.version).iter_errors(self.root):
+            element = cast("etree._Element", error.invalid_child if error.invalid_tag else error.elem)
+            if not self._hidden(element) and not _repeats(error):
+                found.append((element, partial(self._words, element, error)))
+                if _is_of_class(error):
+                    self.opaque.add(element)
+        return found
+
+    def _hidden(self, element: etree._Element) -> bool:
+        return bool(self.opaque) and (element in self.opaque or any(e in self.opaque for e in element.iterancestors()))
+
+    def _wrong_root(self) -> _Words:
+        name = etree.QName(self.root)
+        if name.namespace == self.declared.namespace:
+            return f'the root element is "{name.localname}"', 'only "Amalthea" can be the root element'
+        other = (name.namespace or "").removeprefix(NAMESPACE_PREFIX)
+        advice = f"it is a file of AMALTHEA {other}" if other in held_versions() else f'expected: "{self.declared.namespace}"'
+        return f'the namespace of the root element is "{name.namespace or ""}"', advice
+
+    def _unknown_classes(self) -> Iterator[_Finding]:
+        """Elements of a class that does not exist or has no instances; their `xsi:type` is taken away."""
+        for element in self.root.iter("*"):
+            text = element.get(f"{_XSI}type")
+            if text is None:
+                continue
+            prefix, _, name = text.strip().rpartition(":")
+            fact = self.declared.classes.get(name)
+            if fact is not None and not fact.abstract and element.nsmap.get(prefix or None) == self.declared.namespace:
+                continue
+            what = "an abstract class" if fact and fact.abstract else f"no class of AMALTHEA {self.declared.version}"
+            yield element, partial(self._unknown_class, element, name, f'xsi:type="{text}" is {what}')
+            del element.attrib[f"{_XSI}type"]
+            self.opaque.add(element)
+
+    def _unknown_class(self, element: etree._Element, name: str, reason: str) -> _Words:
+        return reason, self._class_advice(element, name)
+
+    def _class_advice(self, element: etree._Element, name: str) -> str | None:
+        expected = self._declared_class(element)
+        if not expected:
+            return None
+        prefix = self.root.prefix or "am"
+        return _nearest(f"{prefix}:{name}", [f"{prefix}:{c}" for c in self.declared.concrete_subtypes(expected)])
+
+    def _feature(self, element: etree._Element) -> FeatureFact | None:
+        """The feature that an element stands for."""
+        parent = element.getparent()
+        owner = self._class_of(parent) if parent is not None else None
+        return self.declared.feature(owner, element.tag) if owner else None
+
+    def _declared_class(self, element: etree._Element) -> str:
+        """The class that the feature of an element declares, "" where there is no such feature."""
+        feature = self._feature(element)
+        return feature.type if feature else ""
+
+    def _class_of(self, element: etree._Element) -> str | None:
+        """The class of an element, None for a bare reference."""
+        if element is self.root:
+            return "Amalthea"
+        text = element.get(f"{_XSI}type")
+        if text:
+            return text.strip().rpartition(":")[2]
+        feature = self._feature(element)
+        return feature.type if feature and feature.kind is Kind.CONTAINMENT else None
+
+    def _names(self, class_name: str | None, *kinds: Kind) -> list[str]:
+        """What an object of a class may have, or a bare reference."""
+        if class_name is None:
+            return ["href"] if Kind.ATTRIBUTE in kinds else []
+        return [f.name for f in self.declared.features(class_name) if f.stored and f.kind in kinds]
+
+    def _words(self, element: etree._Element, error: xmlschema.XMLSchemaValidationError) -> _Words:
+        reason = error.reason or ""
+        if error.invalid_tag:
+            return self._unknown_child(element)
+        if _CANNOT_SUBSTITUTE in reason:
+            return self._wrong_class(element)
+        if reason.endswith(_IS_ABSTRACT):
+            return self._missing_class(element)
+        if match := re.match(r"'(.*)' attribute not allowed", reason):
+            return self._unknown_attribute(element, match[1])
+        if match := re.match(r"attribute (\S+?)=['\"]", reason):
+            return self._wrong_value(element, match[1])
+        if reason.startswith("character data"):
+            return "text between the tags, where only elements are allowed", None
+        return reason, None
+
+    def _unknown_child(self, element: etree._Element) -> _Words:
+        owner = self._class_of(cast("etree._Element", element.getparent()))
+        name = etree.QName(element).localname
+        written = f"{element.prefix}:{name}" if element.prefix else name
+        advice = _nearest(name, self._names(owner, Kind.CONTAINMENT, Kind.REFERENCE))
+        return f'{owner or "a reference"} has no element "{written}"', advice
+
+    def _unknown_attribute(self, element: etree._Element, name: str) -> _Words:
+        owner = self._class_of(element)
+        advice = _nearest(name, self._names(owner, Kind.ATTRIBUTE, Kind.REFERENCE))
+        return f'{owner or "a reference"} has no attribute "{name.replace(_XMI, "xmi:")}"', advice
+
+    def _wrong_class(self, element: etree._Element) -> _Words:
+        name = self._class_of(element) or ""
+        reason = f'xsi:type is {name}, but "{element.tag}" holds objects of class {self._declared_class(element)}'
+        return reason, self._class_advice(element, name)
+
+    def _missing_class(self, element: etree._Element) -> _Words:
+        reason = f"xsi:type is missing: {self._declared_class(element)} is an abstract class"
+        return reason, self._class_advice(element, "")
+
+    def _wrong_value(self, element: etree._Element, name: str) -> _Words:
+        value = element.get(name)
+        feature = self.declared.feature(self._class_of(element) or "", name)
+        what, advice = self._value_advice(feature.type if feature else "")
+        return f'attribute {name}="{value}" is not {what}', advice
+
+    def _value_advice(self, type_name: str) -> tuple[str, str | None]:
+        """What a value of a type has to be, and which or what kind of values that are."""
+        if type_name in self.declared.enums:
+            return f"a literal of {type_name}", f"allowed: {_quoted(self.declared.enums[type_name].literals)}"
+        if type_name == "EBoolean":
+            return "a truth value", 'allowed: "true", "false"'
+        if type_name == "Address":
+            return "an address", 'allowed: hexadecimal numbers such as "0x1a" and decimal numbers such as "26"'
+        if type_name in _WHOLE_NUMBERS:
+            return _WHOLE_NUMBERS[type_name], None
+        number = self.declared.numbers.get(type_name)
+        if number is None:
+            return "a number", None
+        kind = "number" if number.java_type == "double" else "whole number"
+        return f"a {kind} {'greater than' if number.exclusive else 'of at least'} {number.minimum}", None
