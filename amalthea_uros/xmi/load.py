@@ -40,7 +40,7 @@ def load(*paths: StrPath, max_size: int = MAX_SIZE) -> Model:
     results: list[ReadResult] = []
     refused: list[Finding] = []
     with _paused_garbage_collection():
-        for path in _files(paths):
+        for path in model_files(paths):
             try:
                 results.append(read(path, read_text(path, max_size)))
             except ReadError as error:
@@ -68,7 +68,13 @@ def _paused_garbage_collection() -> Iterator[None]:
             gc.enable()
 
 
-def _files(paths: Iterable[StrPath]) -> list[Path]:
+def model_files(paths: Iterable[StrPath]) -> list[Path]:
+    """The files behind paths: a folder stands for the `.amxmi` files in it.
+
+    Raises
+    ------
+    ReadError : a folder has none.
+    """
     found: dict[Path, None] = {}
     for path in map(Path, paths):
         if path.is_dir():

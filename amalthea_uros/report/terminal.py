@@ -1,0 +1,82 @@
+"""Text for a terminal: findings with their source line, tables."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from typing import IO
+
+from amalthea_uros.diagnostics import Finding, Location, Severity
+
+#: Longer source lines are shown in part; scheduler descriptions have a thousand characters.
+SNIPPET_WIDTH = 100
+
+_COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
+
+
+class Terminal:
+    """Writes to a stream, in colour if it is a terminal and `NO_COLOR` is not set."""
+
+    def __init__(self, stream: IO[str]) -> None:
+        self.stream = stream
+        self.coloured = stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+    def line(self, text: str = "") -> None:
+        """Write one line."""
+        self.stream.write(text.rstrip() + "\n")
+
+    def style(self, text: str, code: str) -> str:
+        """The text in an ANSI style ("1" bold, "2" dim, "31" red ...), if colours are on."""
+        return f"\x1b[{code}m{text}\x1b[0m" if self.coloured and text else text
+
+    def heading(self, text: str) -> None:
+        """Write a heading with an empty line before it."""
+        self.line()
+        self.line(self.style(text, "1"))
+
+    def findings(self, findings: Iterable[Finding]) -> None:
+        """Write findings: place, rule and message, the source line with a caret, what to do."""
+        for finding in findings:
+            where = f"{self.style(str(finding.location), '1')}: " if finding.location else ""
+            severity = self.style(f"{finding.rule} {finding.severity}", _COLOURS[finding.severity])
+            self.line(f"{where}{severity}: {finding.message}")
+            if finding.location:
+                self.snippet(finding.location)
+            if finding.help:
+                self.line(f"  {self.style('help:', '36')} {finding.help}")
+
+    def snippet(self, location: Location) -> None:
+        """Write the source line of a place and a caret below."""
+        if location.text is None or location.line is None or location.column is None:
+            return
+        text, column = _excerpt(location.text.replace("\t", " "), location.column - 1)
+        number = str(location.line)
+        self.line(f"  {self.style(f'{number} |', '34')} {text}")
+        self.line(f"  {self.style(' ' * len(number) + ' |', '34')} {' ' * column}{self.style('^', '31')}")
+
+    def table(self, headings: Sequence[str], rows: Iterable[Sequence[object]], right: Sequence[int] = ()) -> None:
+        """Write rows in columns that are as wide as needed.
+
+        Parameters
+        ----------
+        right : columns that are aligned to the right
+        """
+        cells = [[str(cell) for cell in row] for row in rows]
+        widths = [max(map(len, column)) for column in zip(headings, *cells, strict=True)]
+        for is_heading, row in [(True, list(headings)), *((False, row) for row in cells)]:
+            padded = [
+                cell.rjust(width) if i in right else cell.ljust(width)
+                for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+            ]
+            text = "  ".join(padded).rstrip()
+            self.line("  " + (self.style(text, "2") if is_heading else text))
+
+
+def _excerpt(text: str, column: int) -> tuple[str, int]:
+    """The part of a line around a column that fits, and the column in it."""
+    if len(text) <= SNIPPET_WIDTH:
+        return text, column
+    start = max(0, min(column - SNIPPET_WIDTH // 3, len(text) - SNIPPET_WIDTH))
+    end = start + SNIPPET_WIDTH
+    before, after = ("..." if start else ""), ("..." if end < len(text) else "")
+    return f"{before}{text[start:end]}{after}", column - start + len(before)
