@@ -35,7 +35,7 @@ class Output(NamedTuple):
         write_text(self.path, FileText(text.getvalue()))
 
 
-class OutputType(click.ParamType):
+class OutputType(click.ParamType[Output]):
     """`json` or `json=result.json`."""
 
     name = "FORMAT[=FILE]"
