@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from synthesis.plan import Plan
 
 #: No application (with the controller that it may need) has more elements.
-LARGEST = 900
+LARGEST = 700
 
 _PER_CONTROLLER = 24
 _SIZES = (8, 8, 16, 16, 32, 64, 128, 1024)
