@@ -36,7 +36,9 @@ class Object:
 
     def add(self, feature: str, *children: Object) -> None:
         """Appends to a feature of many values."""
-        self.values[feature] = [*self.objects(feature), *children]
+        known = self.objects(feature)
+        known.extend(children)
+        self.values[feature] = known
 
     def objects(self, feature: str) -> list[Object]:
         """The children or the targets of a feature."""
