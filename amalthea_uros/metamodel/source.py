@@ -16,6 +16,7 @@ from typing import NamedTuple
 from amalthea_uros.metamodel.element import Element
 
 
+_BEYOND_ASCII = re.compile(r"[^\x00-\x7f]+")
 _TAG_NAME = re.compile(r"<[^\s/>]+")
 _ATTRIBUTE = re.compile(r"""\s+(?P<name>[^\s=/>]+)\s*=\s*(?P<quoted>"[^"]*"|'[^']*')""")
 
@@ -56,8 +57,7 @@ class Source:
     zip_entry : name of the entry if the file was a ZIP, else None
     prefixes : names of the special attributes
     elements : every object read from the text, in its order
-    starts : offset in `text` of the start tag of each of them
-    ends : offset behind its content: of the end tag, or behind the tag of an empty element
+    byte_starts, byte_ends : as `starts` and `ends`, but counted in bytes of UTF-8
     """
 
     text: str
@@ -66,8 +66,36 @@ class Source:
     zip_entry: str | None = None
     prefixes: Prefixes = Prefixes()
     elements: Sequence[Element] = ()
-    starts: Sequence[int] = ()
-    ends: Sequence[int] = ()
+    byte_starts: Sequence[int] = ()
+    byte_ends: Sequence[int] = ()
+
+    @cached_property
+    def starts(self) -> Sequence[int]:
+        """Offset in `text` of the start tag of each object."""
+        return self._characters(self.byte_starts)
+
+    @cached_property
+    def ends(self) -> Sequence[int]:
+        """Offset behind the content of each object: of the end tag, or behind the tag of an empty element."""
+        return self._characters(self.byte_ends)
+
+    def _characters(self, byte_offsets: Sequence[int]) -> Sequence[int]:
+        return byte_offsets if self.text.isascii() else list(map(self.character_offset, byte_offsets))
+
+    @cached_property
+    def _shifts(self) -> tuple[list[int], list[int]]:
+        """Behind each run of characters outside ASCII: the offset in bytes, and by how much characters are behind."""
+        offsets, shifts = [0], [0]
+        for run in _BEYOND_ASCII.finditer(self.text):
+            shift = shifts[-1] + len(run[0].encode()) - len(run[0])
+            offsets.append(run.end() + shift)
+            shifts.append(shift)
+        return offsets, shifts
+
+    def character_offset(self, byte_offset: int) -> int:
+        """An offset in bytes of UTF-8, at the start or end of a tag, as an offset in characters."""
+        offsets, shifts = self._shifts
+        return byte_offset - shifts[bisect_right(offsets, byte_offset) - 1]
 
     @cached_property
     def index(self) -> dict[Element, int]:

@@ -139,6 +139,23 @@ _LITERALS = {
 }
 
 
+class Memo(dict[str, Any]):
+    """Values parsed before, by text: a model has thousands of values, but few different ones."""
+
+    #: Beyond, new texts are parsed each time: a look-up that rarely hits is not worth its memory.
+    MOST = 10_000
+
+    def __init__(self, parse: Callable[[str], Any]) -> None:
+        super().__init__()
+        self._parse = parse
+
+    def __missing__(self, text: str) -> Any:
+        value = self._parse(text)
+        if len(self) < self.MOST:
+            self[text] = value
+        return value
+
+
 def literal_of(declared: Facts, type_name: str) -> Literal:
     """How values of an Ecore type are spelled in one AMALTHEA version."""
     if type_name in declared.enums:

@@ -9,7 +9,7 @@ from amalthea_uros.metamodel import classes
 from amalthea_uros.metamodel.element import Element, features_of
 from amalthea_uros.metamodel.factfile import FeatureFact, Kind
 from amalthea_uros.metamodel.versions import Facts, facts
-from amalthea_uros.xmi.literals import Literal, literal_of
+from amalthea_uros.xmi.literals import Literal, Memo, literal_of
 
 
 class FeaturePlan:
@@ -67,7 +67,7 @@ class FeaturePlan:
             self.target = getattr(classes, fact.type)
             self.target_is_abstract = declared.classes[fact.type].abstract
         self.is_string = fact.type == "EString"
-        self.parse = self.literal.parse if self.literal and not self.is_string else None
+        self.parse = Memo(self.literal.parse).__getitem__ if self.literal and not self.is_string else None
         #: Plans of the objects that may stand here, by class name; filled by the reader as it meets them.
         self.typed: dict[str | None, ClassPlan | None] = {}
 

@@ -57,20 +57,10 @@ class PendingReference(NamedTuple):
     is_href: bool
 
 
-class Frame(NamedTuple):
-    """An open element.
-
-    Attributes
-    ----------
-    element, plan : the object and how it is read, None for an `href` element
-    place : where the object stands in document order, -1 for an `href` element
-    held : by feature name, what was read so far: the list of parts or of `href` texts; True where there can be no more
-    """
-
-    element: Any
-    plan: Any
-    place: int
-    held: dict[str, Any]
+#: An open element: its object and plan (None for an `href` element), where the object stands in document order (else -1), and by
+#: feature name what was read in it so far: the list of parts or of `href` texts, or True where there can be no more. A plain tuple,
+#: one is made for every element.
+Frame = tuple[Any, Any, int, dict[str, Any]]
 
 
 class ReadResult(NamedTuple):
@@ -157,22 +147,14 @@ class _Reader:
         assert isinstance(root, Amalthea)
         assert header is not None
         document = Document(root, header.version, self.path)
-        document.source = source = self.source()
+        prefixes = Prefixes(header.xmi_id, header.xsi_type, header.type_prefix)
+        content = self.content
+        document.source = source = Source(
+            content.text, header.version, content.encoding, content.zip_entry, prefixes, self.elements, self.starts, self.ends
+        )
         document.prolog, document.epilog = self.prolog, self.epilog
         findings = [remark.finding(self.path, source) for remark in self.remarks]
         return ReadResult(document, self.references, self.referables, self.xmi_ids, findings)
-
-    def source(self) -> Source:
-        text, offsets = self.content.text, [self.starts, self.ends]
-        if not text.isascii():
-            marks = [remark.offset for remark in self.remarks]
-            *offsets, marks = _character_offsets(self.encoded, self.starts, self.ends, marks)
-            for remark, offset in zip(self.remarks, marks, strict=True):
-                remark.offset = offset
-        header = self.header
-        assert header is not None
-        spelling = Prefixes(header.xmi_id, header.xsi_type, header.type_prefix)
-        return Source(text, header.version, self.content.encoding, self.content.zip_entry, spelling, self.elements, *offsets)
 
     @cached_property
     def encoded(self) -> bytes:
@@ -194,7 +176,7 @@ class _Reader:
         assert plan is not None
         root = _new(plan.cls)
         _set(root, "_container", None)
-        self.stack.append(Frame(root, plan, 0, {}))
+        self.stack.append((root, plan, 0, {}))
         self.elements.append(root)
         self.starts.append(self.offset)
         self.ends.append(0)
@@ -245,7 +227,7 @@ class _Reader:
                 _set(parent, feature_name, element)
             _set(element, "_container", parent)
             own_held: dict[str, Any] = {}
-            stack.append(_tuple(Frame, (element, plan, len(elements), own_held)))
+            stack.append((element, plan, len(elements), own_held))
             add_element(element)
             add_start(parser.CurrentByteIndex)
             add_end(0)
@@ -296,15 +278,16 @@ class _Reader:
             self.start_unknown(feature.xml_name)
             return
         text = href.partition("#")[2] or href
-        texts = frame.held.get(feature.name)
+        holder, _, _, held = frame
+        texts = held.get(feature.name)
         if texts is None:
-            texts = frame.held[feature.name] = []
-            self.references.append(PendingReference(frame.element, feature, texts, True))
+            texts = held[feature.name] = []
+            self.references.append(PendingReference(holder, feature, texts, True))
         elif texts is True or not feature.many:
             self.start_second(feature)
             return
         texts.append(text)
-        self.stack.append(Frame(None, None, -1, {}))
+        self.stack.append((None, None, -1, {}))
 
     # What the metamodel does not know
 
@@ -316,7 +299,7 @@ class _Reader:
         self.skip()
 
     def start_misplaced(self, feature: FeaturePlan, type_name: str | None) -> None:
-        where, target = type(self.stack[-1].element).__name__, feature.target.__name__
+        where, target = type(self.stack[-1][0]).__name__, feature.target.__name__
         if type_name is None:
             message = f"<{feature.xml_name}> in {where} has no xsi:type, but {target} is abstract"
             hint = "Add xsi:type to say which object it is. "
@@ -327,7 +310,7 @@ class _Reader:
         self.skip()
 
     def start_second(self, feature: FeaturePlan) -> None:
-        where = type(self.stack[-1].element).__name__
+        where = type(self.stack[-1][0]).__name__
         message = f"{where} takes only one <{feature.xml_name}>, this is a second one"
         if feature.is_reference and feature.many:
             message = f"{feature.xml_name!r} of {where} stands as an attribute and as an element"
@@ -374,7 +357,7 @@ class _Reader:
         """Keep what has no place in the metamodel at the element that is open."""
         if self.skipped_depth:
             return
-        holder = next((frame.element for frame in reversed(self.stack) if frame.element is not None), None)
+        holder = next((element for element, *_ in reversed(self.stack) if element is not None), None)
         if holder is not None:
             self.loose.setdefault(holder, []).append(raw)
         else:
@@ -411,8 +394,7 @@ class _Reader:
         self.remarks.add(rule, severity, message, help_text, self.offset, attribute)
 
     def refuse(self, rule: str, message: str, help_text: str, offset: int | None = None) -> ReadError:
-        at = len(self.encoded[: self.offset if offset is None else offset].decode(errors="ignore"))
-        where = location(self.path, Source(self.content.text), at)
+        where = location(self.path, Source(self.content.text), self.offset if offset is None else offset)
         return ReadError([Finding(rule, Severity.ERROR, message, where, help_text)])
 
     def refuse_doctype(self, *_declaration: Any) -> None:
@@ -428,18 +410,8 @@ class _Reader:
             return self.refuse("XMI002", "this is not XML", "AMALTHEA models are XML files, plain or zipped.", 0)
         reason = expat.errors.messages[error.code]
         if self.stack and reason == expat.errors.XML_ERROR_NO_ELEMENTS:
-            frame = next(frame for frame in reversed(self.stack) if frame.element is not None)
-            line = self.encoded.count(b"\n", 0, self.starts[frame.place]) + 1
-            reason = f"the file ends in the middle, the {type(frame.element).__name__} of line {line} is still open"
+            element, _, place, _ = next(frame for frame in reversed(self.stack) if frame[0] is not None)
+            line = self.encoded.count(b"\n", 0, self.starts[place]) + 1
+            reason = f"the file ends in the middle, the {type(element).__name__} of line {line} is still open"
         return self.refuse("XMI002", f"not well-formed XML: {reason}", "", self.parser.ErrorByteIndex)
 
-
-def _character_offsets(encoded: bytes, *offset_lists: list[int]) -> list[list[int]]:
-    """Offsets in UTF-8 bytes -> offsets in characters."""
-    found = {}
-    at_byte = at_character = 0
-    for offset in sorted({offset for offsets in offset_lists for offset in offsets}):
-        at_character += len(encoded[at_byte:offset].decode())
-        at_byte = offset
-        found[offset] = at_character
-    return [[found[offset] for offset in offsets] for offsets in offset_lists]

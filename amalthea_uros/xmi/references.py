@@ -204,8 +204,8 @@ class _Resolver:
         source, path = document.source, document.path
         assert source
         assert path
-        offset = source.attribute_offset(source.starts[source.index[element]], attribute)
-        return Finding(rule, severity, message, location(path, source, offset), help_text, element.qualified_name)
+        where = location(path, source, source.byte_starts[source.index[element]], attribute)
+        return Finding(rule, severity, message, where, help_text, element.qualified_name)
 
 
 def _respell(text: str) -> str:

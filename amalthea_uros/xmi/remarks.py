@@ -26,9 +26,9 @@ class Remark:
 
     def finding(self, path: Path, source: Source) -> Finding:
         """The finding, at the first occurrence."""
-        offset = source.attribute_offset(self.offset, self.attribute) if self.attribute else self.offset
+        where = location(path, source, self.offset, self.attribute)
         times = f" ({self.count} times, the first one is here)" if self.count > 1 else ""
-        return Finding(self.rule, self.severity, self.message + times, location(path, source, offset), self.help)
+        return Finding(self.rule, self.severity, self.message + times, where, self.help)
 
 
 class Remarks:
@@ -51,9 +51,10 @@ class Remarks:
         return iter(self._remarks.values())
 
 
-def location(path: Path, source: Source, offset: int) -> Location:
-    """An offset as a place to show."""
-    line, column = source.position(offset)
+def location(path: Path, source: Source, byte_offset: int, attribute: str = "") -> Location:
+    """A tag, given by its offset in bytes of UTF-8, or one of its attributes, as a place to show."""
+    offset = source.character_offset(byte_offset)
+    line, column = source.position(source.attribute_offset(offset, attribute) if attribute else offset)
     return Location(path, line, column, source.line(line))
 
 
