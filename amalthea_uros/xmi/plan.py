@@ -12,6 +12,10 @@ from amalthea_uros.metamodel.versions import Facts, facts
 from amalthea_uros.xmi.literals import Literal, Memo, literal_of
 
 
+#: What stands in front of class names in `xsi:type`.
+TYPE_PREFIX = "am:"
+
+
 class FeaturePlan:
     """One feature of a class in one version.
 
@@ -36,9 +40,9 @@ class FeaturePlan:
         "omitted",
         "only_one",
         "parse",
+        "parts",
         "target",
         "target_is_abstract",
-        "typed",
         "xml_name",
     )
 
@@ -68,8 +72,8 @@ class FeaturePlan:
             self.target_is_abstract = declared.classes[fact.type].abstract
         self.is_string = fact.type == "EString"
         self.parse = Memo(self.literal.parse).__getitem__ if self.literal and not self.is_string else None
-        #: Plans of the objects that may stand here, by class name; filled by the reader as it meets them.
-        self.typed: dict[str | None, ClassPlan | None] = {}
+        #: Plans of the objects that may stand here, by `xsi:type`; filled as the reader meets them.
+        self.parts: dict[str | None, ClassPlan] = {}
 
 
 class ClassPlan:
@@ -82,7 +86,7 @@ class ClassPlan:
     children : by XML name, what may stand as a child element: parts, and references as `href`
     """
 
-    __slots__ = ("attributes", "children", "cls", "features", "referable", "xsi_type")
+    __slots__ = ("attributes", "children", "cls", "features", "referable")
 
     def __init__(self, class_name: str, declared: Facts) -> None:
         self.cls: type[Element] = getattr(classes, class_name)
@@ -95,7 +99,6 @@ class ClassPlan:
         self.attributes = {f.xml_name: f for f in self.features if f.literal or f.is_reference}
         self.children = {f.xml_name: f for f in self.features if not f.literal}
         self.referable = self.cls.is_referable
-        self.xsi_type = f"am:{class_name}"
 
 
 class Plans:
@@ -115,16 +118,18 @@ class Plans:
             plan = self._plans[class_name] = ClassPlan(class_name, self.facts)
         return plan
 
-    def part(self, feature: FeaturePlan, class_name: str | None) -> ClassPlan | None:
-        """The plan of an object that stands in a containment; None if the class (None: the declared one) cannot."""
-        try:
-            return feature.typed[class_name]
-        except KeyError:
-            plan = self.of(class_name or feature.target.__name__)
-            if plan is not None and feature.target.__name__ not in self.facts.supertypes(plan.cls.__name__):
-                plan = None
-            feature.typed[class_name] = plan
-            return plan
+    def part(self, feature: FeaturePlan, xsi_type: str | None) -> ClassPlan | None:
+        """The plan of an object that stands in a containment; None if its class (without `xsi:type` the declared one) cannot."""
+        name = feature.target.__name__
+        if xsi_type is not None:
+            prefix, mark, name = xsi_type.partition(":")
+            if prefix + mark != TYPE_PREFIX:
+                return None
+        plan = self.of(name)
+        if plan is None or feature.target.__name__ not in self.facts.supertypes(name):
+            return None
+        feature.parts[xsi_type] = plan
+        return plan
 
 
 @cache

@@ -6,7 +6,6 @@ beyond line 65,535, where libxml2 stops counting) can be told at any time.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
@@ -21,7 +20,7 @@ from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.header import Header, NotAModelError, read_header
-from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan, plans
+from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans
 from amalthea_uros.xmi.remarks import Remarks, did_you_mean, location
 
 #: Real models nest about 15 deep; far beyond, recursion over a model would fail with less clear words.
@@ -37,9 +36,6 @@ _tuple: Any = tuple.__new__  # makes a named tuple without its own constructor, 
 
 StartHandler = Callable[[str, dict[str, str]], None]
 EndHandler = Callable[[str], None]
-
-#: Finds text between the tags (and sometimes a `>` in an attribute, which does no harm).
-_TEXT = re.compile(r">\s*[^\s<]|<!\[CDATA\[").search
 
 
 class PendingReference(NamedTuple):
@@ -125,9 +121,7 @@ class _Reader:
         parser.StartDoctypeDeclHandler = self.refuse_doctype
         parser.StartElementHandler = self.start_root
         parser.EndElementHandler = self.end_part
-        if _TEXT(self.content.text):
-            # Most models have none, and a call for every line break would take a tenth of the time.
-            parser.CharacterDataHandler = self.characters
+        parser.CharacterDataHandler = self.characters
         parser.CommentHandler = self.comment
         parser.ProcessingInstructionHandler = self.processing_instruction
         try:
@@ -186,7 +180,8 @@ class _Reader:
     def start_handler(self, header: Header) -> StartHandler:
         """The handler of start tags, with everything it needs in local names: it runs once per element."""
         parser, stack, part = self.parser, self.stack, plans(header.facts_version).part
-        xmi_id, xsi_type, type_prefix = header.xmi_id, header.xsi_type, header.type_prefix
+        xmi_id, xsi_type = header.xmi_id, header.xsi_type
+        foreign_prefix = None if header.type_prefix == TYPE_PREFIX else header.type_prefix
         elements, add_element, add_start, add_end = self.elements, self.elements.append, self.starts.append, self.ends.append
         add_referable, add_id, add_reference = self.referables.append, self.xmi_ids.append, self.references.append
         loose = self.loose
@@ -201,9 +196,9 @@ class _Reader:
             if feature.is_reference:
                 self.start_href(stack[-1], feature, attributes)
                 return
-            if type_name is not None:
-                type_name = type_name.removeprefix(type_prefix)
-            plan = part(feature, type_name)
+            if foreign_prefix and type_name is not None:
+                type_name = TYPE_PREFIX + type_name.removeprefix(foreign_prefix)
+            plan = feature.parts.get(type_name) or part(feature, type_name)
             if plan is None:
                 self.start_misplaced(feature, type_name)
                 return
@@ -304,7 +299,8 @@ class _Reader:
             message = f"<{feature.xml_name}> in {where} has no xsi:type, but {target} is abstract"
             hint = "Add xsi:type to say which object it is. "
         else:
-            message = f"<{feature.xml_name}> in {where} must be a {target} of AMALTHEA {self.version}, not a {type_name}"
+            given = type_name.removeprefix(TYPE_PREFIX)
+            message = f"<{feature.xml_name}> in {where} must be a {target} of AMALTHEA {self.version}, not a {given}"
             hint = ""
         self.remark("XMI012", Severity.ERROR, message, hint + _KEPT)
         self.skip()

@@ -7,6 +7,7 @@ keeps the text, so that nothing is lost and everything else can go on.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cached_property
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -60,13 +61,14 @@ class _Resolver:
         self.shared: dict[str, list[Element]] = {}
         self.suffixes: dict[type[Element], str] = {}
         self.in_namespace = {p.holder for r in results for p in r.references if p.feature.target is Namespace}
-        self.by_xmi_id = [{xmi_id: element for element, xmi_id in reversed(result.xmi_ids)} for result in results]
+        #: The unique name of every object that can be referred to.
+        self.names: dict[Element, str] = {}
         self.stand_ins: dict[tuple[str, type[Element]], Element] = {}
         self.problems: dict[tuple[str, str], list[tuple[Document, Element, FeaturePlan]]] = {}
 
     def index(self, elements: Iterable[Element]) -> None:
         """Make objects known under their unique names."""
-        by_id, in_namespace, suffixes = self.by_id, self.in_namespace, self.suffixes
+        by_id, names, in_namespace, suffixes = self.by_id, self.names, self.in_namespace, self.suffixes
         for element in elements:
             cls = type(element)
             suffix = suffixes.get(cls)
@@ -74,6 +76,7 @@ class _Resolver:
                 suffix = suffixes[cls] = "" if has_prefix(cls) else TYPE_MARK + cls.__name__
             # Most names are just that; the general way takes three times as long.
             name = encode(element.name) + suffix if suffix and element not in in_namespace else unique_name(element)  # type: ignore[attr-defined]
+            names[element] = name
             first = by_id.setdefault(name, element)
             if first is not element:
                 self.shared.setdefault(name, [first]).append(element)
@@ -107,7 +110,7 @@ class _Resolver:
         if len(fitting) > 1:
             self.problems.setdefault(("XMI021", text), []).append((document, holder, feature))
         target = next((element for element in fitting if element.document is document), fitting[0])
-        canonical = unique_name(target)
+        canonical = self.names[target]
         if canonical != text:
             self.problems.setdefault(("XMI024", text), []).append((document, holder, feature))
             document.spellings[holder, f"{feature.xml_name} {text}"] = Spelling(text, canonical)
@@ -118,8 +121,7 @@ class _Resolver:
             return self.shared[text]
         if text in self.by_id:
             return [self.by_id[text]]
-        own_ids = next(ids for ids, result in zip(self.by_xmi_id, self.results, strict=True) if result.document is document)
-        found = own_ids.get(text)
+        found = self.by_xmi_id[document].get(text)
         if found is not None:
             return [found]
         # APP4MC before 0.9.7 encoded the whole id of some hrefs a second time; people type names as they are.
@@ -127,6 +129,14 @@ class _Resolver:
             if respelled in self.by_id:
                 return self.shared.get(respelled, [self.by_id[respelled]])
         return []
+
+    @cached_property
+    def by_xmi_id(self) -> dict[Document, dict[str, Element]]:
+        """Objects by the `xmi:id` in their file, the first of several; for files whose ids are no names."""
+        return {
+            result.document: {xmi_id: element for element, xmi_id in reversed(result.xmi_ids) if element in self.names}
+            for result in self.results
+        }
 
     def stand_in(self, text: str, feature: FeaturePlan) -> Element:
         """An unresolved object of the class that the text names, or else of the class that the feature expects."""
@@ -145,7 +155,7 @@ class _Resolver:
     def note_odd_ids(self, result: ReadResult) -> None:
         """Remember every `xmi:id` that is not the unique name, as after renaming an object with a text editor."""
         for element, xmi_id in result.xmi_ids:
-            canonical = unique_name(element) if element.is_referable else ""
+            canonical = self.names.get(element, "")
             if canonical == xmi_id:
                 continue
             result.document.spellings[element, "xmi:id"] = Spelling(xmi_id, canonical)
@@ -179,7 +189,7 @@ class _Resolver:
         if rule == "XMI023":
             return Severity.ERROR, f"{where}, but must refer to a {feature.target.__name__}", "It is kept, but counts as unresolved."
         target = self.candidates(self.results[0].document, text)[0]
-        return Severity.INFO, f"{where}, an odd spelling of {unique_name(target)!r}", "It is understood and kept."
+        return Severity.INFO, f"{where}, an odd spelling of {self.names[target]!r}", "It is understood and kept."
 
     def advice(self, text: str) -> str:
         from difflib import get_close_matches
