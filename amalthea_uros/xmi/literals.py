@@ -45,6 +45,8 @@ _DECIMAL = re.compile(r"[+-]?[0-9]+").fullmatch
 
 def parse_integer(text: str) -> int:
     """Decimal with an optional sign."""
+    if text.isdigit() and text.isascii():
+        return int(text)
     if not _DECIMAL(text.strip()):
         raise ValueError(f"{text!r} is not a whole number")
     return int(text)
@@ -143,7 +145,7 @@ class Memo(dict[str, Any]):
     """Values parsed before, by text: a model has thousands of values, but few different ones."""
 
     #: Beyond, new texts are parsed each time: a look-up that rarely hits is not worth its memory.
-    MOST = 10_000
+    MOST = 1_000
 
     def __init__(self, parse: Callable[[str], Any]) -> None:
         super().__init__()
