@@ -7,8 +7,10 @@ keeps the text, so that nothing is lost and everything else can go on.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 from urllib.parse import unquote
 
 from amalthea_uros.diagnostics import Finding, Severity
@@ -19,6 +21,9 @@ from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix
 from amalthea_uros.xmi.plan import FeaturePlan, plans
 from amalthea_uros.xmi.reader import PendingReference, ReadResult
 from amalthea_uros.xmi.remarks import location
+
+#: In larger models the search for a similar name takes too long.
+MOST_COMPARED = 20_000
 
 _set = object.__setattr__
 
@@ -53,6 +58,15 @@ def _referables(results: Sequence[ReadResult], cls: type[Element] | None) -> Ite
             yield from (e for e in result.referables if type(e) is cls)
 
 
+class Use(NamedTuple):
+    """A reference that has to be talked about."""
+
+    document: Document
+    holder: Element
+    feature: FeaturePlan
+    is_href: bool
+
+
 class _Resolver:
     def __init__(self, results: Sequence[ReadResult]) -> None:
         self.results = results
@@ -64,7 +78,7 @@ class _Resolver:
         #: The unique name of every object that can be referred to.
         self.names: dict[Element, str] = {}
         self.stand_ins: dict[tuple[str, type[Element]], Element] = {}
-        self.problems: dict[tuple[str, str], list[tuple[Document, Element, FeaturePlan]]] = {}
+        self.problems: dict[tuple[str, str], list[Use]] = {}
 
     def index(self, elements: Iterable[Element]) -> None:
         """Make objects known under their unique names."""
@@ -91,7 +105,7 @@ class _Resolver:
             for text in texts:
                 target = by_id.get(text)
                 if target is None or text in shared or not isinstance(target, feature.target):
-                    target = self.find(document, holder, feature, text)
+                    target = self.find(Use(document, holder, feature, is_href), text)
                     local = local and target.unresolved is None
                 targets.append(target)
                 local = local and (is_single or target.document is document)
@@ -100,21 +114,25 @@ class _Resolver:
             if is_href is local and targets:
                 document.href_features[holder, feature.xml_name] = is_href
 
-    def find(self, document: Document, holder: Element, feature: FeaturePlan, text: str) -> Element:
+    def find(self, use: Use, text: str) -> Element:
         """The target of a reference that the plain look-up does not settle."""
+        document, holder, feature, _ = use
         candidates = self.candidates(document, text)
         fitting = [element for element in candidates if isinstance(element, feature.target)]
         if not fitting:
-            self.problems.setdefault(("XMI023" if candidates else "XMI020", text), []).append((document, holder, feature))
+            self.problem("XMI023" if candidates else "XMI020", text, use)
             return self.stand_in(text, feature)
         if len(fitting) > 1:
-            self.problems.setdefault(("XMI021", text), []).append((document, holder, feature))
+            self.problem("XMI021", text, use)
         target = next((element for element in fitting if element.document is document), fitting[0])
         canonical = self.names[target]
         if canonical != text:
-            self.problems.setdefault(("XMI024", text), []).append((document, holder, feature))
+            self.problem("XMI024", text, use)
             document.spellings[holder, f"{feature.xml_name} {text}"] = Spelling(text, canonical)
         return target
+
+    def problem(self, rule: str, text: str, use: Use) -> None:
+        self.problems.setdefault((rule, text), []).append(use)
 
     def candidates(self, document: Document, text: str) -> list[Element]:
         if text in self.shared:
@@ -171,18 +189,38 @@ class _Resolver:
 
     def findings(self) -> list[Finding]:
         found = [finding for result in self.results for finding in result.findings]
+        elsewhere: dict[Document, list[tuple[str, Use]]] = {}
         for (rule, text), uses in self.problems.items():
-            document, holder, feature = uses[0]
+            document, holder, feature, is_href = uses[0]
+            hint = self.near(text) if rule == "XMI020" else ""
+            if rule == "XMI020" and is_href and not hint:
+                for use in uses:
+                    elsewhere.setdefault(use.document, []).append((text, use))
+                continue
             severity, message, help_text = self.describe(rule, text, feature)
             times = f" ({len(uses)} references, the first one is here)" if len(uses) > 1 else ""
-            found.append(self.finding(rule, severity, message + times, help_text, document, holder, feature.xml_name))
+            found.append(
+                self.finding(rule, severity, message + times, hint + help_text, document, holder, feature.xml_name)
+            )
+        found += [self.missing_files(document, uses) for document, uses in elsewhere.items()]
         paths = [result.document.path for result in self.results]
         return sorted(found, key=lambda f: _file_order(f, paths))
+
+    def missing_files(self, document: Document, uses: list[tuple[str, Use]]) -> Finding:
+        """One finding for all references that lead out of a document to files that were not read."""
+        texts = list(dict.fromkeys(text for text, _ in uses))
+        shown = ", ".join(map(repr, texts[:3])) + (f" and {len(texts) - 3} more" if len(texts) > 3 else "")
+        message = f"{_count(len(uses), 'reference')} to {_count(len(texts), 'object')} of other files: {shown}"
+        help_text = "Load the folder, or name the files that hold them too. The references are kept and written back."
+        _, first = uses[0]
+        return self.finding(
+            "XMI025", Severity.WARNING, message, help_text, document, first.holder, first.feature.xml_name
+        )
 
     def describe(self, rule: str, text: str, feature: FeaturePlan) -> tuple[Severity, str, str]:
         where = f"{feature.xml_name!r} refers to {text!r}"
         if rule == "XMI020":
-            return Severity.WARNING, f"{where}, which is not there", self.advice(text)
+            return Severity.WARNING, f"{where}, which is not there", "The reference is kept and written back."
         if rule == "XMI021":
             places = [self.place(element) for element in self.candidates(self.results[0].document, text)]
             return Severity.WARNING, f"{where}, which is there {len(places)} times", f"Taken: the first of {', '.join(places)}."
@@ -191,14 +229,10 @@ class _Resolver:
         target = self.candidates(self.results[0].document, text)[0]
         return Severity.INFO, f"{where}, an odd spelling of {self.names[target]!r}", "It is understood and kept."
 
-    def advice(self, text: str) -> str:
-        from difflib import get_close_matches
-
-        near = get_close_matches(text, self.by_id, n=1, cutoff=0.8) if len(self.by_id) < 20_000 else []
-        hint = f"Did you mean {near[0]!r}? " if near else ""
-        if len(self.results) == 1:
-            hint += "If it lives in another file of the model, load the folder or name that file too. "
-        return hint + "The reference is kept and written back."
+    def near(self, text: str) -> str:
+        """A hint which object might be meant."""
+        near = get_close_matches(text, self.by_id, n=1, cutoff=0.8) if len(self.by_id) < MOST_COMPARED else []
+        return f"Did you mean {near[0]!r}? " if near else ""
 
     def place(self, element: Element) -> str:
         document = element.document
@@ -216,6 +250,10 @@ class _Resolver:
         assert path
         where = location(path, source, source.byte_starts[source.index[element]], attribute)
         return Finding(rule, severity, message, where, help_text, element.qualified_name)
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number:,} {noun}" + ("" if number == 1 else "s")
 
 
 def _respell(text: str) -> str:

@@ -1,0 +1,234 @@
+"""What is in a model, as `amuros info` tells it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from amalthea_uros.metamodel.classes import (
+    EventChain,
+    EventChainItem,
+    IntegerObject,
+    InterProcessStimulus,
+    ISR,
+    ISRAllocation,
+    Memory,
+    PeriodicBurstStimulus,
+    PeriodicStimulus,
+    PeriodicSyntheticStimulus,
+    Process,
+    ProcessingUnit,
+    Quantity,
+    RelativePeriodicStimulus,
+    RunnableCall,
+    Scheduler,
+    SchedulerAllocation,
+    SchedulingParameter,
+    SingleStimulus,
+    Stimulus,
+    Task,
+    TaskAllocation,
+)
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.model import Document, Model
+from amalthea_uros.metamodel.naming import name_of
+
+
+@dataclass(frozen=True, slots=True)
+class DocumentSummary:
+    """One file: path, AMALTHEA version, number of objects, size in characters, whether it is zipped."""
+
+    path: str
+    version: str
+    objects: int
+    characters: int
+    compressed: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CoreSummary:
+    """A processing unit: where it is, its clock, and the schedulers that are responsible for it."""
+
+    name: str
+    structure: str
+    definition: str
+    frequency: str
+    schedulers: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessSummary:
+    """A task or ISR: what activates it, what decides about it, and the number of runnable calls in its activity graph."""
+
+    name: str
+    kind: str
+    stimuli: tuple[str, ...]
+    priority: str
+    preemption: str
+    scheduler: str
+    runnable_calls: int
+
+
+@dataclass(frozen=True, slots=True)
+class ChainSummary:
+    """An event chain from stimulus to response; `items` counts those of all levels."""
+
+    name: str
+    stimulus: str
+    response: str
+    items: int
+
+
+@dataclass(frozen=True, slots=True)
+class ModelSummary:
+    """A whole model.
+
+    Attributes
+    ----------
+    counts : number of objects per class, the most frequent first
+    unresolved : number of references for which no object was found
+    """
+
+    documents: tuple[DocumentSummary, ...]
+    counts: dict[str, int]
+    cores: tuple[CoreSummary, ...]
+    memories: tuple[str, ...]
+    processes: tuple[ProcessSummary, ...]
+    chains: tuple[ChainSummary, ...]
+    unresolved: int
+
+
+def summarise(model: Model) -> ModelSummary:
+    """Summary of a model."""
+    objects = list(model.walk())
+    counts = Counter(type(element).__name__ for element in objects)
+    ordered = sorted(counts.items(), key=lambda item: (-item[1], item[0]))
+    schedulers = _schedulers_of_cores(objects)
+    allocations = _allocations(objects)
+    return ModelSummary(
+        documents=tuple(_document(document) for document in model.documents),
+        counts=dict(ordered),
+        cores=tuple(_core(core, schedulers.get(core, ())) for core in _of(objects, ProcessingUnit)),
+        memories=tuple(name_of(memory) for memory in _of(objects, Memory)),
+        processes=tuple(_process(process, allocations.get(process)) for process in _of(objects, Process)),
+        chains=tuple(_chain(chain) for chain in _of(objects, EventChain)),
+        unresolved=sum(1 for _ in model.unresolved()),
+    )
+
+
+def _of(objects: list[Element], cls: type[Any]) -> Iterable[Any]:
+    return (element for element in objects if isinstance(element, cls))
+
+
+def _document(document: Document) -> DocumentSummary:
+    source = document.source
+    return DocumentSummary(
+        path=str(document.path or "unsaved"),
+        version=document.version,
+        objects=sum(1 for _ in document.root.walk()),
+        characters=len(source.text) if source else 0,
+        compressed=bool(source and source.zip_entry),
+    )
+
+
+def _schedulers_of_cores(objects: list[Element]) -> dict[Element, tuple[str, ...]]:
+    found: dict[Element, tuple[str, ...]] = {}
+    for allocation in _of(objects, SchedulerAllocation):
+        for core in allocation.responsibility:
+            found[core] = (*found.get(core, ()), _scheduler(allocation.scheduler))
+    return found
+
+
+def _scheduler(scheduler: Scheduler | None) -> str:
+    """Name and algorithm: `Scheduler_1 (OSEK)`."""
+    if scheduler is None:
+        return ""
+    algorithm = name_of(scheduler.definition)
+    older = scheduler.__dict__.get("scheduling_algorithm")
+    if not algorithm and isinstance(older, Element):
+        algorithm = type(older).__name__
+    return f"{name_of(scheduler)} ({algorithm})" if algorithm else name_of(scheduler)
+
+
+def _core(core: ProcessingUnit, schedulers: tuple[str, ...]) -> CoreSummary:
+    domain = core.frequency_domain
+    return CoreSummary(
+        name=name_of(core),
+        structure=name_of(core.container),
+        definition=name_of(core.definition),
+        frequency=quantity(domain.default_value) if domain else "",
+        schedulers=schedulers,
+    )
+
+
+def quantity(value: Quantity | None) -> str:
+    """A quantity as text: `10 ms`, `300 MHz`; "" for none."""
+    if value is None:
+        return ""
+    number = getattr(value, "value", None) or 0
+    unit = getattr(value, "unit", None)
+    text = f"{number:.12g}" if isinstance(number, float) else str(number)
+    return f"{text} {unit.value}" if unit else text
+
+
+def _allocations(objects: list[Element]) -> dict[Element, TaskAllocation | ISRAllocation]:
+    found: dict[Element, TaskAllocation | ISRAllocation] = {}
+    for allocation in _of(objects, TaskAllocation):
+        if allocation.task is not None:
+            found[allocation.task] = allocation
+    for allocation in _of(objects, ISRAllocation):
+        if allocation.isr is not None:
+            found[allocation.isr] = allocation
+    return found
+
+
+def _process(process: Process, allocation: TaskAllocation | ISRAllocation | None) -> ProcessSummary:
+    controller: Element | None = None
+    if isinstance(allocation, TaskAllocation):
+        controller = allocation.scheduler
+    elif allocation is not None:
+        controller = allocation.controller
+    preemption = process.preemption.value if isinstance(process, Task) and process.preemption else ""
+    return ProcessSummary(
+        name=name_of(process),
+        kind="isr" if isinstance(process, ISR) else "task",
+        stimuli=tuple(map(stimulus_text, process.stimuli)),
+        priority=_priority(allocation),
+        preemption=preemption,
+        scheduler=name_of(controller),
+        runnable_calls=sum(isinstance(part, RunnableCall) for part in process.walk()),
+    )
+
+
+def _priority(allocation: TaskAllocation | ISRAllocation | None) -> str:
+    if isinstance(allocation, ISRAllocation):
+        return str(allocation.priority) if allocation.priority is not None else ""
+    for parameter in allocation.scheduling_parameters if allocation else ():
+        if not isinstance(parameter, SchedulingParameter):
+            return str(parameter.priority) if parameter.priority is not None else ""
+        if name_of(parameter.key) == "priority" and isinstance(parameter.value, IntegerObject):
+            return str(parameter.value.value)
+    return ""
+
+
+def stimulus_text(stimulus: Stimulus) -> str:
+    """What a stimulus does, in a word or two: `every 10 ms, offset 2 ms`."""
+    if isinstance(stimulus, PeriodicStimulus | PeriodicSyntheticStimulus | PeriodicBurstStimulus):
+        offset = f", offset {quantity(stimulus.offset)}" if stimulus.offset and stimulus.offset.value else ""
+        what = "" if isinstance(stimulus, PeriodicStimulus) else f" ({type(stimulus).__name__})"
+        return f"every {quantity(stimulus.recurrence) or '?'}{offset}{what}"
+    if isinstance(stimulus, RelativePeriodicStimulus):
+        return f"sporadic ({name_of(stimulus)})"
+    if isinstance(stimulus, SingleStimulus):
+        return f"once at {quantity(stimulus.occurrence) or '?'}"
+    if isinstance(stimulus, InterProcessStimulus):
+        return f"triggered ({name_of(stimulus)})"
+    return f"{type(stimulus).__name__.removesuffix('Stimulus')} ({name_of(stimulus)})"
+
+
+def _chain(chain: EventChain) -> ChainSummary:
+    items = sum(isinstance(part, EventChainItem) for part in chain.walk())
+    return ChainSummary(name_of(chain), name_of(chain.stimulus), name_of(chain.response), items)
+
