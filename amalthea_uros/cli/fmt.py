@@ -49,6 +49,8 @@ def _differs(document: Document) -> bool:
 def _show_diff(document: Document) -> None:
     assert document.source
     old, new = document.source.text, document_text(document, canonical=True)
-    lines = unified_diff(old.splitlines(), new.splitlines(), str(document.path), f"{document.path} (canonical)", lineterm="", n=1)
+    lines = unified_diff(
+        old.splitlines(), new.splitlines(), str(document.path), f"{document.path} (canonical)", lineterm="", n=1
+    )
     for line in lines:
         click.echo(line)

@@ -21,8 +21,23 @@ def enum_class(name: str) -> type[StrEnum]:
     return found
 
 
-def default_value(declared: Facts, class_name: str, feature_name: str) -> Any:
-    """The default of an attribute (names as in files) in one version; None if it stands for nothing."""
+def defaults_of(version: str, cls: type[Element]) -> dict[str, Any]:
+    """What unset attributes of a class stand for in a version with facts, by Python name; those that stand for nothing are left out."""
+    found = _DEFAULTS.get((version, cls))
+    if found is None:
+        declared = facts(version)
+        found = _DEFAULTS[version, cls] = {}
+        for name, feature in features_of(cls).items():
+            value = _default_value(declared, cls.__name__, feature.xml_name)
+            if value is not None:
+                found[name] = value
+    return found
+
+
+_DEFAULTS: dict[tuple[str, type[Element]], dict[str, Any]] = {}
+
+
+def _default_value(declared: Facts, class_name: str, feature_name: str) -> Any:
     feature = declared.feature(class_name, feature_name)
     text = declared.default(feature) if feature else None
     if feature is None or text is None:
@@ -42,5 +57,5 @@ def effective(element: Element, feature_name: str) -> Any:
     if value is not None:
         return value
     document = element.document
-    declared = facts(nearest_version(document.version) if document else newest_version())
-    return default_value(declared, type(element).__name__, features_of(type(element))[feature_name].xml_name)
+    version = nearest_version(document.version) if document else newest_version()
+    return defaults_of(version, type(element)).get(feature_name)

@@ -231,4 +231,3 @@ def stimulus_text(stimulus: Stimulus) -> str:
 def _chain(chain: EventChain) -> ChainSummary:
     items = sum(isinstance(part, EventChainItem) for part in chain.walk())
     return ChainSummary(name_of(chain), name_of(chain.stimulus), name_of(chain.response), items)
-

@@ -47,7 +47,15 @@ def _processes(terminal: Terminal, summary: ModelSummary) -> None:
     tasks = sum(process.kind == "task" for process in summary.processes)
     terminal.heading(f"Tasks ({tasks}) and ISRs ({len(summary.processes) - tasks})")
     rows = [
-        (p.name, p.kind, "; ".join(p.stimuli) or "-", p.priority or "-", p.preemption or "-", p.scheduler or "-", p.runnable_calls)
+        (
+            p.name,
+            p.kind,
+            "; ".join(p.stimuli) or "-",
+            p.priority or "-",
+            p.preemption or "-",
+            p.scheduler or "-",
+            p.runnable_calls,
+        )
         for p in summary.processes
     ]
     headings = ("name", "kind", "activated", "priority", "preemption", "scheduler", "calls")

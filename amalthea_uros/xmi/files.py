@@ -90,9 +90,7 @@ def write_text(path: Path, content: FileText) -> None:
             with suppress(OSError):
                 Path(temporary).unlink()
         reason = error.strerror or str(error)
-        raise WriteError(
-            [Finding("XMI101", Severity.ERROR, f"the file cannot be written: {reason}", Location(path))]
-        ) from None
+        raise WriteError([Finding("XMI101", Severity.ERROR, f"the file cannot be written: {reason}", Location(path))]) from None
 
 
 def _umask() -> int:

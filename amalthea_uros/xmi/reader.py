@@ -21,7 +21,7 @@ from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.header import Header, NotAModelError, read_header
 from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans
-from amalthea_uros.xmi.remarks import Remarks, did_you_mean, location
+from amalthea_uros.xmi.remarks import Remark, Remarks, location
 
 #: Real models nest about 15 deep; far beyond, recursion over a model would fail with less clear words.
 MAX_DEPTH = 200
@@ -164,7 +164,7 @@ class _Reader:
             raise self.refuse(error.rule, error.message, error.help) from None
         if header.remark:
             added = "What that version added is kept and written back, but not understood."
-            self.remarks.add("XMI007", Severity.WARNING, header.remark, added, self.offset)
+            self.remark("XMI007", Severity.WARNING, header.remark, added)
         self.parser.StartElementHandler = self.start_part = self.start_handler(header)
         plan = plans(header.facts_version).of("Amalthea")
         assert plan is not None
@@ -289,8 +289,8 @@ class _Reader:
     def start_unknown(self, name: str) -> None:
         holder, plan, *_ = self.stack[-1]
         where = type(holder).__name__ if plan is not None else "a reference"
-        hint = did_you_mean(name, plan.children) if plan is not None else ""
-        self.remark("XMI010", Severity.WARNING, f"AMALTHEA {self.version} knows no <{name}> in {where}", hint + _KEPT)
+        message = f"AMALTHEA {self.version} knows no <{name}> in {where}"
+        self.remarks.add(Remark("XMI010", Severity.WARNING, message, _KEPT, self.offset), name, plan.children if plan else ())
         self.skip()
 
     def start_misplaced(self, feature: FeaturePlan, type_name: str | None) -> None:
@@ -369,7 +369,7 @@ class _Reader:
         if key.startswith("xmlns"):
             return
         message = f"AMALTHEA {self.version} knows no attribute {key!r} of {type(element).__name__}"
-        self.remark("XMI011", Severity.WARNING, message, did_you_mean(key, plan.attributes) + _KEPT, key)
+        self.remarks.add(Remark("XMI011", Severity.WARNING, message, _KEPT, self.offset, key), key, plan.attributes)
 
     def no_value(self, element: Element, key: str, value: str, error: ValueError) -> None:
         extras_of(element).attributes[key] = value
@@ -387,7 +387,7 @@ class _Reader:
         return self.header.facts_version if self.header else ""
 
     def remark(self, rule: str, severity: Severity, message: str, help_text: str, attribute: str = "") -> None:
-        self.remarks.add(rule, severity, message, help_text, self.offset, attribute)
+        self.remarks.add(Remark(rule, severity, message, help_text, self.offset, attribute))
 
     def refuse(self, rule: str, message: str, help_text: str, offset: int | None = None) -> ReadError:
         where = location(self.path, Source(self.content.text), self.offset if offset is None else offset)
@@ -410,4 +410,3 @@ class _Reader:
             line = self.encoded.count(b"\n", 0, self.starts[place]) + 1
             reason = f"the file ends in the middle, the {type(element).__name__} of line {line} is still open"
         return self.refuse("XMI002", f"not well-formed XML: {reason}", "", self.parser.ErrorByteIndex)
-

@@ -22,7 +22,7 @@ from amalthea_uros.xmi.plan import FeaturePlan, plans
 from amalthea_uros.xmi.reader import PendingReference, ReadResult
 from amalthea_uros.xmi.remarks import location
 
-#: In larger models the search for a similar name takes too long.
+#: After so many comparisons no more similar names are searched: it would take longer than reading.
 MOST_COMPARED = 20_000
 
 _set = object.__setattr__
@@ -79,6 +79,7 @@ class _Resolver:
         self.names: dict[Element, str] = {}
         self.stand_ins: dict[tuple[str, type[Element]], Element] = {}
         self.problems: dict[tuple[str, str], list[Use]] = {}
+        self.comparisons = 0
 
     def index(self, elements: Iterable[Element]) -> None:
         """Make objects known under their unique names."""
@@ -183,7 +184,9 @@ class _Resolver:
             else:
                 message = f"a {type(element).__name__} has an xmi:id, {xmi_id!r}, but cannot be referred to"
                 help_text = "It is kept and written back."
-            result.findings.append(self.finding("XMI022", Severity.INFO, message, help_text, result.document, element, "xmi:id"))
+            result.findings.append(
+                self.finding("XMI022", Severity.INFO, message, help_text, result.document, element, "xmi:id")
+            )
 
     # Findings
 
@@ -199,9 +202,7 @@ class _Resolver:
                 continue
             severity, message, help_text = self.describe(rule, text, feature)
             times = f" ({len(uses)} references, the first one is here)" if len(uses) > 1 else ""
-            found.append(
-                self.finding(rule, severity, message + times, hint + help_text, document, holder, feature.xml_name)
-            )
+            found.append(self.finding(rule, severity, message + times, hint + help_text, document, holder, feature.xml_name))
         found += [self.missing_files(document, uses) for document, uses in elsewhere.items()]
         paths = [result.document.path for result in self.results]
         return sorted(found, key=lambda f: _file_order(f, paths))
@@ -213,9 +214,7 @@ class _Resolver:
         message = f"{_count(len(uses), 'reference')} to {_count(len(texts), 'object')} of other files: {shown}"
         help_text = "Load the folder, or name the files that hold them too. The references are kept and written back."
         _, first = uses[0]
-        return self.finding(
-            "XMI025", Severity.WARNING, message, help_text, document, first.holder, first.feature.xml_name
-        )
+        return self.finding("XMI025", Severity.WARNING, message, help_text, document, first.holder, first.feature.xml_name)
 
     def describe(self, rule: str, text: str, feature: FeaturePlan) -> tuple[Severity, str, str]:
         where = f"{feature.xml_name!r} refers to {text!r}"
@@ -225,13 +224,18 @@ class _Resolver:
             places = [self.place(element) for element in self.candidates(self.results[0].document, text)]
             return Severity.WARNING, f"{where}, which is there {len(places)} times", f"Taken: the first of {', '.join(places)}."
         if rule == "XMI023":
-            return Severity.ERROR, f"{where}, but must refer to a {feature.target.__name__}", "It is kept, but counts as unresolved."
+            return (
+                Severity.ERROR,
+                f"{where}, but must refer to a {feature.target.__name__}",
+                "It is kept, but counts as unresolved.",
+            )
         target = self.candidates(self.results[0].document, text)[0]
         return Severity.INFO, f"{where}, an odd spelling of {self.names[target]!r}", "It is understood and kept."
 
     def near(self, text: str) -> str:
         """A hint which object might be meant."""
-        near = get_close_matches(text, self.by_id, n=1, cutoff=0.8) if len(self.by_id) < MOST_COMPARED else []
+        self.comparisons += len(self.by_id)
+        near = get_close_matches(text, self.by_id, n=1, cutoff=0.8) if self.comparisons < MOST_COMPARED else []
         return f"Did you mean {near[0]!r}? " if near else ""
 
     def place(self, element: Element) -> str:

@@ -11,11 +11,11 @@ from amalthea_uros.metamodel.source import Source
 
 
 class Remark:
-    """A finding in the making."""
+    """A finding in the making, about the tag at an offset (in bytes of UTF-8) or one of its attributes."""
 
     __slots__ = ("attribute", "count", "help", "message", "offset", "rule", "severity")
 
-    def __init__(self, rule: str, severity: Severity, message: str, help_text: str, offset: int, attribute: str) -> None:
+    def __init__(self, rule: str, severity: Severity, message: str, help_text: str, offset: int, attribute: str = "") -> None:
         self.rule = rule
         self.severity = severity
         self.message = message
@@ -37,15 +37,15 @@ class Remarks:
     def __init__(self) -> None:
         self._remarks: dict[tuple[str, str], Remark] = {}
 
-    def add(
-        self, rule: str, severity: Severity, message: str, help_text: str, offset: int, attribute: str = ""
-    ) -> None:
-        """Note an oddity of the tag at `offset`, or of one of its attributes."""
-        known = self._remarks.get((rule, message))
-        if known is None:
-            self._remarks[rule, message] = Remark(rule, severity, message, help_text, offset, attribute)
-        else:
+    def add(self, remark: Remark, name: str = "", known_names: Iterable[str] = ()) -> None:
+        """Note an oddity; if it is about an unknown name, a known one that is near is suggested."""
+        known = self._remarks.get((remark.rule, remark.message))
+        if known is not None:
             known.count += 1
+            return
+        if name:
+            remark.help = did_you_mean(name, known_names) + remark.help
+        self._remarks[remark.rule, remark.message] = remark
 
     def __iter__(self) -> Iterator[Remark]:
         return iter(self._remarks.values())

@@ -210,7 +210,9 @@ class Speller:
             found = self._targets[element] = (unique_name(element), document is self.document)
             if document is None and element.unresolved is None:
                 self.findings.append(
-                    self.finding(element, f"{element!r} is referred to, but is not part of the model", "Add it, or clear the references.")
+                    self.finding(
+                        element, f"{element!r} is referred to, but is not part of the model", "Add it, or clear the references."
+                    )
                 )
         return found
 
@@ -259,7 +261,11 @@ class Speller:
     # Findings
 
     def refuse_target(self, element: Element, feature: FeaturePlan, value: object) -> None:
-        expected = f"a list of {feature.target.__name__}" if feature.many and not isinstance(value, Element) else feature.target.__name__
+        expected = (
+            f"a list of {feature.target.__name__}"
+            if feature.many and not isinstance(value, Element)
+            else feature.target.__name__
+        )
         self.refuse(element, f"{feature.name!r} takes {expected}, not {value!r}")
 
     def refuse(self, element: Element, message: str) -> None:

@@ -155,9 +155,7 @@ class Weaver:
         """References as we would write them, as far as they were odd but understood."""
         spellings = self.document.spellings
         found = (spellings.get((element, f"{key} {reference}")) for reference in references)
-        return [
-            spelling.canonical if spelling else reference for spelling, reference in zip(found, references, strict=True)
-        ]
+        return [spelling.canonical if spelling else reference for spelling, reference in zip(found, references, strict=True)]
 
     # Content
 
