@@ -15,13 +15,18 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from amalthea_uros.diagnostics import Finding, Location
-    from amalthea_uros.errors import AmurosError, ReadError, WriteError
+    from amalthea_uros.diagnostics import Finding as Finding
+    from amalthea_uros.diagnostics import Location as Location
+    from amalthea_uros.errors import AmurosError as AmurosError
+    from amalthea_uros.errors import ReadError as ReadError
+    from amalthea_uros.errors import WriteError as WriteError
     from amalthea_uros.metamodel.classes import *  # noqa: F403
-    from amalthea_uros.metamodel.element import Element
-    from amalthea_uros.metamodel.model import Document, Model, Reference
-    from amalthea_uros.xmi.load import load
-    from amalthea_uros.xmi.save import save
+    from amalthea_uros.metamodel.element import Element as Element
+    from amalthea_uros.metamodel.model import Document as Document
+    from amalthea_uros.metamodel.model import Model as Model
+    from amalthea_uros.metamodel.model import Reference as Reference
+    from amalthea_uros.xmi.load import load as load
+    from amalthea_uros.xmi.save import save as save
 
 __version__ = "0.1.0"
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 sys.path.insert(0, str(Path(__file__).parent))
-from union import Union, UnionClass, constant_case, union  # noqa: E402
+from union import Union, UnionClass, constant_case, union
 
 ROOT = Path(__file__).parent.parent
 TARGET = ROOT / "amalthea_uros" / "metamodel" / "classes"

@@ -1,0 +1,1 @@
+"""AMALTHEA: what its versions declare, typed classes for their union, models of them."""

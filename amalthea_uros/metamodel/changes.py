@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 from amalthea_uros.metamodel.classes.sw import CallArgument, RunnableCall
 from amalthea_uros.metamodel.element import Element, path_of, references_of

@@ -9,12 +9,11 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
 from amalthea_uros.metamodel.element import Element
-
 
 _BEYOND_ASCII = re.compile(r"[^\x00-\x7f]+")
 _TAG_NAME = re.compile(r"<[^\s/>]+")
@@ -64,7 +63,7 @@ class Source:
     version: str = ""
     encoding: str = "utf-8"
     zip_entry: str | None = None
-    prefixes: Prefixes = Prefixes()
+    prefixes: Prefixes = field(default=Prefixes())
     elements: Sequence[Element] = ()
     byte_starts: Sequence[int] = ()
     byte_ends: Sequence[int] = ()

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from amalthea_uros.metamodel.classes import (
+    ISR,
     EventChain,
     EventChainItem,
     IntegerObject,
     InterProcessStimulus,
-    ISR,
     ISRAllocation,
     Memory,
     PeriodicBurstStimulus,

@@ -11,7 +11,6 @@ from amalthea_uros.metamodel.factfile import FeatureFact, Kind
 from amalthea_uros.metamodel.versions import Facts, facts
 from amalthea_uros.xmi.literals import Literal, Memo, literal_of
 
-
 #: What stands in front of class names in `xsi:type`.
 TYPE_PREFIX = "am:"
 

@@ -193,6 +193,7 @@ class Speller:
         return is_local
 
     def checked_targets(self, element: Element, feature: FeaturePlan, value: Any) -> list[Element]:
+        """The targets that fit; the others become findings."""
         if not isinstance(value, list):
             self.refuse_target(element, feature, value)
             return []
@@ -237,6 +238,7 @@ class Speller:
         return found
 
     def hrefs(self, element: Element, feature: FeaturePlan, value: Any) -> list[Child]:
+        """The `href` elements of a reference, none if it stands as an attribute."""
         targets = [t for t in (value if isinstance(value, list) else [value]) if isinstance(t, feature.target)]
         is_local = all(self.target(target)[1] for target in targets)
         if self.is_attribute(element, feature, is_local):
@@ -253,6 +255,7 @@ class Speller:
         return Href(feature, text, f'<{feature.xml_name}{typed} href="amlt:/#{escape(text)}"/>')
 
     def check_part(self, element: Element, feature: FeaturePlan, part: Any) -> bool:
+        """Whether an object may be a part; if not, that becomes a finding."""
         if isinstance(part, feature.target):
             return True
         self.refuse_target(element, feature, part)
@@ -261,6 +264,7 @@ class Speller:
     # Findings
 
     def refuse_target(self, element: Element, feature: FeaturePlan, value: object) -> None:
+        """Note a value of the wrong class."""
         expected = (
             f"a list of {feature.target.__name__}"
             if feature.many and not isinstance(value, Element)
@@ -269,9 +273,11 @@ class Speller:
         self.refuse(element, f"{feature.name!r} takes {expected}, not {value!r}")
 
     def refuse(self, element: Element, message: str) -> None:
+        """Note what is wrong with an object."""
         self.findings.append(self.finding(element, message, ""))
 
     def finding(self, element: Element, message: str, help_text: str) -> Finding:
+        """A finding that names the object."""
         name = place(element)
         path = self.document.path
         return Finding("XMI100", Severity.ERROR, f"{name}: {message}", Location(path) if path else None, help_text, name)
