@@ -36,7 +36,7 @@ def resolve(results: Sequence[ReadResult]) -> list[Finding]:
     for result in results:
         for pending in result.references:
             target = pending.feature.target
-            wave = 0 if target is Namespace else 2 if target is CallArgument else 1
+            wave = 0 if target is Namespace else 2 if issubclass(CallArgument, target) else 1
             waves[wave].append((result, pending))
     resolver.index(_referables(results, Namespace))
     resolver.link_all(waves[0])
