@@ -29,7 +29,10 @@ class Changes:
 
 
 def spread_renames(documents: Iterable[tuple[Element, Changes]]) -> None:
-    """Mark the holders of references to renamed objects as touched, in all documents (root and changes) of a model."""
+    """Mark as touched, in all documents (root and changes) of a model, what holds the name of a renamed object.
+
+    That are its parts, whose own names may be made from it, and the holders of references to it and to them.
+    """
     documents = tuple(documents)
     renamed = {element for _, changes in documents for element in changes.renamed}
     affected: set[Element] = set()
@@ -37,6 +40,8 @@ def spread_renames(documents: Iterable[tuple[Element, Changes]]) -> None:
         affected |= {part for element in renamed for part in element.walk()}
         for root, changes in documents:
             for holder in root.walk():
+                if holder in affected and holder.is_referable:
+                    changes.touched.update(path_of(holder))
                 for name, value in references_of(holder):
                     if not _meets(value, affected):
                         continue
