@@ -86,6 +86,10 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
     if version_key(version) < version_key(OLDEST_HELD):
         raise NotAModelError("XMI006", f"the model is of AMALTHEA {version}, older than {OLDEST_HELD}", _MIGRATE)
     prefixes = {uri: key.partition(":")[2] for key, uri in attributes.items() if key.startswith("xmlns:")}
+    for usual, uri in (("xmi", XMI_NAMESPACE), ("xsi", XSI_NAMESPACE)):
+        given = attributes.get(f"xmlns:{usual}", uri)
+        if given != uri:
+            raise NotAModelError("XMI005", f"the prefix {usual!r} stands for {given!r}", f'It has to be xmlns:{usual}="{uri}".')
     xmi, xsi = prefixes.get(XMI_NAMESPACE, "xmi"), prefixes.get(XSI_NAMESPACE, "xsi")
     return Header(
         version=version,

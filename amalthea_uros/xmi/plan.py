@@ -75,6 +75,11 @@ class FeaturePlan:
         self.parts: dict[str | None, ClassPlan] = {}
 
 
+def reference_texts(feature: FeaturePlan, value: str) -> list[str]:
+    """The ids in an attribute. A single reference is one id, also if somebody left the blanks of a name in it."""
+    return value.split() if feature.many or not value.strip() else [value.strip()]
+
+
 class ClassPlan:
     """One class in one version.
 

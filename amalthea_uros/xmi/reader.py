@@ -19,8 +19,8 @@ from amalthea_uros.metamodel.element import ContainmentList, Element, extras_of
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.xmi.files import FileText
-from amalthea_uros.xmi.header import Header, NotAModelError, read_header
-from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans
+from amalthea_uros.xmi.header import XSI_NAMESPACE, Header, NotAModelError, read_header
+from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
 from amalthea_uros.xmi.remarks import Remark, Remarks, location
 
 #: Real models nest about 15 deep; far beyond, recursion over a model would fail with less clear words.
@@ -162,6 +162,9 @@ class _Reader:
             self.header = header = read_header(name, attributes)
         except NotAModelError as error:
             raise self.refuse(error.rule, error.message, error.help) from None
+        if "xsi:type" in self.content.text and "xmlns:xsi" not in self.content.text:
+            message = "not well-formed XML: the prefix 'xsi' is not declared"
+            raise self.refuse("XMI002", message, f'Add xmlns:xsi="{XSI_NAMESPACE}" to the root element.')
         if header.remark:
             added = "What that version added is kept and written back, but not understood."
             self.remark("XMI007", Severity.WARNING, header.remark, added)
@@ -237,7 +240,8 @@ class _Reader:
                     else:
                         self.unknown_attribute(element, plan, key, value)
                 elif attribute.is_reference:
-                    add_reference(_tuple(PendingReference, (element, attribute, value.split(), False)))
+                    texts = reference_texts(attribute, value)
+                    add_reference(_tuple(PendingReference, (element, attribute, texts, False)))
                     own_held[attribute.name] = True
                 elif attribute.parse is None:
                     _set(element, attribute.name, value)

@@ -16,7 +16,7 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Source, attributes_of_tag
 from amalthea_uros.xmi.escape import escape, unescape
-from amalthea_uros.xmi.plan import ClassPlan
+from amalthea_uros.xmi.plan import ClassPlan, reference_texts
 from amalthea_uros.xmi.spell import Child, Href, Part, Speller
 
 _NAME = re.compile(r"[^\s/>]+")
@@ -144,7 +144,8 @@ class Weaver:
             is_own = element is self.document.root and (extras is None or key not in extras.attributes)
             return is_own or bool(extras and extras.attributes.get(key) == value)
         if feature.is_reference:
-            return wanted is not None and self.respelled(element, key, value.split()) == wanted.split()
+            written = self.respelled(element, key, reference_texts(feature, value))
+            return written == reference_texts(feature, wanted or "")
         assert feature.literal
         current = element.__dict__.get(feature.name)
         if current is None:

@@ -41,7 +41,8 @@ def document_text(document: Document, canonical: bool = False) -> str:
     writer = _Writer(document, source)
     text = writer.document()
     if writer.speller.findings:
-        raise WriteError(writer.speller.findings)
+        # What differs from the source is spelled twice.
+        raise WriteError(dict.fromkeys(writer.speller.findings))
     return text
 
 
