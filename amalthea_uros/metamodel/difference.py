@@ -223,7 +223,7 @@ class _Comparison:
             rest = list(new[k:m])
             for part in old[i:j]:
                 match = next((p for p in rest if type(p) is type(part)), None)
-                if match is None or old_prints.count(self.new_prints.of(match)):
+                if match is None:
                     gone.append(part)
                 else:
                     rest.remove(match)

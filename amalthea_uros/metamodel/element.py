@@ -154,32 +154,34 @@ class Element:
         for name, value in features.items():
             setattr(self, name, value)
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        feature = features_of(type(self)).get(name)
-        if feature is None:
-            raise AttributeError(_unknown_feature(type(self), name))
-        if feature.many:
-            value = list(value)
-            held = self.__dict__.get(name)
-            if held and feature.kind == "containment":
-                held.clear()
-            value = feature.new_list(self, value)
-        elif feature.kind != "attribute":
-            old = self.__dict__.get(name)
-            if old is value:
-                return
-            if old is not None and feature.contains(old):
-                release(old)
-            if value is not None and feature.contains(value):
-                adopt(self, value)
-        _set(self, name, value)
-        touch(self, renames=name in _NAMING)
+    if not TYPE_CHECKING:  # else mypy would allow the assignment of any name
 
-    def __delattr__(self, name: str) -> None:
-        feature = features_of(type(self)).get(name)
-        if feature is None:
-            raise AttributeError(_unknown_feature(type(self), name))
-        setattr(self, name, [] if feature.many else None)
+        def __setattr__(self, name: str, value: Any) -> None:
+            feature = features_of(type(self)).get(name)
+            if feature is None:
+                raise AttributeError(_unknown_feature(type(self), name))
+            if feature.many:
+                value = list(value)
+                held = self.__dict__.get(name)
+                if held and feature.kind == "containment":
+                    held.clear()
+                value = feature.new_list(self, value)
+            elif feature.kind != "attribute":
+                old = self.__dict__.get(name)
+                if old is value:
+                    return
+                if old is not None and feature.contains(old):
+                    release(old)
+                if value is not None and feature.contains(value):
+                    adopt(self, value)
+            _set(self, name, value)
+            touch(self, renames=name in _NAMING)
+
+        def __delattr__(self, name: str) -> None:
+            feature = features_of(type(self)).get(name)
+            if feature is None:
+                raise AttributeError(_unknown_feature(type(self), name))
+            setattr(self, name, [] if feature.many else None)
 
     def __repr__(self) -> str:
         name = self.__dict__.get("name")

@@ -170,7 +170,7 @@ def quantity(value: Quantity | None) -> str:
     number = getattr(value, "value", None) or 0
     unit = getattr(value, "unit", None)
     text = f"{number:.12g}" if isinstance(number, float) else str(number)
-    return f"{text} {unit.value}" if unit else text
+    return text if unit is None or unit.name == "UNDEFINED" else f"{text} {unit.value}"
 
 
 def _allocations(objects: list[Element]) -> dict[Element, TaskAllocation | ISRAllocation]:

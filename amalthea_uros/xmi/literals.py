@@ -52,7 +52,7 @@ def parse_integer(text: str) -> int:
     return int(text)
 
 
-_ADDRESS = re.compile(r"(?:0[xX]|#)(?P<hex>[0-9a-fA-F]+)|0(?P<octal>[0-7]+)|(?P<decimal>[0-9]+)").fullmatch
+_ADDRESS = re.compile(r"(?:0[xX]|#)(?P<hex>[0-9a-fA-F]+)|0(?P<octal>[0-7]+)|(?P<decimal>0|[1-9][0-9]*)").fullmatch
 
 
 def parse_address(text: str) -> int:

@@ -239,7 +239,9 @@ class TestWriting:
 
     def test_what_the_version_does_not_have_is_named(self, model):
         model[amuros.Runnable, "Act"].activity_graph = amuros.ActivityGraph(items=[amuros.ModeSwitch()])
-        with pytest.raises(amuros.WriteError, match=r"Act\.activityGraph\.items\[0\]: class ModeSwitch does not exist in AMALTHEA 3\.0\.0"):
+        with pytest.raises(
+            amuros.WriteError, match=r"Act\.activityGraph\.items\[0\]: class ModeSwitch does not exist in AMALTHEA 3\.0\.0"
+        ):
             amuros.save(model)
 
     def test_a_failing_write_leaves_the_old_file(self, model, tmp_path, monkeypatch):

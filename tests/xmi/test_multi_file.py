@@ -158,7 +158,7 @@ def test_a_removed_object_that_is_still_referred_to_is_not_written(folder):
     model = amuros.load(folder)
     task = model[Task, "T"]
     task.container.tasks.remove(task)
-    with pytest.raises(amuros.WriteError, match="'T'.*not part of the model"):
+    with pytest.raises(amuros.WriteError, match=r"'T'.*not part of the model"):
         amuros.save(model)
     assert texts(folder) == (SOFTWARE, MAPPING)
 
@@ -177,7 +177,9 @@ def prefixed(tmp_path):
     )
     users = Amalthea(
         hw_model=amuros.HWModel(structures=[HwStructure(name="Net", connections=[HwConnection(name="c", port1=port)])]),
-        sw_model=amuros.SWModel(tasks=[Task(name="T", activity_graph=amuros.ActivityGraph(items=[RunnableCall(runnable=member)]))]),
+        sw_model=amuros.SWModel(
+            tasks=[Task(name="T", activity_graph=amuros.ActivityGraph(items=[RunnableCall(runnable=member)]))]
+        ),
         components_model=amuros.ComponentsModel(
             systems=[
                 amuros.System(

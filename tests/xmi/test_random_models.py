@@ -4,10 +4,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from hypothesis import given
+from strategies import models
 from support import meaning
 
 import amalthea_uros as amuros
-from strategies import models
 
 
 def saved(model, path):

@@ -1,0 +1,129 @@
+"""The command line as its user sees it."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+from support import DATA
+
+import amalthea_uros
+
+BRAKE = DATA / "brake.amxmi"
+
+
+def amuros(*arguments, cwd=None):
+    command = [sys.executable, "-m", "amalthea_uros", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=cwd)
+
+
+@pytest.fixture
+def brake(tmp_path):
+    path = tmp_path / "brake.amxmi"
+    path.write_bytes(BRAKE.read_bytes())
+    return path
+
+
+def test_help_names_every_command():
+    run = amuros("--help")
+    assert run.returncode == 0
+    for command in ("diff", "fmt", "info"):
+        assert command in run.stdout
+        assert amuros(command, "--help").returncode == 0
+
+
+def test_help_imports_no_heavy_module():
+    code = "import sys; sys.argv = ['amuros', '--help']; from amalthea_uros.cli.main import main\ntry: main()\nfinally: print(*sys.modules)"
+    modules = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    heavy = {"lxml", "xmlschema", "numpy", "networkx", "pydantic", "jinja2", "amalthea_uros.metamodel", "amalthea_uros.xmi"}
+    assert heavy.isdisjoint(modules)
+
+
+def test_version():
+    assert amuros("--version").stdout == f"amuros, version {amalthea_uros.__version__}\n"
+
+
+def test_wrong_use():
+    assert amuros("infos").returncode == 2
+    assert amuros("info").returncode == 2
+    assert amuros("info", BRAKE, "--output", "yaml").returncode == 2
+
+
+def test_info():
+    run = amuros("info", BRAKE)
+    assert run.returncode == 0
+    assert "AMALTHEA 3.0.0, 18 objects" in run.stdout
+    assert "Brake (left)  task  every 10 ms, offset 500 us" in run.stdout
+
+
+def test_info_as_json_beside_the_text(tmp_path):
+    run = amuros("info", BRAKE, "--output", "text", "--output", f"json={tmp_path / 'info.json'}")
+    assert "Brake (left)" in run.stdout
+    result = json.loads((tmp_path / "info.json").read_text())
+    assert result["amuros"] == amalthea_uros.__version__
+    assert result["counts"]["Runnable"] == 2
+    (process,) = result["processes"]
+    assert (process["name"], process["kind"], process["runnable_calls"]) == ("Brake (left)", "task", 2)
+
+
+def test_info_shows_the_place_of_a_finding(brake):
+    brake.write_text(brake.read_text().replace('access="read"', 'acess="read"'))
+    run = amuros("info", brake)
+    assert run.returncode == 0
+    first, line, caret, advice = run.stderr.splitlines()
+    assert first == f"{brake}:12:66: XMI011 warning: AMALTHEA 3.0.0 knows no attribute 'acess' of LabelAccess"
+    assert line[caret.index("^") :].startswith("acess=")
+    assert advice == "  help: Did you mean 'access'? It is kept and written back, but not understood."
+
+
+def test_info_validates_against_the_schema(brake):
+    assert amuros("info", "--schema", brake).returncode == 0
+    brake.write_text(brake.read_text().replace('access="read"', 'access="peek"'))
+    run = amuros("info", "--schema", brake)
+    assert run.returncode == 1
+    assert 'XSD001 error: attribute access="peek" is not a literal of LabelAccessEnum' in run.stderr
+
+
+def test_fmt_rewrites_in_place(brake):
+    brake.write_text(brake.read_text().replace("      <", "\t<"))
+    assert amuros("fmt", "--check", brake).returncode == 1
+    diff = amuros("fmt", "--diff", brake)
+    assert diff.returncode == 1
+    assert "-\t<activityGraph>" in diff.stdout
+    assert amuros("fmt", brake).stdout == f"{brake}: rewritten\n"
+    assert brake.read_bytes() == BRAKE.read_bytes()
+    assert amuros("fmt", "--check", brake).returncode == 0
+
+
+def test_diff(brake):
+    assert amuros("diff", BRAKE, brake).stdout == "no differences in meaning\n"
+    brake.write_text(brake.read_text().replace('value="10" unit="ms"', 'value="20" unit="ms"'))
+    run = amuros("diff", BRAKE, brake, "--output", "text")
+    assert run.returncode == 1
+    assert run.stdout == "~ PeriodicStimulus T_10ms\n    recurrence: 10 ms -> 20 ms\n1 difference: 1 changed\n"
+
+
+def test_diff_as_json(brake):
+    brake.write_text(brake.read_text().replace("Pedal", "Lever"))
+    run = amuros("diff", BRAKE, brake, "--output", "json")
+    (change,) = json.loads(run.stdout)["changes"]
+    assert change["feature"] == "name"
+    assert (change["old"], change["new"]) == ("Pedal", "Lever")
+    assert change["new_location"] == f"{brake}:19:5"
+
+
+def test_a_closed_pipe_is_no_error():
+    command = f"{sys.executable} -m amalthea_uros info {BRAKE} | head -1"
+    run = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
+    assert run.stderr == ""
+
+
+def test_a_zipped_model(brake):
+    amalthea_uros.save(amalthea_uros.load(brake), compress=True)
+    assert brake.read_bytes()[:2] == b"PK"
+    assert "zipped" in amuros("info", brake).stdout
+    model = amalthea_uros.load(brake)
+    amalthea_uros.save(model)
+    assert brake.read_bytes()[:2] == b"PK"
+    amalthea_uros.save(model, compress=False)
+    assert brake.read_bytes() == BRAKE.read_bytes()

@@ -1,0 +1,23 @@
+"""Which room may import which: the rules of the design."""
+
+import pytest
+from pytest_archon import archrule
+
+PACKAGE = "amalthea_uros"
+
+
+@pytest.mark.parametrize(
+    ("room", "allowed"),
+    [
+        ("diagnostics", ()),
+        ("errors", ("diagnostics",)),
+        ("resources", ()),
+        ("metamodel", ("diagnostics",)),
+        ("xmi", ("diagnostics", "errors", "resources", "metamodel")),
+        ("report", ("diagnostics", "metamodel")),
+    ],
+)
+def test_a_room_imports_only_what_it_may(room, allowed):
+    rooms = ("cli", "diagnostics", "errors", "metamodel", "report", "resources", "xmi")
+    forbidden = [f"{PACKAGE}.{other}*" for other in rooms if other not in (*allowed, room)]
+    (archrule(room).match(f"{PACKAGE}.{room}*").should_not_import(*forbidden).check(PACKAGE, only_direct_imports=True))

@@ -1,0 +1,40 @@
+"""Every object and attribute knows its line and column."""
+
+from support import DATA
+
+import amalthea_uros as amuros
+from amalthea_uros import Label, Runnable
+
+
+def position(element, attribute=""):
+    source = element.document.source
+    start = source.starts[source.index[element]]
+    return tuple(source.position(source.attribute_offset(start, attribute) if attribute else start))
+
+
+def test_an_object_and_its_attributes():
+    model = amuros.load(DATA / "brake.amxmi")
+    assert position(model[Runnable, "Act"]) == (18, 5)
+    assert position(model[Runnable, "Act"], "callback") == (18, 54)
+
+
+def test_columns_count_characters(tmp_path):
+    path = tmp_path / "model.amxmi"
+    path.write_text((DATA / "brake.amxmi").read_text().replace('displayName=""', 'displayName="漢字 😀 é"'))
+    label = amuros.load(path)[Label, "Pedal"]
+    line = path.read_text().splitlines()[18]
+    assert position(label, "constant") == (19, line.index("constant") + 1)
+    assert position(label.size) == (20, 7)
+
+
+def test_beyond_the_line_at_which_libxml2_stops_counting(tmp_path):
+    path = tmp_path / "long.amxmi"
+    labels = "\n".join(f'    <labels name="L{i}"\n     constant="maybe"/>' for i in range(70_000))
+    text = (DATA / "brake.amxmi").read_text()
+    path.write_text(text.replace("  </swModel>", f"{labels}\n  </swModel>"))
+    model = amuros.load(path)
+    assert position(model[Label, "L69999"]) == (22 + 2 * 69_999, 5)
+    assert position(model[Label, "L69999"], "constant") == (23 + 2 * 69_999, 6)
+    (finding,) = model.findings
+    assert (finding.location.line, finding.location.column) == (23, 6)
+    assert "70000 times" in finding.message
