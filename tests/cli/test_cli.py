@@ -33,7 +33,10 @@ def test_help_names_every_command():
 
 
 def test_help_imports_no_heavy_module():
-    code = "import sys; sys.argv = ['amuros', '--help']; from amalthea_uros.cli.main import main\ntry: main()\nfinally: print(*sys.modules)"
+    code = (
+        "import sys; sys.argv = ['amuros', '--help']; from amalthea_uros.cli.main import main\n"
+        "try: main()\nfinally: print(*sys.modules)"
+    )
     modules = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     heavy = {"lxml", "xmlschema", "numpy", "networkx", "pydantic", "jinja2", "amalthea_uros.metamodel", "amalthea_uros.xmi"}
     assert heavy.isdisjoint(modules)

@@ -1,0 +1,69 @@
+"""Every example of the pages is executed, and every output compared."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support import ROOT
+
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "benchmarks").glob("*.md"))]
+BLOCK = re.compile(r"```(python|console)\n(.*?)```", re.DOTALL)
+
+
+@pytest.fixture
+def samples(tmp_path, monkeypatch):
+    for path in (ROOT / "samples").iterdir():
+        if path.is_file():
+            shutil.copy(path, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def printed(command: str) -> str:
+    scripts = str(Path(sys.executable).parent)
+    environment = os.environ | {"PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}", "NO_COLOR": "1"}
+    return subprocess.run(
+        command, shell=True, env=environment, text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    ).stdout
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_the_examples_of_a_page(page, samples):
+    names: dict[str, object] = {}
+    for language, text in BLOCK.findall(page.read_text()):
+        if language == "python":
+            exec(compile(text, str(page), "exec"), names)
+            continue
+        command, _, expected = text.partition("\n")
+        assert printed(command.removeprefix("$ ")) == expected
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_the_links_of_a_page(page):
+    for target in re.findall(r"\]\(([^)#]+)\)", page.read_text()):
+        assert (page.parent / target).exists(), target
+
+
+def test_every_finding_is_documented():
+    told = {
+        rule
+        for path in (ROOT / "amalthea_uros").rglob("*.py")
+        for rule in re.findall(r'"((?:XMI|XSD)\d{3})"', path.read_text())
+    }
+    documented = set(re.findall(r"^\| ((?:XMI|XSD)\d{3})", (ROOT / "docs" / "findings.md").read_text(), re.MULTILINE))
+    assert told == documented
+
+
+def test_the_sample_is_what_its_script_builds(tmp_path):
+    subprocess.run([sys.executable, ROOT / "samples" / "executor.py", tmp_path / "executor.amxmi"], check=True)
+    assert (tmp_path / "executor.amxmi").read_bytes() == (ROOT / "samples" / "executor.amxmi").read_bytes()
+
+
+def test_the_picture_shows_what_is_printed(tmp_path):
+    command = [sys.executable, ROOT / "tools" / "draw_terminal.py", tmp_path / "info.svg", "info", "executor.amxmi"]
+    subprocess.run(command, check=True)
+    assert (tmp_path / "info.svg").read_text() == (ROOT / "docs" / "images" / "info.svg").read_text()
