@@ -66,6 +66,12 @@ class Feature:
         """A list for the values of this feature."""
         return (ContainmentList if self.kind == "containment" else ReferenceList)(owner, values)
 
+    def copied(self, owner: Element, values: Iterable[Any]) -> list[Any]:
+        """A list for values whose container is the owner already."""
+        found: list[Any] = self.new_list(owner, ())
+        list.extend(found, values)
+        return found
+
     def contains(self, value: object) -> bool:
         """Whether an object held by this feature is part of its holder."""
         if self.kind == "either":
@@ -182,6 +188,29 @@ class Element:
             if feature is None:
                 raise AttributeError(_unknown_feature(type(self), name))
             setattr(self, name, [] if feature.many else None)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Element:
+        """A detached copy with copies of all parts; references to objects outside lead to the same objects."""
+        copies = {element: object.__new__(type(element)) for element in self.walk()}
+        for element, twin in copies.items():
+            holder = element._container
+            _set(twin, "_container", copies.get(holder) if holder is not None and element is not self else None)
+            for name, value in element.__dict__.items():
+                if isinstance(value, ReferenceList):
+                    value = features_of(type(twin))[name].copied(twin, [copies.get(item, item) for item in value])
+                elif isinstance(value, Element):
+                    value = copies.get(value, value)
+                elif isinstance(value, Extras):
+                    content = [(copies.get(anchor, anchor) if anchor else None, raw) for anchor, raw in value.content]
+                    value = Extras(dict(value.attributes), content)
+                _set(twin, name, value)
+        memo[id(self)] = copies[self]
+        return copies[self]
+
+    def __reduce_ex__(self, _protocol: SupportsIndex) -> Any:
+        raise TypeError(
+            f"{self!r} is neither pickled nor copied without its parts: use copy.deepcopy, or save and load the model"
+        )
 
     def __repr__(self) -> str:
         name = self.__dict__.get("name")

@@ -56,7 +56,7 @@ class Source:
     zip_entry : name of the entry if the file was a ZIP, else None
     prefixes : names of the special attributes
     elements : every object read from the text, in its order
-    byte_starts, byte_ends : as `starts` and `ends`, but counted in bytes of UTF-8
+    byte_starts, byte_ends : see `start` and `end`, but counted in bytes of UTF-8
     """
 
     text: str
@@ -68,18 +68,22 @@ class Source:
     byte_starts: Sequence[int] = ()
     byte_ends: Sequence[int] = ()
 
-    @cached_property
-    def starts(self) -> Sequence[int]:
-        """Offset in `text` of the start tag of each object."""
-        return self._characters(self.byte_starts)
+    def start(self, place: int) -> int:
+        """Offset in `text` of the start tag of the object at a place in `elements`."""
+        return self.character_offset(self.byte_starts[place])
+
+    def end(self, place: int) -> int:
+        """Offset behind the content of an object: of its end tag, or behind the tag of an empty element."""
+        return self.character_offset(self.byte_ends[place])
 
     @cached_property
-    def ends(self) -> Sequence[int]:
-        """Offset behind the content of each object: of the end tag, or behind the tag of an empty element."""
-        return self._characters(self.byte_ends)
+    def by_start(self) -> dict[int, int]:
+        """Offset of a start tag -> place of its object in `elements`."""
+        return {self.start(place): place for place in range(len(self.elements))}
 
-    def _characters(self, byte_offsets: Sequence[int]) -> Sequence[int]:
-        return byte_offsets if self.text.isascii() else list(map(self.character_offset, byte_offsets))
+    @cached_property
+    def _is_ascii(self) -> bool:
+        return self.text.isascii()
 
     @cached_property
     def _shifts(self) -> tuple[list[int], list[int]]:
@@ -93,6 +97,8 @@ class Source:
 
     def character_offset(self, byte_offset: int) -> int:
         """An offset in bytes of UTF-8, at the start or end of a tag, as an offset in characters."""
+        if self._is_ascii:
+            return byte_offset
         offsets, shifts = self._shifts
         return byte_offset - shifts[bisect_right(offsets, byte_offset) - 1]
 
@@ -110,6 +116,16 @@ class Source:
             starts.append(at)
             at = find("\n", at) + 1
         return starts
+
+    def position_of(self, element: Element, attribute: str = "") -> Position:
+        """Line and column of an object or of one of its attributes (by its XML name).
+
+        Raises
+        ------
+        KeyError : the object was not read from this text.
+        """
+        start = self.start(self.index[element])
+        return self.position(self.attribute_offset(start, attribute) if attribute else start)
 
     def position(self, offset: int) -> Position:
         """Line and column of an offset."""

@@ -64,5 +64,5 @@ def _location(element: Element | None) -> str | None:
     document = element.document if element is not None else None
     if element is None or document is None or document.source is None or element not in document.source.index:
         return None
-    line, column = document.source.position(document.source.starts[document.source.index[element]])
+    line, column = document.source.position_of(element)
     return f"{document.path}:{line}:{column}"

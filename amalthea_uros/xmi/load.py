@@ -20,13 +20,13 @@ SUFFIX = ".amxmi"
 StrPath = str | os.PathLike[str]
 
 
-def load(*paths: StrPath, max_size: int = MAX_SIZE) -> Model:
+def load(*paths: StrPath | Iterable[StrPath], max_size: int = MAX_SIZE) -> Model:
     """Read a model.
 
     Parameters
     ----------
-    paths : files (plain or zipped), or folders, which stand for all `.amxmi` files in them. Several files make one model, in
-        which every object can refer to every other
+    paths : files (plain or zipped), folders, which stand for all `.amxmi` files in them, or lists of such. Several files make
+        one model, in which every object can refer to every other
     max_size : bytes, unpacked, beyond which a file is refused
 
     Returns
@@ -40,7 +40,7 @@ def load(*paths: StrPath, max_size: int = MAX_SIZE) -> Model:
     results: list[ReadResult] = []
     refused: list[Finding] = []
     with _paused_garbage_collection():
-        for path in model_files(paths):
+        for path in model_files(_flat(paths)):
             try:
                 results.append(read(path, read_text(path, max_size)))
             except ReadError as error:
@@ -66,6 +66,14 @@ def _paused_garbage_collection() -> Iterator[None]:
     finally:
         if was_enabled:
             gc.enable()
+
+
+def _flat(paths: Iterable[StrPath | Iterable[StrPath]]) -> Iterator[StrPath]:
+    for path in paths:
+        if isinstance(path, str | os.PathLike):
+            yield path
+        else:
+            yield from path
 
 
 def model_files(paths: Iterable[StrPath]) -> list[Path]:

@@ -243,7 +243,7 @@ class _Resolver:
         assert document
         assert document.source
         assert document.path
-        line, _ = document.source.position(document.source.starts[document.source.index[element]])
+        line, _ = document.source.position_of(element)
         return f"{document.path.name}:{line}"
 
     def finding(

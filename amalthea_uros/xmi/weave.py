@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from functools import cached_property
 from typing import Any, NamedTuple
 
 from amalthea_uros.metamodel.element import Element
@@ -50,28 +49,23 @@ class Weaver:
         self.text = source.text
         self.speller = speller
 
-    @cached_property
-    def _by_start(self) -> dict[int, int]:
-        """Offset of a start tag -> place of its object in document order."""
-        return {start: place for place, start in enumerate(self.source.starts)}
-
     def end(self, place: int) -> int:
         """Offset behind an element."""
         source, text = self.source, self.text
-        end = source.ends[place]
+        end = source.end(place)
         # Behind the tag of an empty element, but at the end tag of one with content.
-        if text.startswith("/>", end - 2) and text.find("<", source.starts[place] + 1, end) < 0:
+        if text.startswith("/>", end - 2) and text.find("<", source.start(place) + 1, end) < 0:
             return end
         return text.index(">", end) + 1
 
     def stands_as(self, tag: str, place: int) -> bool:
         """Whether the object was the same kind of part when it was read."""
-        start = self.source.starts[place]
+        start = self.source.start(place)
         return self.text.startswith(tag, start + 1) and self.text[start + 1 + len(tag)] in " \t\r\n/>"
 
     def is_regular(self, children: list[Child], at: int, end: int, separator: str) -> bool:
         """Whether the content between two offsets is just these children, one after the other, laid out as EMF does."""
-        text, starts, index = self.text, self.source.starts, self.source.index
+        text, source, index = self.text, self.source, self.source.index
         for child in children:
             if not text.startswith(separator, at):
                 return False
@@ -82,7 +76,7 @@ class Weaver:
                 at += len(child.tag)
             else:
                 place = index.get(child.element)
-                if place is None or starts[place] != at or not self.stands_as(child.feature.xml_name, place):
+                if place is None or source.start(place) != at or not self.stands_as(child.feature.xml_name, place):
                     return False
                 at = self.end(place)
         return at <= end and text[at:end] == separator[: -len("  ")]
@@ -91,7 +85,7 @@ class Weaver:
 
     def tag(self, element: Element, plan: ClassPlan, wanted: dict[str, str], place: int) -> tuple[str, int]:
         """A start tag with the wanted attributes, without its `>` or `/>`, and the offset at which that stands."""
-        start = self.source.starts[place]
+        start = self.source.start(place)
         name = _NAME.match(self.text, start + 1)
         assert name
         at = name.end()
@@ -192,7 +186,7 @@ class Weaver:
         hrefs = [child for child in children if isinstance(child, Href)]
         while at < end:
             start = at
-            place = self._by_start.get(start)
+            place = self.source.by_start.get(start)
             if place is not None:
                 at = self.end(place)
                 part = parts.get(self.source.elements[place])

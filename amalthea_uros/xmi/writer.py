@@ -77,7 +77,7 @@ class _Writer:
         tag = f"{self.speller.prefixes.type_prefix}Amalthea"
         if self.source and self.weaver:
             place = self.index[self.root]
-            self.out.append(self.source.text[: self.source.starts[place]])
+            self.out.append(self.source.text[: self.source.start(place)])
             opening, at = self.weaver.tag(self.root, plan, {}, place)
             self.out.append(opening)
             self.woven_content(self.root, tag, children, "", place, at)
@@ -111,7 +111,7 @@ class _Writer:
         if self.weaver is None or self.source is None or (place is not None and not self.weaver.stands_as(tag, place)):
             place = None
         elif place is not None and element not in self.touched:
-            self.out.append(self.source.text[self.source.starts[place] : self.weaver.end(place)])
+            self.out.append(self.source.text[self.source.start(place) : self.weaver.end(place)])
             return
         plan = self.speller.plan(element)
         if plan is None:
@@ -124,7 +124,7 @@ class _Writer:
             self.fresh_content(element, tag, children, indent)
             return
         opening = f"<{tag}{attributes}"
-        start = self.source.starts[place]
+        start = self.source.start(place)
         at = start + len(opening)
         if not self.source.text.startswith(opening, start) or self.source.text[at] not in "/>":
             wanted = self.speller.attributes(feature, plan, element, shape)
@@ -169,7 +169,7 @@ class _Writer:
             else:
                 out.append("/>")
             return
-        content, end = at + 1, self.source.ends[place]
+        content, end = at + 1, self.source.end(place)
         if self.weaver.is_regular(children, content, end, separator):
             out.append(">")
             for child in children:

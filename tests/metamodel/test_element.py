@@ -12,6 +12,7 @@ from amalthea_uros import (
     HwPort,
     HwStructure,
     Label,
+    LabelAccess,
     Model,
     OSModel,
     PeriodicStimulus,
@@ -130,6 +131,30 @@ class TestContainment:
         parts = SWModel(labels=[Label(name=n) for n in "abc"]).labels
         assert type(copy.copy(parts)) is list
         assert parts[:1][0].container is not None
+
+
+class TestCopies:
+    def test_a_deep_copy_is_detached_and_complete(self):
+        runnable = Runnable(name="R")
+        group = Group(name="g", items=[RunnableCall(runnable=runnable)])
+        task = Task(name="T", activity_graph=ActivityGraph(items=[group]))
+        twin = copy.deepcopy(group)
+        assert (twin.name, twin.container, group.container) == ("g", None, task.activity_graph)
+        assert twin.items[0] is not group.items[0]
+        assert twin.items[0].container is twin
+        assert twin.items[0].runnable is runnable
+        twin.items.append(RunnableCall())
+        assert len(group.items) == 1
+
+    def test_references_within_lead_to_the_copies(self):
+        label = Label(name="L")
+        software = SWModel(labels=[label], runnables=[Runnable(activity_graph=ActivityGraph(items=[LabelAccess(data=label)]))])
+        twin = copy.deepcopy(software)
+        assert twin.runnables[0].activity_graph.items[0].data is twin.labels[0]
+
+    def test_a_shallow_copy_is_refused(self):
+        with pytest.raises(TypeError, match=r"use copy\.deepcopy"):
+            copy.copy(Task(name="T"))
 
 
 class TestLookup:

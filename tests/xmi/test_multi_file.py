@@ -72,8 +72,11 @@ def test_references_lead_to_the_other_file(folder):
 
 def test_order_and_naming_of_the_files_do_not_matter(folder):
     (folder / "sw.amxmi").rename(folder / "a.amxmi")
-    model = amuros.load(folder / "mapping.amxmi", folder / "a.amxmi")
-    assert next(model.all(TaskAllocation)).task is model[Task, "T"]
+    for model in (
+        amuros.load(folder / "mapping.amxmi", folder / "a.amxmi"),
+        amuros.load([str(folder / "a.amxmi"), folder / "mapping.amxmi"]),
+    ):
+        assert next(model.all(TaskAllocation)).task is model[Task, "T"]
 
 
 def test_what_is_odd_is_told(folder):

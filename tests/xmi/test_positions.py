@@ -7,9 +7,7 @@ from amalthea_uros import Label, Runnable
 
 
 def position(element, attribute=""):
-    source = element.document.source
-    start = source.starts[source.index[element]]
-    return tuple(source.position(source.attribute_offset(start, attribute) if attribute else start))
+    return tuple(element.document.source.position_of(element, attribute))
 
 
 def test_an_object_and_its_attributes():
