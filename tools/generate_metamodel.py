@@ -10,12 +10,10 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 sys.path.insert(0, str(Path(__file__).parent))
+from templating import ROOT, templates
 from union import Union, UnionClass, constant_case, union
 
-ROOT = Path(__file__).parent.parent
 TARGET = ROOT / "amalthea_uros" / "metamodel" / "classes"
 DESCRIPTIONS = ROOT / "tools" / "metamodel_descriptions.txt"
 
@@ -60,13 +58,7 @@ def imports(classes: list[UnionClass], merged: Union, bases: bool) -> dict[str, 
 def render() -> dict[str, str]:
     """File name -> text of every generated module."""
     merged = union()
-    environment = Environment(
-        loader=FileSystemLoader(ROOT / "templates"),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+    environment = templates()
     environment.filters["constant"] = constant_case
     by_module: dict[str, list[UnionClass]] = {}
     for cls in merged.classes.values():
@@ -98,7 +90,9 @@ def main(target: Path) -> None:
     target.mkdir(parents=True, exist_ok=True)
     for name, text in render().items():
         (target / name).write_text(text, encoding="utf-8")
-    subprocess.run([sys.executable, "-m", "ruff", "format", "--quiet", "--config", ROOT / "pyproject.toml", target], check=True)
+    # A feature is a line, however long.
+    command = [sys.executable, "-m", "ruff", "format", "--quiet", "--isolated", "--line-length", "180"]
+    subprocess.run([*command, target], check=True)
 
 
 if __name__ == "__main__":

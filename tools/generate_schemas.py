@@ -16,12 +16,11 @@ from itertools import combinations
 from pathlib import Path
 from typing import NamedTuple
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from templating import ROOT, templates
 
 from amalthea_uros.metamodel.factfile import FeatureFact, Kind, NumberFact
 from amalthea_uros.metamodel.versions import Facts, facts, held_versions
 
-ROOT = Path(__file__).parent.parent
 TARGET = ROOT / "schemas"
 
 #: What every type derives from; a reference by href is declared as such.
@@ -145,13 +144,7 @@ def limit(number: NumberFact | Double) -> str:
 
 def render(version: str) -> str:
     """The text of the schema of a version."""
-    environment = Environment(
-        loader=FileSystemLoader(ROOT / "templates"),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+    environment = templates()
     environment.filters["limit"] = limit
     declared = facts(version)
     numbers = [number for number in declared.numbers.values() if number.name != "Address"]

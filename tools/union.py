@@ -98,8 +98,10 @@ class Union:
         if present >= among:
             return ""
         ordered = [v for v in self.versions if v in present]
-        last = "" if ordered[-1] == self.versions[-1] else ordered[-1]
-        return f"{ordered[0]}..{last}"
+        first, last = ordered[0], ordered[-1]
+        if first == self.versions[0]:
+            return f"until {last}"
+        return f"since {first}" if last == self.versions[-1] else f"{first} to {last}"
 
 
 def union() -> Union:

@@ -58,7 +58,7 @@ class Amalthea(BaseObject):
     mapping_model: MappingModel | None = containment("mappingModel")
     components_model: ComponentsModel | None = containment("componentsModel")
     config_model: ConfigModel | None = containment("configModel")
-    measurement_model: MeasurementModel | None = containment("measurementModel")  # 0.9.7..0.9.9
+    measurement_model: MeasurementModel | None = containment("measurementModel")  # until 0.9.9
 
 
 class INamed(Element, abstract=True):

@@ -14,14 +14,7 @@ from amalthea_uros.metamodel.quantity import unit_of
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.base import IReferable
-    from amalthea_uros.metamodel.classes.enums import (
-        DataRateUnit,
-        DataSizeUnit,
-        FrequencyUnit,
-        SamplingType,
-        TimeUnit,
-        VoltageUnit,
-    )
+    from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit, FrequencyUnit, SamplingType, TimeUnit, VoltageUnit
 
 
 class CommonElements(BaseObject):
@@ -179,7 +172,7 @@ class ListObject(Value):
 
 
 class MapObject(Value):
-    """Value that is a map of keys to values. (AMALTHEA 1.2.0..)"""
+    """Value that is a map of keys to values. (since 1.2.0)"""
 
     entries: list[CustomProperty] = containments("entries")
 

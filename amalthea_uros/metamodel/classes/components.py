@@ -7,14 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import (
-    BaseObject,
-    INamed,
-    INamespaceMember,
-    ITaggable,
-    ReferableBaseObject,
-    ReferableObject,
-)
+from amalthea_uros.metamodel.classes.base import BaseObject, INamed, INamespaceMember, ITaggable, ReferableBaseObject, ReferableObject
 from amalthea_uros.metamodel.element import Element, attribute, containment, containments, reference, references
 
 if TYPE_CHECKING:
@@ -64,9 +57,9 @@ class ComponentInterface(ReferableBaseObject, ITaggable, abstract=True):
     datatype : Type of the data; spelled dataType from 3.0.0 on.
     """
 
-    data_type: TypeDefinition | None = reference("dataType")  # 3.0.0..
+    data_type: TypeDefinition | None = reference("dataType")  # since 3.0.0
     sub_interfaces: list[SubInterface] = containments("subInterfaces")
-    datatype: TypeDefinition | None = reference("datatype")  # 0.9.7..2.2.0
+    datatype: TypeDefinition | None = reference("datatype")  # until 2.2.0
 
 
 class IComponentStructureMember(Element, abstract=True):

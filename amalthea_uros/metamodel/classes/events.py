@@ -138,7 +138,7 @@ class LabelEvent(TriggerEvent):
 
 
 class ModeLabelEvent(TriggerEvent):
-    """Access to a mode label. (AMALTHEA 2.1.0..)
+    """Access to a mode label. (since 2.1.0)
 
     Attributes
     ----------

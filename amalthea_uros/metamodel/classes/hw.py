@@ -11,26 +11,8 @@ from amalthea_uros.metamodel.classes.base import BaseObject, IDescription, IName
 from amalthea_uros.metamodel.element import Element, attribute, containment, containments, reference, references
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.common import (
-        CoreClassifier,
-        DataRate,
-        DataSize,
-        Frequency,
-        IDiscreteValueDeviation,
-        MemoryClassifier,
-        Voltage,
-    )
-    from amalthea_uros.metamodel.classes.enums import (
-        CacheType,
-        HwFeatureType,
-        MemoryType,
-        PortInterface,
-        PortType,
-        PuType,
-        SchedPolicy,
-        StructureType,
-        WriteStrategy,
-    )
+    from amalthea_uros.metamodel.classes.common import CoreClassifier, DataRate, DataSize, Frequency, IDiscreteValueDeviation, MemoryClassifier, Voltage
+    from amalthea_uros.metamodel.classes.enums import CacheType, HwFeatureType, MemoryType, PortInterface, PortType, PuType, SchedPolicy, StructureType, WriteStrategy
 
 
 class HWModel(BaseObject):

@@ -61,7 +61,7 @@ class TaskAllocation(BaseObject, ISchedulingParameterContainer):
     task: Task | None = reference("task")
     scheduler: TaskScheduler | None = reference("scheduler")
     affinity: list[ProcessingUnit] = references("affinity")
-    parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")  # 0.9.7..1.2.0
+    parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")  # until 1.2.0
 
 
 class ISRAllocation(BaseObject):

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 
 class MeasurementModel(BaseObject):
-    """Sub-model of measured runtimes. (AMALTHEA 0.9.7..0.9.9)"""
+    """Sub-model of measured runtimes. (until 0.9.9)"""
 
     measurements: list[Measurement] = containments("measurements")
 
 
 class Measurement(BaseObject, abstract=True):
-    """Measured runtimes of one object. (AMALTHEA 0.9.7..0.9.9)
+    """Measured runtimes of one object. (until 0.9.9)
 
     Attributes
     ----------
@@ -36,18 +36,18 @@ class Measurement(BaseObject, abstract=True):
 
 
 class EventChainMeasurement(Measurement):
-    """Measured runtimes of an event chain. (AMALTHEA 0.9.7..0.9.9)"""
+    """Measured runtimes of an event chain. (until 0.9.9)"""
 
     event_chain: EventChain | None = reference("eventChain")
 
 
 class TaskMeasurement(Measurement):
-    """Measured runtimes of a task. (AMALTHEA 0.9.7..0.9.9)"""
+    """Measured runtimes of a task. (until 0.9.9)"""
 
     task: Task | None = reference("task")
 
 
 class RunnableMeasurement(Measurement):
-    """Measured runtimes of a runnable. (AMALTHEA 0.9.7..0.9.9)"""
+    """Measured runtimes of a runnable. (until 0.9.9)"""
 
     runnable: Runnable | None = reference("runnable")

@@ -12,13 +12,7 @@ from amalthea_uros.metamodel.element import Element, attribute, containment, con
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.common import Time, Value
-    from amalthea_uros.metamodel.classes.enums import (
-        AccessMultiplicity,
-        DataStabilityLevel,
-        OsDataConsistencyMode,
-        ParameterType,
-        SemaphoreType,
-    )
+    from amalthea_uros.metamodel.classes.enums import AccessMultiplicity, DataStabilityLevel, OsDataConsistencyMode, ParameterType, SemaphoreType
     from amalthea_uros.metamodel.classes.sw import ComputationItem, Ticks
 
 
@@ -28,10 +22,8 @@ class OSModel(BaseObject):
     semaphores: list[Semaphore] = containments("semaphores")
     operating_systems: list[OperatingSystem] = containments("operatingSystems")
     os_overheads: list[OsOverhead] = containments("osOverheads")
-    scheduler_definitions: list[SchedulerDefinition] = containments("schedulerDefinitions")  # 2.0.0..
-    scheduling_parameter_definitions: list[SchedulingParameterDefinition] = containments(
-        "schedulingParameterDefinitions"
-    )  # 2.0.0..
+    scheduler_definitions: list[SchedulerDefinition] = containments("schedulerDefinitions")  # since 2.0.0
+    scheduling_parameter_definitions: list[SchedulingParameterDefinition] = containments("schedulingParameterDefinitions")  # since 2.0.0
 
 
 class OsDataConsistency(BaseObject):
@@ -91,12 +83,12 @@ class Semaphore(ReferableBaseObject):
     semaphore_type: SemaphoreType | None = attribute("semaphoreType")
     initial_value: int | None = attribute("initialValue")
     max_value: int | None = attribute("maxValue")
-    ownership: bool | None = attribute("ownership")  # 3.0.0..
+    ownership: bool | None = attribute("ownership")  # since 3.0.0
     priority_ceiling_protocol: bool | None = attribute("priorityCeilingProtocol")
 
 
 class ISchedulingParameterContainer(Element, abstract=True):
-    """Object that gives values for scheduling parameters. (AMALTHEA 2.0.0..)
+    """Object that gives values for scheduling parameters. (since 2.0.0)
 
     Attributes
     ----------
@@ -115,7 +107,7 @@ class Scheduler(ReferableBaseObject, ISchedulingParameterContainer, abstract=Tru
     computation_items : Cost of one scheduling decision, paid on the executing processing unit.
     """
 
-    definition: SchedulerDefinition | None = reference("definition")  # 2.0.0..
+    definition: SchedulerDefinition | None = reference("definition")  # since 2.0.0
     computation_items: list[ComputationItem] = containments("computationItems")
 
 
@@ -129,7 +121,7 @@ class TaskScheduler(Scheduler):
     """
 
     parent_association: SchedulerAssociation | None = containment("parentAssociation")
-    scheduling_algorithm: TaskSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # 0.9.7..1.2.0
+    scheduling_algorithm: TaskSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # until 1.2.0
 
 
 class SchedulerAssociation(ISchedulingParameterContainer):
@@ -141,7 +133,7 @@ class SchedulerAssociation(ISchedulingParameterContainer):
     """
 
     parent: TaskScheduler | None = reference("parent")
-    parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")  # 0.9.7..1.2.0
+    parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")  # until 1.2.0
 
 
 class InterruptController(Scheduler):
@@ -152,15 +144,15 @@ class InterruptController(Scheduler):
     scheduling_algorithm : Scheduling algorithm as an object; replaced by the definition in 2.0.0.
     """
 
-    scheduling_algorithm: InterruptSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # 0.9.7..1.2.0
+    scheduling_algorithm: InterruptSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # until 1.2.0
 
 
 class OsDefinition(ReferableBaseObject, ITaggable, abstract=True):
-    """Base of definitions that operating systems share. (AMALTHEA 2.0.0..)"""
+    """Base of definitions that operating systems share. (since 2.0.0)"""
 
 
 class SchedulerDefinition(OsDefinition, IDescription):
-    """Scheduling algorithm, known by its name, with the parameters it takes. (AMALTHEA 2.0.0..)
+    """Scheduling algorithm, known by its name, with the parameters it takes. (since 2.0.0)
 
     Attributes
     ----------
@@ -179,7 +171,7 @@ class SchedulerDefinition(OsDefinition, IDescription):
 
 
 class SchedulingParameterDefinition(OsDefinition):
-    """Name, type and default of a scheduling parameter, such as the priority. (AMALTHEA 2.0.0..)
+    """Name, type and default of a scheduling parameter, such as the priority. (since 2.0.0)
 
     Attributes
     ----------
@@ -195,7 +187,7 @@ class SchedulingParameterDefinition(OsDefinition):
 
 
 class SchedulingParameter(Element):
-    """Map entry from a parameter definition to a value. (AMALTHEA 2.0.0..)
+    """Map entry from a parameter definition to a value. (since 2.0.0)
 
     Attributes
     ----------
@@ -287,7 +279,7 @@ class VendorOperatingSystem(OperatingSystem):
 
 
 class SchedulingParameters(Element):
-    """Scheduling parameters of a task or child scheduler as fixed fields. (AMALTHEA 0.9.7..1.2.0)
+    """Scheduling parameters of a task or child scheduler as fixed fields. (until 1.2.0)
 
     Attributes
     ----------
@@ -304,50 +296,50 @@ class SchedulingParameters(Element):
 
 
 class ParameterExtension(Element):
-    """Map entry from a key to a text, for parameters without a field. (AMALTHEA 0.9.7..1.2.0)"""
+    """Map entry from a key to a text, for parameters without a field. (until 1.2.0)"""
 
     key: str | None = attribute("key")
     value: str | None = attribute("value")
 
 
 class Algorithm(BaseObject, abstract=True):
-    """Scheduling algorithm as an object. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling algorithm as an object. (until 1.2.0)"""
 
 
 class InterruptSchedulingAlgorithm(Algorithm, abstract=True):
-    """Algorithm that an interrupt controller can use. (AMALTHEA 0.9.7..1.2.0)"""
+    """Algorithm that an interrupt controller can use. (until 1.2.0)"""
 
 
 class TaskSchedulingAlgorithm(Algorithm, abstract=True):
-    """Algorithm that a task scheduler can use. (AMALTHEA 0.9.7..1.2.0)"""
+    """Algorithm that a task scheduler can use. (until 1.2.0)"""
 
 
 class FixedPriority(TaskSchedulingAlgorithm, abstract=True):
-    """Algorithm that keeps the priority of each task fixed. (AMALTHEA 0.9.7..1.2.0)"""
+    """Algorithm that keeps the priority of each task fixed. (until 1.2.0)"""
 
 
 class FixedPriorityPreemptive(FixedPriority):
-    """Preemptive scheduling by fixed priority. (AMALTHEA 0.9.7..1.2.0)"""
+    """Preemptive scheduling by fixed priority. (until 1.2.0)"""
 
 
 class FixedPriorityPreemptiveWithBudgetEnforcement(FixedPriority):
-    """Preemptive scheduling by fixed priority with an execution budget per replenishment period. (AMALTHEA 0.9.7..1.2.0)"""
+    """Preemptive scheduling by fixed priority with an execution budget per replenishment period. (until 1.2.0)"""
 
 
 class OSEK(FixedPriority):
-    """Scheduling by fixed priority according to OSEK. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling by fixed priority according to OSEK. (until 1.2.0)"""
 
 
 class DeadlineMonotonic(FixedPriority):
-    """Scheduling by fixed priority in which the shortest deadline ranks highest. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling by fixed priority in which the shortest deadline ranks highest. (until 1.2.0)"""
 
 
 class RateMonotonic(FixedPriority):
-    """Scheduling by fixed priority in which the shortest period ranks highest. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling by fixed priority in which the shortest period ranks highest. (until 1.2.0)"""
 
 
 class Pfair(TaskSchedulingAlgorithm, abstract=True):
-    """Proportionate fair scheduling, which allots time in quanta. (AMALTHEA 0.9.7..1.2.0)
+    """Proportionate fair scheduling, which allots time in quanta. (until 1.2.0)
 
     Attributes
     ----------
@@ -358,70 +350,70 @@ class Pfair(TaskSchedulingAlgorithm, abstract=True):
 
 
 class PfairPD2(Pfair):
-    """Proportionate fair scheduling by the PD2 rule. (AMALTHEA 0.9.7..1.2.0)"""
+    """Proportionate fair scheduling by the PD2 rule. (until 1.2.0)"""
 
 
 class PartlyPFairPD2(Pfair):
-    """Variant named partly fair of proportionate fair scheduling by the PD2 rule. (AMALTHEA 0.9.7..1.2.0)"""
+    """Variant named partly fair of proportionate fair scheduling by the PD2 rule. (until 1.2.0)"""
 
 
 class EarlyReleaseFairPD2(Pfair):
-    """Early-release variant of proportionate fair scheduling by the PD2 rule. (AMALTHEA 0.9.7..1.2.0)"""
+    """Early-release variant of proportionate fair scheduling by the PD2 rule. (until 1.2.0)"""
 
 
 class PartlyEarlyReleaseFairPD2(Pfair):
-    """Variant named partly fair of early-release fair scheduling by the PD2 rule. (AMALTHEA 0.9.7..1.2.0)"""
+    """Variant named partly fair of early-release fair scheduling by the PD2 rule. (until 1.2.0)"""
 
 
 class DynamicPriority(TaskSchedulingAlgorithm, abstract=True):
-    """Algorithm whose ranking of tasks changes at run time. (AMALTHEA 0.9.7..1.2.0)"""
+    """Algorithm whose ranking of tasks changes at run time. (until 1.2.0)"""
 
 
 class LeastLocalRemainingExecutionTimeFirst(DynamicPriority):
-    """Global scheduling in which the smallest local remaining execution time goes first. (AMALTHEA 0.9.7..1.2.0)"""
+    """Global scheduling in which the smallest local remaining execution time goes first. (until 1.2.0)"""
 
 
 class EarliestDeadlineFirst(DynamicPriority):
-    """Scheduling in which the earliest absolute deadline goes first. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling in which the earliest absolute deadline goes first. (until 1.2.0)"""
 
 
 class PriorityBasedRoundRobin(DynamicPriority):
-    """Scheduling by priority in which equal priorities share the processing unit in time slices. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling by priority in which equal priorities share the processing unit in time slices. (until 1.2.0)"""
 
 
 class ReservationBasedServer(TaskSchedulingAlgorithm, abstract=True):
-    """Scheduler that gives its tasks a budget of execution time. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduler that gives its tasks a budget of execution time. (until 1.2.0)"""
 
 
 class DeferrableServer(ReservationBasedServer):
-    """Server whose budget is restored periodically and kept while it is idle. (AMALTHEA 0.9.7..1.2.0)"""
+    """Server whose budget is restored periodically and kept while it is idle. (until 1.2.0)"""
 
 
 class PollingPeriodicServer(ReservationBasedServer):
-    """Server whose budget is available at its polling instants and lost when it is idle. (AMALTHEA 0.9.7..1.2.0)"""
+    """Server whose budget is available at its polling instants and lost when it is idle. (until 1.2.0)"""
 
 
 class SporadicServer(ReservationBasedServer):
-    """Server whose budget comes back one period after it was consumed. (AMALTHEA 0.9.7..1.2.0)"""
+    """Server whose budget comes back one period after it was consumed. (until 1.2.0)"""
 
 
 class ConstantBandwidthServer(ReservationBasedServer):
-    """EDF server whose deadline is postponed when its budget is used up. (AMALTHEA 0.9.7..1.2.0)"""
+    """EDF server whose deadline is postponed when its budget is used up. (until 1.2.0)"""
 
 
 class ConstantBandwidthServerWithCASH(ReservationBasedServer):
-    """Constant bandwidth server that reuses budget left over by other servers. (AMALTHEA 0.9.7..1.2.0)"""
+    """Constant bandwidth server that reuses budget left over by other servers. (until 1.2.0)"""
 
 
 class Grouping(TaskSchedulingAlgorithm):
-    """Logical group below a parent scheduler that takes no decisions itself. (AMALTHEA 0.9.7..1.2.0)"""
+    """Logical group below a parent scheduler that takes no decisions itself. (until 1.2.0)"""
 
 
 class UserSpecificSchedulingAlgorithm(TaskSchedulingAlgorithm, InterruptSchedulingAlgorithm):
-    """Algorithm of a tool or user, described by keys and texts. (AMALTHEA 0.9.7..1.2.0)"""
+    """Algorithm of a tool or user, described by keys and texts. (until 1.2.0)"""
 
     parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")
 
 
 class PriorityBased(InterruptSchedulingAlgorithm):
-    """Scheduling of ISRs by the priority of their allocation. (AMALTHEA 0.9.7..1.2.0)"""
+    """Scheduling of ISRs by the priority of their allocation. (until 1.2.0)"""

@@ -72,19 +72,19 @@ class ModeAssignment(ModeValue):
 
 
 class ConditionDisjunctionEntry(Element, abstract=True):
-    """Entry of a disjunction, a single condition or a conjunction. (AMALTHEA 2.0.0..)"""
+    """Entry of a disjunction, a single condition or a conjunction. (since 2.0.0)"""
 
 
 class Condition(ConditionDisjunctionEntry, abstract=True):
-    """Single comparison that is true or false. (AMALTHEA 2.0.0..)"""
+    """Single comparison that is true or false. (since 2.0.0)"""
 
 
 class ISatisfiable(Element, abstract=True):
-    """Marker of conditions that can be evaluated. (AMALTHEA 2.0.0..2.2.0)"""
+    """Marker of conditions that can be evaluated. (2.0.0 to 2.2.0)"""
 
 
 class ModeConditionDisjunctionEntry(ISatisfiable, BaseObject, abstract=True):
-    """Entry of a disjunction, a single condition on modes or a conjunction. (AMALTHEA 0.9.7..2.2.0)"""
+    """Entry of a disjunction, a single condition on modes or a conjunction. (until 2.2.0)"""
 
 
 class ModeCondition(Condition, ModeConditionDisjunctionEntry, abstract=True):
@@ -116,19 +116,19 @@ class ModeLabelCondition(ModeCondition):
 
 
 class ConditionDisjunction(BaseObject):
-    """Condition that is true if at least one of its entries is. (AMALTHEA 2.0.0..)"""
+    """Condition that is true if at least one of its entries is. (since 2.0.0)"""
 
     entries: list[ConditionDisjunctionEntry] = containments("entries")
 
 
 class ConditionConjunction(BaseObject, ConditionDisjunctionEntry):
-    """Condition that is true if all of its entries are. (AMALTHEA 2.0.0..)"""
+    """Condition that is true if all of its entries are. (since 2.0.0)"""
 
     entries: list[Condition] = containments("entries")
 
 
 class ChannelFillCondition(BaseObject, Condition):
-    """Comparison of the number of elements in a channel with a number. (AMALTHEA 2.0.0..)
+    """Comparison of the number of elements in a channel with a number. (since 2.0.0)
 
     Attributes
     ----------
@@ -136,7 +136,7 @@ class ChannelFillCondition(BaseObject, Condition):
     """
 
     channel: Channel | None = reference("channel")
-    relation: RelationalOperator | None = attribute("relation")  # 2.1.0..
+    relation: RelationalOperator | None = attribute("relation")  # since 2.1.0
     fill_level: int | None = attribute("fillLevel")
 
 
@@ -341,12 +341,12 @@ class ClockStep(BaseObject):
 
 
 class ModeConditionDisjunction(BaseObject, ISatisfiable):
-    """Condition on modes that is true if at least one of its entries is. (AMALTHEA 0.9.7..2.2.0)"""
+    """Condition on modes that is true if at least one of its entries is. (until 2.2.0)"""
 
     entries: list[ModeConditionDisjunctionEntry] = containments("entries")
 
 
 class ModeConditionConjunction(ModeConditionDisjunctionEntry):
-    """Condition on modes that is true if all of its entries are. (AMALTHEA 0.9.7..2.2.0)"""
+    """Condition on modes that is true if all of its entries are. (until 2.2.0)"""
 
     entries: list[ModeCondition] = containments("entries")

@@ -7,27 +7,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import (
-    BaseObject,
-    IAnnotatable,
-    IDescription,
-    IDisplayName,
-    INamed,
-    INamespaceMember,
-    ITaggable,
-    ReferableBaseObject,
-    ReferableObject,
-)
+from amalthea_uros.metamodel.classes.base import BaseObject, IAnnotatable, IDescription, IDisplayName, INamed, INamespaceMember, ITaggable, ReferableBaseObject, ReferableObject
 from amalthea_uros.metamodel.classes.stimuli import Condition
-from amalthea_uros.metamodel.element import (
-    Element,
-    attribute,
-    containment,
-    containment_or_reference,
-    containments,
-    reference,
-    references,
-)
+from amalthea_uros.metamodel.element import Element, attribute, containment, containment_or_reference, containments, reference, references
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.common import (
@@ -66,12 +48,7 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.events import CustomEvent, TriggerEvent
     from amalthea_uros.metamodel.classes.hw import ProcessingUnitDefinition
     from amalthea_uros.metamodel.classes.os import Semaphore, TaskScheduler
-    from amalthea_uros.metamodel.classes.stimuli import (
-        ConditionDisjunction,
-        InterProcessStimulus,
-        ModeConditionDisjunction,
-        Stimulus,
-    )
+    from amalthea_uros.metamodel.classes.stimuli import ConditionDisjunction, InterProcessStimulus, ModeConditionDisjunction, Stimulus
 
 
 class SWModel(BaseObject):
@@ -132,7 +109,7 @@ class ProcessChain(ReferableBaseObject):
 
 
 class IExecutable(Element, abstract=True):
-    """Object with a behaviour, that is a task, an ISR or a runnable. (AMALTHEA 1.2.0..)
+    """Object with a behaviour, that is a task, an ISR or a runnable. (since 1.2.0)
 
     Attributes
     ----------
@@ -140,7 +117,7 @@ class IExecutable(Element, abstract=True):
     activity_graph : What is executed; a process or runnable without it does nothing.
     """
 
-    local_labels: list[LocalModeLabel] = containments("localLabels")  # 2.1.0..
+    local_labels: list[LocalModeLabel] = containments("localLabels")  # since 2.1.0
     activity_graph: ActivityGraph | None = containment("activityGraph")
 
 
@@ -175,7 +152,7 @@ class ActivityGraphItem(BaseObject, abstract=True):
 
 
 class Switch(ActivityGraphItem):
-    """Branch on conditions. (AMALTHEA 2.0.0..)
+    """Branch on conditions. (since 2.0.0)
 
     Attributes
     ----------
@@ -188,13 +165,13 @@ class Switch(ActivityGraphItem):
 
 
 class SwitchEntry(BaseObject, INamed, IActivityGraphItemContainer):
-    """Branch of a switch with its condition. (AMALTHEA 2.0.0..)"""
+    """Branch of a switch with its condition. (since 2.0.0)"""
 
     condition: ConditionDisjunction | None = containment("condition")
 
 
 class SwitchDefault(BaseObject, IActivityGraphItemContainer):
-    """Branch of a switch for all other cases. (AMALTHEA 2.0.0..)"""
+    """Branch of a switch for all other cases. (since 2.0.0)"""
 
 
 class ProbabilitySwitch(ActivityGraphItem):
@@ -215,7 +192,7 @@ class ProbabilitySwitchEntry(BaseObject, IActivityGraphItemContainer):
 
 
 class WhileLoop(ActivityGraphItem, IActivityGraphItemContainer):
-    """Items that are repeated as long as a condition holds. (AMALTHEA 1.2.0..)
+    """Items that are repeated as long as a condition holds. (since 1.2.0)
 
     Attributes
     ----------
@@ -733,7 +710,7 @@ class Group(ActivityGraphItem, INamed, IActivityGraphItemContainer):
     """
 
     ordered: bool | None = attribute("ordered")
-    interruptible: bool | None = attribute("interruptible")  # 1.2.0..
+    interruptible: bool | None = attribute("interruptible")  # since 1.2.0
 
 
 class CallArgument(ReferableObject, IDependsOn):
@@ -759,7 +736,7 @@ class RunnableCall(ActivityGraphItem, ITaggable):
 
     runnable: Runnable | None = reference("runnable")
     arguments: list[CallArgument] = containments("arguments")
-    context: list[LocalModeLabelAssignment] = containments("context")  # 2.1.0..
+    context: list[LocalModeLabelAssignment] = containments("context")  # since 2.1.0
     counter: Counter | None = containment("counter")
     statistic: RunEntityCallStatistic | None = containment("statistic")
 
@@ -947,7 +924,7 @@ class RunEntityCallStatistic(BaseObject):
 
 
 class LocalModeLabel(ReferableBaseObject):
-    """Mode label that exists once per execution of a task, ISR or runnable. (AMALTHEA 2.1.0..)
+    """Mode label that exists once per execution of a task, ISR or runnable. (since 2.1.0)
 
     Attributes
     ----------
@@ -959,58 +936,58 @@ class LocalModeLabel(ReferableBaseObject):
 
 
 class LocalModeValue(Element, abstract=True):
-    """Local mode label together with a source of a value. (AMALTHEA 2.1.0..)"""
+    """Local mode label together with a source of a value. (since 2.1.0)"""
 
     label: LocalModeLabel | None = reference("label")
     value_source: ILocalModeValueSource | None = containment("valueSource")
 
 
 class LocalModeLabelAssignment(LocalModeValue, ActivityGraphItem):
-    """Assignment of a value to a local mode label. (AMALTHEA 2.1.0..)"""
+    """Assignment of a value to a local mode label. (since 2.1.0)"""
 
 
 class LocalModeCondition(LocalModeValue, Condition, IAnnotatable):
-    """Comparison of a local mode label with a value. (AMALTHEA 2.1.0..)"""
+    """Comparison of a local mode label with a value. (since 2.1.0)"""
 
     relation: RelationalOperator | None = attribute("relation")
 
 
 class ILocalModeValueSource(Element, abstract=True):
-    """Source of a value for a local mode label. (AMALTHEA 2.1.0..)"""
+    """Source of a value for a local mode label. (since 2.1.0)"""
 
 
 class ModeLiteralConst(ILocalModeValueSource):
-    """Literal of an enum mode as a value. (AMALTHEA 2.1.0..)"""
+    """Literal of an enum mode as a value. (since 2.1.0)"""
 
     value: ModeLiteral | None = reference("value")
 
 
 class IntegerConst(ILocalModeValueSource):
-    """Integer as a value. (AMALTHEA 2.1.0..)"""
+    """Integer as a value. (since 2.1.0)"""
 
     value: int | None = attribute("value")
 
 
 class ModeLabelRef(ILocalModeValueSource):
-    """Current value of a mode label. (AMALTHEA 2.1.0..)"""
+    """Current value of a mode label. (since 2.1.0)"""
 
     value: ModeLabel | None = reference("value")
 
 
 class LocalModeLabelRef(ILocalModeValueSource):
-    """Current value of a local mode label. (AMALTHEA 2.1.0..)"""
+    """Current value of a local mode label. (since 2.1.0)"""
 
     value: LocalModeLabel | None = reference("value")
 
 
 class ChannelFillRef(ILocalModeValueSource):
-    """Current number of elements in a channel as a value. (AMALTHEA 2.1.0..)"""
+    """Current number of elements in a channel as a value. (since 2.1.0)"""
 
     value: Channel | None = reference("value")
 
 
 class ArithmeticExpression(ILocalModeValueSource):
-    """Value computed from two operands. (AMALTHEA 2.1.0..)"""
+    """Value computed from two operands. (since 2.1.0)"""
 
     operand1: ILocalModeValueSource | None = containment("operand1")
     operand2: ILocalModeValueSource | None = containment("operand2")
@@ -1018,14 +995,14 @@ class ArithmeticExpression(ILocalModeValueSource):
 
 
 class ModeLabelAssignment(ActivityGraphItem):
-    """Assignment between a mode label and a local mode label. (AMALTHEA 2.1.0..)"""
+    """Assignment between a mode label and a local mode label. (since 2.1.0)"""
 
     global_label: ModeLabel | None = reference("globalLabel")
     local_label: LocalModeLabel | None = reference("localLabel")
 
 
 class ModeSwitch(ActivityGraphItem):
-    """Branch on conditions on modes; Switch replaces it. (AMALTHEA 0.9.7..2.2.0)
+    """Branch on conditions on modes; Switch replaces it. (until 2.2.0)
 
     Attributes
     ----------
@@ -1038,10 +1015,10 @@ class ModeSwitch(ActivityGraphItem):
 
 
 class ModeSwitchEntry(BaseObject, INamed, IActivityGraphItemContainer):
-    """Branch of a mode switch with its condition. (AMALTHEA 0.9.7..2.2.0)"""
+    """Branch of a mode switch with its condition. (until 2.2.0)"""
 
     condition: ModeConditionDisjunction | None = containment("condition")
 
 
 class ModeSwitchDefault(BaseObject, IActivityGraphItemContainer):
-    """Branch of a mode switch for all other cases. (AMALTHEA 0.9.7..2.2.0)"""
+    """Branch of a mode switch for all other cases. (until 2.2.0)"""
