@@ -240,7 +240,9 @@ class _Reader:
                     else:
                         self.unknown_attribute(element, plan, key, value)
                 elif attribute.is_reference:
-                    texts = reference_texts(attribute, value)
+                    texts = value.split()
+                    if len(texts) > 1 and not attribute.many:
+                        texts = reference_texts(attribute, value)
                     add_reference(_tuple(PendingReference, (element, attribute, texts, False)))
                     own_held[attribute.name] = True
                 elif attribute.parse is None:
