@@ -66,15 +66,13 @@ def render() -> dict[str, str]:
     shared = {"merged": merged, "described": descriptions(), "versions": merged.versions, "all_versions": set(merged.versions)}
     files = {"enums.py": environment.get_template("enums.py.jinja").render(shared)}
     for module, classes in by_module.items():
-        used = {f.specifier for cls in classes for f in cls.features.values()}
         quantities = [cls for cls in classes if "Quantity" in cls.bases]
-        if quantities or any(not cls.bases for cls in classes):
-            used.add("Element")
         files[f"{module}.py"] = environment.get_template("classes.py.jinja").render(
             shared,
             module=module,
             classes=list(in_base_order(classes, merged)),
-            element_names=sorted(used, key=lambda n: (n != "Element", n)),
+            needs_element=bool(quantities) or any(not cls.bases for cls in classes),
+            specifiers=sorted({f.specifier for cls in classes for f in cls.features.values()}),
             base_imports=imports(classes, merged, bases=True),
             type_imports=imports(classes, merged, bases=False),
             unit_imports=[f"{cls.name}Unit" for cls in quantities],

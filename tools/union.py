@@ -43,7 +43,7 @@ class UnionFeature:
 
     @property
     def specifier(self) -> str:
-        """The function of `element.py` that declares the feature."""
+        """The function of `features.py` that declares the feature."""
         if len(self.kinds) > 1:
             return "containment_or_reference"
         kind = next(iter(self.kinds))

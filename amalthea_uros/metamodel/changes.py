@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from amalthea_uros.metamodel.classes.sw import CallArgument, RunnableCall
-from amalthea_uros.metamodel.element import Element, path_of, references_of
+from amalthea_uros.metamodel.containment import path_of
+from amalthea_uros.metamodel.element import Element, references_of
 
 
 class Changes:

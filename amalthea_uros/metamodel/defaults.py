@@ -6,7 +6,8 @@ from enum import StrEnum
 from typing import Any
 
 from amalthea_uros.metamodel import classes
-from amalthea_uros.metamodel.element import Element, features_of
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.versions import Facts, facts, nearest_version, newest_version
 
 #: The enumeration lost its name to a class in 2.0.0.

@@ -15,7 +15,9 @@ from typing import Any
 
 from amalthea_uros.metamodel.classes import Quantity
 from amalthea_uros.metamodel.classes.base import Amalthea
-from amalthea_uros.metamodel.element import Element, Feature, features_of, path_of
+from amalthea_uros.metamodel.containment import path_of
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.features import Feature, features_of
 from amalthea_uros.metamodel.fingerprint import Fingerprints
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.naming import unique_name

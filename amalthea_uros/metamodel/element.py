@@ -1,4 +1,4 @@
-"""Base of the AMALTHEA classes: features, containment known from both ends, walking.
+"""Base of the AMALTHEA classes.
 
 The generated classes declare one feature per line::
 
@@ -7,112 +7,30 @@ The generated classes declare one feature per line::
         stimuli: list[Stimulus] = references("stimuli")
 
 A feature is unset (`None`, or an empty list) until something is assigned; defaults are a matter of the AMALTHEA version and are
-asked with `Element.effective`. Values live in the instance dictionary; the descriptors below only answer for unset features, so
-that a read costs no more than that of an ordinary attribute and an object of which three of twenty features are set stays small.
+asked with `Element.effective`. Values live in the instance dictionary; the descriptors of `features.py` only answer for unset
+features, so that a read costs no more than that of an ordinary attribute and an object of which three of twenty features are set
+stays small.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, SupportsIndex, TypeVar, dataclass_transform
+from typing import TYPE_CHECKING, Any, ClassVar, Self, SupportsIndex, TypeVar, dataclass_transform
+
+from amalthea_uros.metamodel.containment import ReferenceList, adopt, release, touch
+from amalthea_uros.metamodel.features import containments_of, features_of
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Document, Model
 
 E = TypeVar("E", bound="Element")
 
-#: `either` is a containment in some versions and a reference in others (the data type of labels and channels).
-FeatureKind = Literal["attribute", "reference", "containment", "either"]
-
-_set = object.__setattr__
-
-
-class Revision:
-    """Counts the changes of names and containment in this process; look-up tables made earlier are stale."""
-
-    number: ClassVar[int] = 0
-
-
 #: Features on which the unique name of their holder, or of its parts, may depend.
 _NAMING = frozenset({"name", "namespace", "parameter", "runnable"})
 
-
-class Feature:
-    """One feature of a class; as a descriptor it answers for the unset value."""
-
-    __slots__ = ("kind", "many", "name", "xml_name")
-
-    def __init__(self, xml_name: str, kind: FeatureKind, many: bool = False) -> None:
-        self.name = ""
-        self.xml_name = xml_name
-        self.kind: FeatureKind = kind
-        self.many = many
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self.name = name
-
-    def __get__(self, instance: Element | None, owner: type) -> Any:
-        if instance is None:
-            return self
-        if not self.many:
-            return None
-        empty: list[Any] = self.new_list(instance, ())
-        _set(instance, self.name, empty)
-        return empty
-
-    def new_list(self, owner: Element, values: Iterable[Any]) -> list[Any]:
-        """A list for the values of this feature."""
-        return (ContainmentList if self.kind == "containment" else ReferenceList)(owner, values)
-
-    def copied(self, owner: Element, values: Iterable[Any]) -> list[Any]:
-        """A list for values whose container is the owner already."""
-        found: list[Any] = self.new_list(owner, ())
-        list.extend(found, values)
-        return found
-
-    def contains(self, value: object) -> bool:
-        """Whether an object held by this feature is part of its holder."""
-        if self.kind == "either":
-            return isinstance(value, Element) and not value.is_referable
-        return self.kind == "containment"
-
-    def __repr__(self) -> str:
-        return f"<{self.kind} {self.xml_name}{' *' if self.many else ''}>"
-
-
-# The generated classes call these five; their static type is the annotation of the feature.
-
-
-def attribute(xml_name: str) -> Any:
-    """A number, text, truth value or literal."""
-    return Feature(xml_name, "attribute")
-
-
-def reference(xml_name: str) -> Any:
-    """A reference to an object that lives elsewhere."""
-    return Feature(xml_name, "reference")
-
-
-def references(xml_name: str) -> Any:
-    """Ordered references to objects that live elsewhere."""
-    return Feature(xml_name, "reference", many=True)
-
-
-def containment(xml_name: str) -> Any:
-    """A part of the object."""
-    return Feature(xml_name, "containment")
-
-
-def containments(xml_name: str) -> Any:
-    """Ordered parts of the object."""
-    return Feature(xml_name, "containment", many=True)
-
-
-def containment_or_reference(xml_name: str) -> Any:
-    """A part of the object in older versions, a reference in newer ones."""
-    return Feature(xml_name, "either")
+_set = object.__setattr__
 
 
 @dataclass
@@ -307,194 +225,9 @@ class Element:
         return element
 
 
-class ReferenceList(list[E]):
-    """References of one object, in order; its document learns of every change."""
-
-    __slots__ = ("_owner",)
-
-    def __init__(self, owner: Element, values: Iterable[E] = ()) -> None:
-        super().__init__(values)
-        self._owner = owner
-
-    def append(self, value: E) -> None:
-        super().append(value)
-        touch(self._owner)
-
-    def insert(self, index: SupportsIndex, value: E) -> None:
-        super().insert(index, value)
-        touch(self._owner)
-
-    def extend(self, values: Iterable[E]) -> None:
-        super().extend(values)
-        touch(self._owner)
-
-    def __iadd__(self, values: Iterable[E]) -> Self:  # type: ignore[override, misc]
-        self.extend(values)
-        return self
-
-    def __imul__(self, times: SupportsIndex) -> Self:
-        super().__imul__(times)
-        touch(self._owner)
-        return self
-
-    def __setitem__(self, index: Any, value: Any) -> None:
-        super().__setitem__(index, value)
-        touch(self._owner)
-
-    def __delitem__(self, index: Any) -> None:
-        super().__delitem__(index)
-        touch(self._owner)
-
-    def remove(self, value: E) -> None:
-        super().remove(value)
-        touch(self._owner)
-
-    def pop(self, index: SupportsIndex = -1) -> E:
-        value = super().pop(index)
-        touch(self._owner)
-        return value
-
-    def clear(self) -> None:
-        super().clear()
-        touch(self._owner)
-
-    def sort(self, *, key: Any = None, reverse: bool = False) -> None:
-        super().sort(key=key, reverse=reverse)
-        touch(self._owner)
-
-    def reverse(self) -> None:
-        super().reverse()
-        touch(self._owner)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (list, (list(self),))
-
-
-class ContainmentList(ReferenceList[E]):
-    """Parts of one object, in order. Every way of putting an object in makes the owner its container."""
-
-    __slots__ = ()
-
-    def __init__(self, owner: Element, values: Iterable[E] = ()) -> None:
-        super().__init__(owner)
-        for value in values:
-            self.append(value)
-
-    def append(self, value: E) -> None:
-        adopt(self._owner, value)
-        super().append(value)
-
-    def insert(self, index: SupportsIndex, value: E) -> None:
-        adopt(self._owner, value)
-        super().insert(index, value)
-
-    def extend(self, values: Iterable[E]) -> None:
-        for value in list(values):
-            self.append(value)
-
-    def __imul__(self, times: SupportsIndex) -> Self:
-        raise TypeError("an object can be a part only once")
-
-    def __setitem__(self, index: Any, value: Any) -> None:
-        values = list(self)
-        values[index] = value
-        self.clear()
-        self.extend(values)
-
-    def __delitem__(self, index: Any) -> None:
-        for value in self[index] if isinstance(index, slice) else [self[index]]:
-            release(value)
-        super().__delitem__(index)
-
-    def remove(self, value: E) -> None:
-        del self[self.index(value)]
-
-    def pop(self, index: SupportsIndex = -1) -> E:
-        release(self[index])
-        return super().pop(index)
-
-    def clear(self) -> None:
-        del self[:]
-
-
 def extras_of(element: Element) -> Extras:
     """The extras of an object, to be added to."""
     found: Extras = element.__dict__.setdefault("_extras", Extras())
-    return found
-
-
-def touch(element: Element, renames: bool = False) -> None:
-    """Tell the document that an object changed, and whether references to it, or to its parts, may have to as well."""
-    path = path_of(element)
-    if renames:
-        Revision.number += 1
-    document: Document | None = getattr(path[-1], "_document", None)
-    if document is not None:
-        document.changes.note(path, renames)
-
-
-def path_of(element: Element) -> list[Element]:
-    """The object, its container, and so on up to the root."""
-    path = [element]
-    while (holder := path[-1]._container) is not None:
-        path.append(holder)
-    return path
-
-
-def release(value: Element) -> None:
-    """Take the container from an object that is about to be taken out of it."""
-    touch(value, renames=True)
-    _set(value, "_container", None)
-
-
-def adopt(owner: Element, value: Element) -> None:
-    """Make `owner` the container of `value`, taking it out of the old one."""
-    if not isinstance(value, Element):
-        raise TypeError(f"{owner!r} cannot contain {value!r}: not a model object")
-    ancestor: Element | None = owner
-    while ancestor is not None:
-        if ancestor is value:
-            raise ValueError(f"{value!r} cannot become a part of {owner!r}, which is part of it")
-        ancestor = ancestor._container
-    _take_out(value)
-    _set(value, "_container", owner)
-    touch(value, renames=True)
-
-
-def _take_out(value: Element) -> None:
-    holder = value._container
-    if holder is None:
-        return
-    for feature in containments_of(type(holder)):
-        held = holder.__dict__.get(feature.name)
-        if held is value:
-            release(value)
-            _set(holder, feature.name, None)
-        elif feature.many and held and any(element is value for element in held):
-            held.remove(value)
-
-
-_FEATURES: dict[type, dict[str, Feature]] = {}
-_CONTAINMENTS: dict[type, tuple[Feature, ...]] = {}
-
-
-def features_of(cls: type[Element]) -> dict[str, Feature]:
-    """All features of a class by their Python names, those of the supertypes first."""
-    found = _FEATURES.get(cls)
-    if found is None:
-        found = {}
-        for base in reversed(cls.__mro__):
-            found.update((name, value) for name, value in vars(base).items() if isinstance(value, Feature))
-        _FEATURES[cls] = found
-    return found
-
-
-def containments_of(cls: type[Element]) -> tuple[Feature, ...]:
-    """The features of a class that may hold parts."""
-    found = _CONTAINMENTS.get(cls)
-    if found is None:
-        found = tuple(f for f in features_of(cls).values() if f.kind in ("containment", "either"))
-        _CONTAINMENTS[cls] = found
     return found
 
 

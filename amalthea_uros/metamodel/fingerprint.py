@@ -6,7 +6,8 @@ from operator import itemgetter
 from typing import Any
 
 from amalthea_uros.metamodel.defaults import defaults_of
-from amalthea_uros.metamodel.element import Element, features_of
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.naming import unique_name
 
 

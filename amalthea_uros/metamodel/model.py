@@ -10,7 +10,8 @@ from typing import NamedTuple, TypeVar
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.metamodel.changes import Changes
 from amalthea_uros.metamodel.classes.base import Amalthea
-from amalthea_uros.metamodel.element import Element, Revision, references_of
+from amalthea_uros.metamodel.containment import Revision
+from amalthea_uros.metamodel.element import Element, references_of
 from amalthea_uros.metamodel.naming import qualified_name
 from amalthea_uros.metamodel.source import Source
 from amalthea_uros.metamodel.versions import nearest_version, newest_version

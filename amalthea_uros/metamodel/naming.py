@@ -104,7 +104,7 @@ def place(element: Element) -> str:
 
 
 def _step(holder: Element, part: Element) -> str:
-    from amalthea_uros.metamodel.element import containments_of
+    from amalthea_uros.metamodel.features import containments_of
 
     for feature in containments_of(type(holder)):
         held = holder.__dict__.get(feature.name)

@@ -6,8 +6,9 @@ from functools import cache
 from typing import Any
 
 from amalthea_uros.metamodel import classes
-from amalthea_uros.metamodel.element import Element, features_of
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.factfile import FeatureFact, Kind
+from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.versions import Facts, facts
 from amalthea_uros.xmi.literals import Literal, Memo, literal_of
 

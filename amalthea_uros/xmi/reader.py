@@ -15,7 +15,8 @@ from xml.parsers import expat
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.classes import Amalthea
-from amalthea_uros.metamodel.element import ContainmentList, Element, extras_of
+from amalthea_uros.metamodel.containment import ContainmentList
+from amalthea_uros.metamodel.element import Element, extras_of
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.xmi.files import FileText

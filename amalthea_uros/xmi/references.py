@@ -15,7 +15,8 @@ from urllib.parse import unquote
 
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.classes import CallArgument, Namespace
-from amalthea_uros.metamodel.element import Element, ReferenceList
+from amalthea_uros.metamodel.containment import ReferenceList
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Spelling
 from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix, unique_name
 from amalthea_uros.xmi.plan import FeaturePlan, plans

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from amalthea_uros.metamodel import classes
-from amalthea_uros.metamodel.element import Feature
+from amalthea_uros.metamodel.features import Feature
 from amalthea_uros.metamodel.versions import facts, held_versions
 
 TEXT = (Path(__file__).parents[2] / "tools" / "metamodel_descriptions.txt").read_text(encoding="utf-8")

@@ -8,8 +8,8 @@ import pytest
 from support import ROOT, SHARED
 
 from amalthea_uros.metamodel import classes
-from amalthea_uros.metamodel.element import features_of
 from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.versions import facts, held_versions, known_versions, nearest_version
 
 

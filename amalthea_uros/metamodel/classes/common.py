@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.metamodel.classes.base import BaseObject, IDescription, ReferableBaseObject, ReferableObject
 from amalthea_uros.metamodel.classes.enums import TimeUnit, FrequencyUnit, VoltageUnit, DataSizeUnit, DataRateUnit
-from amalthea_uros.metamodel.element import Element, attribute, containment, containments, reference
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.features import attribute, containment, containments, reference
 from amalthea_uros.metamodel.quantity import unit_of
 
 if TYPE_CHECKING:

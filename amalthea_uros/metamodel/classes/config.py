@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from amalthea_uros.metamodel.classes.base import BaseObject, INamed
-from amalthea_uros.metamodel.element import containments, reference
+from amalthea_uros.metamodel.features import containments, reference
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.events import EntityEvent

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from amalthea_uros.metamodel.classes.base import BaseObject, IDescription, ITaggable, ReferableBaseObject
-from amalthea_uros.metamodel.element import attribute, containments, reference, references
+from amalthea_uros.metamodel.features import attribute, containments, reference, references
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.components import Component

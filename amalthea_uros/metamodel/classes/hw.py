@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from amalthea_uros.metamodel.classes.base import BaseObject, IDescription, INamed, IReferable, ITaggable, ReferableBaseObject
-from amalthea_uros.metamodel.element import Element, attribute, containment, containments, reference, references
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.features import attribute, containment, containments, reference, references
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.common import CoreClassifier, DataRate, DataSize, Frequency, IDiscreteValueDeviation, MemoryClassifier, Voltage

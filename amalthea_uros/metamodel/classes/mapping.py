@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.metamodel.classes.base import BaseObject, ReferableBaseObject
 from amalthea_uros.metamodel.classes.os import ISchedulingParameterContainer
-from amalthea_uros.metamodel.element import attribute, containments, reference, references
+from amalthea_uros.metamodel.features import attribute, containments, reference, references
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.enums import MemoryAddressMappingType

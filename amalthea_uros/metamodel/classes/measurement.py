@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from amalthea_uros.metamodel.classes.base import BaseObject
-from amalthea_uros.metamodel.element import containment, containments, reference
+from amalthea_uros.metamodel.features import containment, containments, reference
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.common import ITimeDeviation, Time

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.metamodel.classes.base import BaseObject, IAnnotatable, IDescription, IDisplayName, INamed, INamespaceMember, ITaggable, ReferableBaseObject, ReferableObject
 from amalthea_uros.metamodel.classes.stimuli import Condition
-from amalthea_uros.metamodel.element import Element, attribute, containment, containment_or_reference, containments, reference, references
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.features import attribute, containment, containment_or_reference, containments, reference, references
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.common import (

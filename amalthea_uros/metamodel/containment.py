@@ -1,0 +1,183 @@
+"""Parts and references of objects: lists that know their owner, and the ways into and out of a container."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar, Self, SupportsIndex, TypeVar
+
+if TYPE_CHECKING:
+    from amalthea_uros.metamodel.element import Element
+    from amalthea_uros.metamodel.model import Document
+
+E = TypeVar("E", bound="Element")
+
+_set = object.__setattr__
+
+
+class Revision:
+    """Counts the changes of names and containment in this process; look-up tables made earlier are stale."""
+
+    number: ClassVar[int] = 0
+
+
+class ReferenceList(list[E]):
+    """References of one object, in order; its document learns of every change."""
+
+    __slots__ = ("_owner",)
+
+    def __init__(self, owner: Element, values: Iterable[E] = ()) -> None:
+        super().__init__(values)
+        self._owner = owner
+
+    def append(self, value: E) -> None:
+        super().append(value)
+        touch(self._owner)
+
+    def insert(self, index: SupportsIndex, value: E) -> None:
+        super().insert(index, value)
+        touch(self._owner)
+
+    def extend(self, values: Iterable[E]) -> None:
+        super().extend(values)
+        touch(self._owner)
+
+    def __iadd__(self, values: Iterable[E]) -> Self:  # type: ignore[override, misc]
+        self.extend(values)
+        return self
+
+    def __imul__(self, times: SupportsIndex) -> Self:
+        super().__imul__(times)
+        touch(self._owner)
+        return self
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        super().__setitem__(index, value)
+        touch(self._owner)
+
+    def __delitem__(self, index: Any) -> None:
+        super().__delitem__(index)
+        touch(self._owner)
+
+    def remove(self, value: E) -> None:
+        super().remove(value)
+        touch(self._owner)
+
+    def pop(self, index: SupportsIndex = -1) -> E:
+        value = super().pop(index)
+        touch(self._owner)
+        return value
+
+    def clear(self) -> None:
+        super().clear()
+        touch(self._owner)
+
+    def sort(self, *, key: Any = None, reverse: bool = False) -> None:
+        super().sort(key=key, reverse=reverse)
+        touch(self._owner)
+
+    def reverse(self) -> None:
+        super().reverse()
+        touch(self._owner)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (list, (list(self),))
+
+
+class ContainmentList(ReferenceList[E]):
+    """Parts of one object, in order. Every way of putting an object in makes the owner its container."""
+
+    __slots__ = ()
+
+    def __init__(self, owner: Element, values: Iterable[E] = ()) -> None:
+        super().__init__(owner)
+        for value in values:
+            self.append(value)
+
+    def append(self, value: E) -> None:
+        adopt(self._owner, value)
+        super().append(value)
+
+    def insert(self, index: SupportsIndex, value: E) -> None:
+        adopt(self._owner, value)
+        super().insert(index, value)
+
+    def extend(self, values: Iterable[E]) -> None:
+        for value in list(values):
+            self.append(value)
+
+    def __imul__(self, times: SupportsIndex) -> Self:
+        raise TypeError("an object can be a part only once")
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        values = list(self)
+        values[index] = value
+        self.clear()
+        self.extend(values)
+
+    def __delitem__(self, index: Any) -> None:
+        for value in self[index] if isinstance(index, slice) else [self[index]]:
+            release(value)
+        super().__delitem__(index)
+
+    def remove(self, value: E) -> None:
+        del self[self.index(value)]
+
+    def pop(self, index: SupportsIndex = -1) -> E:
+        release(self[index])
+        return super().pop(index)
+
+    def clear(self) -> None:
+        del self[:]
+
+
+def touch(element: Element, renames: bool = False) -> None:
+    """Tell the document that an object changed, and whether references to it, or to its parts, may have to as well."""
+    path = path_of(element)
+    if renames:
+        Revision.number += 1
+    document: Document | None = getattr(path[-1], "_document", None)
+    if document is not None:
+        document.changes.note(path, renames)
+
+
+def path_of(element: Element) -> list[Element]:
+    """The object, its container, and so on up to the root."""
+    path = [element]
+    while (holder := path[-1]._container) is not None:
+        path.append(holder)
+    return path
+
+
+def release(value: Element) -> None:
+    """Take the container from an object that is about to be taken out of it."""
+    touch(value, renames=True)
+    _set(value, "_container", None)
+
+
+def adopt(owner: Element, value: Element) -> None:
+    """Make `owner` the container of `value`, taking it out of the old one."""
+    if not hasattr(value, "_container"):
+        raise TypeError(f"{owner!r} cannot contain {value!r}: not a model object")
+    ancestor: Element | None = owner
+    while ancestor is not None:
+        if ancestor is value:
+            raise ValueError(f"{value!r} cannot become a part of {owner!r}, which is part of it")
+        ancestor = ancestor._container
+    _take_out(value)
+    _set(value, "_container", owner)
+    touch(value, renames=True)
+
+
+def _take_out(value: Element) -> None:
+    from amalthea_uros.metamodel.features import containments_of  # the features need the lists of this module
+
+    holder = value._container
+    if holder is None:
+        return
+    for feature in containments_of(type(holder)):
+        held = holder.__dict__.get(feature.name)
+        if held is value:
+            release(value)
+            _set(holder, feature.name, None)
+        elif feature.many and held and any(element is value for element in held):
+            held.remove(value)

@@ -1,0 +1,116 @@
+"""The features of the AMALTHEA classes: how one is declared, and what it answers while it is unset."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Literal
+
+from amalthea_uros.metamodel.containment import ContainmentList, ReferenceList
+
+if TYPE_CHECKING:
+    from amalthea_uros.metamodel.element import Element
+
+#: `either` is a containment in some versions and a reference in others (the data type of labels and channels).
+FeatureKind = Literal["attribute", "reference", "containment", "either"]
+
+_set = object.__setattr__
+
+
+class Feature:
+    """One feature of a class; as a descriptor it answers for the unset value."""
+
+    __slots__ = ("kind", "many", "name", "xml_name")
+
+    def __init__(self, xml_name: str, kind: FeatureKind, many: bool = False) -> None:
+        self.name = ""
+        self.xml_name = xml_name
+        self.kind: FeatureKind = kind
+        self.many = many
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, instance: Element | None, owner: type) -> Any:
+        if instance is None:
+            return self
+        if not self.many:
+            return None
+        empty: list[Any] = self.new_list(instance, ())
+        _set(instance, self.name, empty)
+        return empty
+
+    def new_list(self, owner: Element, values: Iterable[Any]) -> list[Any]:
+        """A list for the values of this feature."""
+        return (ContainmentList if self.kind == "containment" else ReferenceList)(owner, values)
+
+    def copied(self, owner: Element, values: Iterable[Any]) -> list[Any]:
+        """A list for values whose container is the owner already."""
+        found: list[Any] = self.new_list(owner, ())
+        list.extend(found, values)
+        return found
+
+    def contains(self, value: object) -> bool:
+        """Whether an object held by this feature is part of its holder."""
+        if self.kind == "either":
+            return not getattr(value, "is_referable", True)
+        return self.kind == "containment"
+
+    def __repr__(self) -> str:
+        return f"<{self.kind} {self.xml_name}{' *' if self.many else ''}>"
+
+
+# The generated classes call these five; their static type is the annotation of the feature.
+
+
+def attribute(xml_name: str) -> Any:
+    """A number, text, truth value or literal."""
+    return Feature(xml_name, "attribute")
+
+
+def reference(xml_name: str) -> Any:
+    """A reference to an object that lives elsewhere."""
+    return Feature(xml_name, "reference")
+
+
+def references(xml_name: str) -> Any:
+    """Ordered references to objects that live elsewhere."""
+    return Feature(xml_name, "reference", many=True)
+
+
+def containment(xml_name: str) -> Any:
+    """A part of the object."""
+    return Feature(xml_name, "containment")
+
+
+def containments(xml_name: str) -> Any:
+    """Ordered parts of the object."""
+    return Feature(xml_name, "containment", many=True)
+
+
+def containment_or_reference(xml_name: str) -> Any:
+    """A part of the object in older versions, a reference in newer ones."""
+    return Feature(xml_name, "either")
+
+
+_FEATURES: dict[type, dict[str, Feature]] = {}
+_CONTAINMENTS: dict[type, tuple[Feature, ...]] = {}
+
+
+def features_of(cls: type[Element]) -> dict[str, Feature]:
+    """All features of a class by their Python names, those of the supertypes first."""
+    found = _FEATURES.get(cls)
+    if found is None:
+        found = {}
+        for base in reversed(cls.__mro__):
+            found.update((name, value) for name, value in vars(base).items() if isinstance(value, Feature))
+        _FEATURES[cls] = found
+    return found
+
+
+def containments_of(cls: type[Element]) -> tuple[Feature, ...]:
+    """The features of a class that may hold parts."""
+    found = _CONTAINMENTS.get(cls)
+    if found is None:
+        found = tuple(f for f in features_of(cls).values() if f.kind in ("containment", "either"))
+        _CONTAINMENTS[cls] = found
+    return found
