@@ -13,11 +13,12 @@ PACKAGE = "amalthea_uros"
         ("errors", ("diagnostics",)),
         ("resources", ()),
         ("metamodel", ("diagnostics",)),
+        ("difference", ("metamodel",)),
         ("xmi", ("diagnostics", "errors", "resources", "metamodel")),
-        ("report", ("diagnostics", "metamodel")),
+        ("report", ("diagnostics", "metamodel", "difference")),
     ],
 )
 def test_a_room_imports_only_what_it_may(room, allowed):
-    rooms = ("cli", "diagnostics", "errors", "metamodel", "report", "resources", "xmi")
+    rooms = ("cli", "diagnostics", "difference", "errors", "metamodel", "report", "resources", "xmi")
     forbidden = [f"{PACKAGE}.{other}*" for other in rooms if other not in (*allowed, room)]
     (archrule(room).match(f"{PACKAGE}.{room}*").should_not_import(*forbidden).check(PACKAGE, only_direct_imports=True))

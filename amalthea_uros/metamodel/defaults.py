@@ -29,7 +29,7 @@ def defaults_of(version: str, cls: type[Element]) -> dict[str, Any]:
         declared = facts(version)
         found = _DEFAULTS[version, cls] = {}
         for name, feature in features_of(cls).items():
-            value = _default_value(declared, cls.__name__, feature.xml_name)
+            value = default_value(declared, cls.__name__, feature.xml_name)
             if value is not None:
                 found[name] = value
     return found
@@ -38,7 +38,8 @@ def defaults_of(version: str, cls: type[Element]) -> dict[str, Any]:
 _DEFAULTS: dict[tuple[str, type[Element]], dict[str, Any]] = {}
 
 
-def _default_value(declared: Facts, class_name: str, feature_name: str) -> Any:
+def default_value(declared: Facts, class_name: str, feature_name: str) -> Any:
+    """The default of an attribute (names as in files) in one version; None if it stands for nothing."""
     feature = declared.feature(class_name, feature_name)
     text = declared.default(feature) if feature else None
     if feature is None or text is None:

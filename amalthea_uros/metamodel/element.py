@@ -64,6 +64,7 @@ class Element:
     is_referable: ClassVar[bool] = False
 
     def __init_subclass__(cls, abstract: bool = False) -> None:
+        """Note of a new class whether it can have objects and whether these can be referred to."""
         cls.is_abstract = abstract
         cls.is_referable = any(base.__name__ == "IReferable" for base in cls.__mro__)
 

@@ -103,7 +103,7 @@ def test_diff(brake):
     brake.write_text(brake.read_text().replace('value="10" unit="ms"', 'value="20" unit="ms"'))
     run = amuros("diff", BRAKE, brake, "--output", "text")
     assert run.returncode == 1
-    assert run.stdout == "~ PeriodicStimulus T_10ms\n    recurrence: 10 ms -> 20 ms\n1 difference: 1 changed\n"
+    assert run.stdout == "~ PeriodicStimulus T_10ms\n    recurrence: 10 ms -> 20 ms\n\n1 difference: 1 changed\n"
 
 
 def test_diff_as_json(brake):
@@ -112,7 +112,7 @@ def test_diff_as_json(brake):
     (change,) = json.loads(run.stdout)["changes"]
     assert change["feature"] == "name"
     assert (change["old"], change["new"]) == ("Pedal", "Lever")
-    assert change["new_location"] == f"{brake}:19:5"
+    assert change["new_location"] == {"file": str(brake), "line": 19, "column": 39}
 
 
 def test_a_closed_pipe_is_no_error():

@@ -1,0 +1,349 @@
+"""Two models compared by meaning.
+
+Objects are the same if their unique names are, wherever they stand; parts without a unique name are matched inside the objects
+that hold them. What has no meaning is not compared: files, ids, spelling, the order of what stands side by side, attributes
+that say the same as their absence.
+"""
+
+from __future__ import annotations
+
+import gc
+from collections import Counter
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+
+from amalthea_uros.difference.absence import Absences
+from amalthea_uros.difference.alignment import increasing
+from amalthea_uros.difference.fingerprint import Fingerprints, is_sequence, unknown_content
+from amalthea_uros.difference.matching import Matching
+from amalthea_uros.difference.names import Names, has_identity
+from amalthea_uros.difference.parts import PartsMatcher, Side
+from amalthea_uros.difference.wording import UNSET, is_inline, label, readable_name, shortened, wording
+from amalthea_uros.metamodel.classes.base import Amalthea
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.features import Feature, features_of
+from amalthea_uros.metamodel.naming import name_of
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Iterable, Iterator, Sequence
+
+    from amalthea_uros.metamodel.model import Model
+
+#: The feature of the change that is another AMALTHEA version.
+VERSION_FEATURE = "AMALTHEA version"
+
+#: So many names of a list are told.
+_MOST_NAMES = 5
+
+Elements = tuple[Element, ...]
+
+
+class ChangeKind(StrEnum):
+    """What happened to an object."""
+
+    ADDED = "added"
+    REMOVED = "removed"
+    CHANGED = "changed"
+    MOVED = "moved"
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One difference.
+
+    Attributes
+    ----------
+    class_name, qualified_name : the object; for a removed one as in the old model, else as in the new one
+    feature : the name in files of the feature that changed, or that holds a moved object; "" for added and removed objects
+    old, new : the values in a few words; of a list what was removed, and what was added or stands in another order; of an
+        object without unique name what it is about
+    old_element, new_element : the object in the two models, None where it is absent
+    """
+
+    kind: ChangeKind
+    class_name: str
+    qualified_name: str
+    feature: str
+    old: str
+    new: str
+    old_element: Element | None
+    new_element: Element | None
+
+
+def difference(old: Model, new: Model) -> list[Change]:
+    """What is different by meaning, in the order of the new model; what was removed stands where its container is."""
+    was_enabled = gc.isenabled()
+    # The comparison makes many objects and no garbage: scanning both models for it would take half of the time.
+    gc.disable()
+    try:
+        return _Comparison(old, new).changes()
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+class _Comparison:
+    def __init__(self, old: Model, new: Model) -> None:
+        self.models = old, new
+        absences = Absences([*old.documents, *new.documents])
+        self.absences = absences
+        self.old_names, self.new_names = Names(old), Names(new)
+        self.matching = Matching(self.old_names, self.new_names, absences)
+        numbers: dict[Hashable, int] = {}
+        self.old = Side(self.old_names, Fingerprints(absences, self.old_names.token, numbers))
+        self.new = Side(self.new_names, Fingerprints(absences, self.new_names.token, numbers))
+        #: Old objects -> where they are now.
+        self.counterparts: dict[Element, Element] = dict(self.matching.pairs)
+        #: Objects without counterpart; what they hold came or went with them.
+        self.lonely: set[Element] = {*self.matching.removed, *self.matching.added}
+        self.found: list[Change] = []
+
+    def changes(self) -> list[Change]:
+        self.versions()
+        self.features(*(tuple(document.root for document in model.documents) for model in self.models))
+        for old, new in self.matching.pairs:
+            self.pair(old, new)
+        for old, new in self.matching.pairs:
+            self.home(old, new)
+        for removed in self.matching.removed:
+            if not self.went_along(removed):
+                self.remove(removed)
+        for added in self.matching.added:
+            if not self.went_along(added):
+                self.add(added)
+        return sorted(self.found, key=self.place)
+
+    # What to tell
+
+    def change(self, old: Element | None, new: Element | None, feature: str, old_text: str, new_text: str) -> None:
+        self.tell(ChangeKind.CHANGED, old, new, feature, old_text, new_text)
+
+    def remove(self, old: Element) -> None:
+        self.lonely.add(old)
+        self.tell(ChangeKind.REMOVED, old, None, "", "" if has_identity(old) else label(old), "")
+
+    def add(self, new: Element) -> None:
+        self.lonely.add(new)
+        self.tell(ChangeKind.ADDED, None, new, "", "", "" if has_identity(new) else label(new))
+
+    def tell(
+        self, kind: ChangeKind, old: Element | None, new: Element | None, feature: str, old_text: str, new_text: str
+    ) -> None:
+        shown = new if new is not None else old
+        assert shown is not None
+        self.found.append(Change(kind, type(shown).__name__, shown.qualified_name, feature, old_text, new_text, old, new))
+
+    def place(self, change: Change) -> int:
+        if change.new_element is not None:
+            return self.new_names.order[change.new_element]
+        holder = change.old_element
+        while holder is not None and holder not in self.counterparts:
+            holder = holder.container
+        return self.new_names.order[self.counterparts[holder]] if holder is not None else 0
+
+    def went_along(self, element: Element) -> bool:
+        holder = element.container
+        while holder is not None and holder not in self.lonely:
+            holder = holder.container
+        return holder is not None
+
+    # What to compare
+
+    def versions(self) -> None:
+        old, new = (", ".join(sorted({document.version for document in model.documents})) for model in self.models)
+        if old != new:
+            old_root, new_root = (model.documents[0].root for model in self.models)
+            self.change(old_root, new_root, VERSION_FEATURE, old, new)
+
+    def home(self, old: Element, new: Element) -> None:
+        if not self.is_same_home(_home(old), _home(new)):
+            self.tell(ChangeKind.MOVED, old, new, _holding_feature(new).xml_name, _home_text(old), _home_text(new))
+
+    def is_same_home(self, old: Element | None, new: Element | None) -> bool:
+        if old is None or new is None:
+            return old is new
+        if has_identity(old) or has_identity(new):
+            return self.old_names.token(old) == self.new_names.token(new)
+        if old in self.counterparts:
+            return self.counterparts[old] is new
+        # Parts of what is equal altogether were not looked at.
+        is_alike = type(old) is type(new) and label(old) == label(new)
+        return is_alike and self.is_same_home(_home(old), _home(new))
+
+    def pair(self, old: Element, new: Element) -> None:
+        self.counterparts[old] = new
+        if self.old.fingerprints.of(old) != self.new.fingerprints.of(new):
+            self.features((old,), (new,))
+
+    def features(self, old: Elements, new: Elements) -> None:
+        """Compare objects; several on a side are the roots of several files, or their sub-models, and count as one."""
+        self.counterparts |= {element: new[0] for element in old if new}
+        for feature in features_of(type((old or new)[0])).values():
+            if feature.kind == "attribute":
+                self.attribute(feature, old, new)
+            else:
+                self.references(feature, old, new)
+                self.parts(feature, old, new)
+        self.unknown(old, new)
+
+    def attribute(self, feature: Feature, old: Elements, new: Elements) -> None:
+        old_value, new_value = self.meaning(feature, old, new), self.meaning(feature, new, old)
+        if old_value != new_value and not (old_value != old_value and new_value != new_value):
+            self.change(*_firsts(old, new), feature.xml_name, wording(old_value), wording(new_value))
+
+    def meaning(self, feature: Feature, elements: Elements, others: Elements) -> Any:
+        """The first value that says more than absence."""
+        absences = [self.absences.of(element)[feature.name] for element in elements or others]
+        values = [a.meaning(e.__dict__.get(feature.name)) for a, e in zip(absences, elements, strict=False)]
+        return next((v for v, a in zip(values, absences, strict=False) if v != a.stands_for), absences[0].stands_for)
+
+    def references(self, feature: Feature, old: Elements, new: Elements) -> None:
+        old_targets, new_targets = (
+            [value for value in _values(feature, elements) if not feature.contains(value)] for elements in (old, new)
+        )
+        old_tokens, new_tokens = map(self.old_names.token, old_targets), map(self.new_names.token, new_targets)
+        texts = _Tokens(old_tokens, old_targets), _Tokens(new_tokens, new_targets)
+        if texts[0].tokens == texts[1].tokens:
+            return
+        if feature.many:
+            self.change(*_firsts(old, new), feature.xml_name, *_list_wording(*texts))
+        else:
+            old_text, new_text = (readable_name(targets[0]) if targets else UNSET for targets in (old_targets, new_targets))
+            self.change(*_firsts(old, new), feature.xml_name, old_text, new_text)
+
+    def parts(self, feature: Feature, old: Elements, new: Elements) -> None:
+        old_parts, new_parts = (
+            [part for part in _values(feature, elements) if feature.contains(part) and not has_identity(part)]
+            for elements in (old, new)
+        )
+        if feature.many:
+            self.part_lists(feature, (old, new), old_parts, new_parts)
+        elif isinstance((old or new)[0], Amalthea) and (old_parts or new_parts):
+            self.features(tuple(old_parts), tuple(new_parts))
+        elif old_parts or new_parts:
+            self.single_part(feature, (old, new), *_firsts(old_parts, new_parts))
+
+    def part_lists(self, feature: Feature, holders: tuple[Elements, Elements], old: list[Element], new: list[Element]) -> None:
+        if not old and not new:
+            return
+        matcher = PartsMatcher(old, new, self.old, self.new)
+        follow_each_other = is_sequence(type((holders[0] or holders[1])[0]), feature.name)
+        matcher.match(follow_each_other)
+        for removed in matcher.old:
+            self.remove(removed)
+        for added in matcher.new:
+            self.add(added)
+        for pair in matcher.pairs:
+            self.pair(*pair)
+        moved = matcher.moved() if follow_each_other else []
+        if moved:
+            self.change(*_firsts(*holders), feature.xml_name, "", f"reordered {_names(map(_described, moved))}")
+
+    def single_part(
+        self, feature: Feature, holders: tuple[Elements, Elements], old: Element | None, new: Element | None
+    ) -> None:
+        if all(part is None or is_inline(part) for part in (old, new)):
+            texts = wording(old), wording(new)
+            if type(old) is not type(new) and old is not None and new is not None and texts[0] == texts[1]:
+                texts = _described(old), _described(new)
+            if texts[0] != texts[1]:
+                self.change(*_firsts(*holders), feature.xml_name, *texts)
+                return
+        if old is not None and new is not None and type(old) is type(new):
+            self.pair(old, new)
+            return
+        if old is not None:
+            self.remove(old)
+        if new is not None:
+            self.add(new)
+
+    def unknown(self, old: Elements, new: Elements) -> None:
+        old_content, new_content = (
+            Counter((name, text) for element in elements for name, texts in _unknown(element) for text in texts)
+            for elements in (old, new)
+        )
+        gone, came = old_content - new_content, new_content - old_content
+        for name in dict.fromkeys(name for name, _ in [*gone, *came]):
+            texts = (shortened(" ".join(t for n, t in side.elements() if n == name)) or UNSET for side in (gone, came))
+            self.change(*_firsts(old, new), name, *texts)
+
+
+class _Tokens:
+    """The targets of a list of references."""
+
+    def __init__(self, tokens: Iterable[Hashable], targets: Sequence[Element]) -> None:
+        self.tokens = list(tokens)
+        self.targets = targets
+
+    def names_beyond(self, other: _Tokens) -> list[str]:
+        """The names of the targets that the other list does not have, or not so often."""
+        spare = Counter(other.tokens)
+        names = []
+        for token, target in zip(self.tokens, self.targets, strict=True):
+            spare[token] -= 1
+            if spare[token] < 0:
+                names.append(readable_name(target))
+        return names
+
+    def names_moved(self, other: _Tokens) -> list[str]:
+        """The names of the targets that stand in both lists, but in another order."""
+        places = {token: place for place, token in enumerate(other.tokens)}
+        common = [(t, e) for t, e in dict(zip(self.tokens, self.targets, strict=True)).items() if t in places]
+        kept = set(increasing([places[token] for token, _ in common]))
+        return [readable_name(target) for index, (_, target) in enumerate(common) if index not in kept]
+
+
+def _list_wording(old: _Tokens, new: _Tokens) -> tuple[str, str]:
+    removed, added, moved = old.names_beyond(new), new.names_beyond(old), new.names_moved(old)
+    parts = [f"{word} {_names(names)}" for word, names in (("added", added), ("reordered", moved)) if names]
+    return f"removed {_names(removed)}" if removed else "", ", ".join(parts)
+
+
+def _names(names: Iterable[str]) -> str:
+    known = list(names)
+    more = len(known) - _MOST_NAMES
+    return ", ".join(known[:_MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
+
+
+def _described(part: Element) -> str:
+    return f"{type(part).__name__} {label(part)}".rstrip()
+
+
+def _values(feature: Feature, elements: Elements) -> list[Any]:
+    found: list[Any] = []
+    for element in elements:
+        value = element.__dict__.get(feature.name)
+        if value is not None:
+            found += value if feature.many else [value]
+    return found
+
+
+def _firsts(old: Sequence[Element], new: Sequence[Element]) -> tuple[Element | None, Element | None]:
+    return (old[0] if old else None), (new[0] if new else None)
+
+
+def _unknown(element: Element) -> Iterator[tuple[str, tuple[str, ...]]]:
+    yield from unknown_content(element.__dict__.get("_extras")).items()
+
+
+def _home(element: Element) -> Element | None:
+    """The nearest container with a name; files and sub-models are no homes."""
+    holder = element.container
+    while holder is not None and not has_identity(holder) and not name_of(holder):
+        holder = holder.container
+    return holder
+
+
+def _home_text(element: Element) -> str:
+    home = _home(element)
+    return label(home) if home is not None else type(element.container).__name__
+
+
+def _holding_feature(element: Element) -> Feature:
+    holder = element.container
+    assert holder is not None
+    for feature in features_of(type(holder)).values():
+        if feature.kind != "attribute" and any(value is element for value in _values(feature, (holder,))):
+            return feature
+    raise ValueError(f"{element!r} is not a part of {holder!r}")

@@ -1,0 +1,136 @@
+"""Numbers that are equal for objects with equal content."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+from amalthea_uros.difference.names import has_identity
+from amalthea_uros.metamodel.classes.common import ListObject
+from amalthea_uros.metamodel.classes.constraints import AbstractEventChain
+from amalthea_uros.metamodel.classes.sw import IActivityGraphItemContainer, ModeSwitch, Switch
+from amalthea_uros.metamodel.containment import ContainmentList
+from amalthea_uros.metamodel.element import Element, Extras
+from amalthea_uros.metamodel.features import Feature, features_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable
+
+    from amalthea_uros.difference.absence import Absences
+
+#: Classes of which the parts follow each other, and the feature that holds them; all other parts stand side by side.
+_SEQUENCES = (
+    (IActivityGraphItemContainer, "items"),
+    (AbstractEventChain, "items"),
+    (ModeSwitch, "entries"),
+    (Switch, "entries"),
+    (ListObject, "values"),
+)
+
+_LAYOUT = re.compile(r"(?<=>)\s+(?=<)")
+
+
+def is_sequence(cls: type[Element], feature_name: str) -> bool:
+    """Whether the order of the parts in a feature (its Python name) has a meaning."""
+    return any(feature_name == name and issubclass(cls, holder) for holder, name in _SEQUENCES)
+
+
+def unknown_content(extras: Extras | None) -> dict[str, tuple[str, ...]]:
+    """The unknown attributes and elements of an object by name; comments and the layout are no content."""
+    if extras is None:
+        return {}
+    attributes = {name: text for name, text in extras.attributes.items() if not name.startswith("xmlns")}
+    found: dict[str, tuple[str, ...]] = {name: (text,) for name, text in attributes.items()}
+    for _, raw in extras.content:
+        if not raw.startswith(("<!--", "<?")):
+            tag = re.match(r"<([^\s/>]+)", raw)
+            name = tag[1] if tag else "text"
+            found[name] = (*found.get(name, ()), _LAYOUT.sub("", raw))
+    return found
+
+
+class Fingerprints:
+    """The fingerprints of objects of one model.
+
+    Parameters
+    ----------
+    absences : of the models to be compared
+    token : what stands for the target of a reference
+    numbers : the fingerprints given out, shared by the models to be compared
+    stops : whether a part counts by its token only, or not at all (None), instead of by its content
+    """
+
+    def __init__(
+        self,
+        absences: Absences,
+        token: Callable[[Element], Hashable],
+        numbers: dict[Hashable, int],
+        stops: Callable[[Element], bool] | None = None,
+    ) -> None:
+        self._absences = absences
+        self._token = token
+        self._numbers = numbers
+        self._stops = stops
+        self._known: dict[Element, int] = {}
+
+    def of(self, element: Element) -> int:
+        """The fingerprint of an object with its parts."""
+        number = self._known.get(element)
+        if number is None:
+            number = self._known[element] = self._number(element, self._facts(element))
+        return number
+
+    def nameless(self, element: Element) -> int:
+        """The fingerprint of an object whatever its own name is."""
+        return self._number(element, [fact for fact in self._facts(element) if fact[0] != "name"])
+
+    def shallow(self, element: Element) -> int:
+        """The fingerprint of an object without its parts."""
+        parts = {feature.name for feature in features_of(type(element)).values() if feature.kind == "containment"}
+        return self._number(element, [fact for fact in self._facts(element) if fact[0] not in parts])
+
+    def _number(self, element: Element, facts: list[tuple[str, Hashable]]) -> int:
+        return self._numbers.setdefault((type(element), *facts), len(self._numbers))
+
+    def _facts(self, element: Element) -> list[tuple[str, Hashable]]:
+        """What is set and does not say the same as absence, by feature, in an order that depends on the names only."""
+        absences = self._absences.of(element)
+        values = element.__dict__
+        facts: list[tuple[str, Any]] = []
+        for name, value in values.items():
+            absence = absences.get(name)
+            if absence is not None:
+                value = absence.meaning(value)
+                if value != absence.common:
+                    facts.append((name, value))
+            elif value:
+                content = self._content(element, name, value)
+                if content:
+                    facts.append((name, content))
+        if len(self._absences.versions) > 1:
+            facts += self._varying(values, absences)
+        facts.sort(key=_name)
+        return facts
+
+    def _varying(self, values: dict[str, Any], absences: dict[str, Any]) -> list[tuple[str, Any]]:
+        return [(n, a.stands_for) for n, a in absences.items() if n not in values and a.common != a.stands_for]
+
+    def _content(self, element: Element, name: str, value: Any) -> Hashable:
+        if type(value) is ContainmentList:
+            parts = [self._part(part) for part in value if self._stops or not has_identity(part)]
+            return tuple(parts if is_sequence(type(element), name) else sorted(parts, key=repr))
+        if isinstance(value, list):
+            return tuple(map(self._token, value))
+        if isinstance(value, Extras):
+            return tuple(sorted(unknown_content(value).items()))
+        feature: Feature = features_of(type(element))[name]
+        if not feature.contains(value):
+            return self._token(value)
+        return None if has_identity(value) and not self._stops else (self._part(value),)
+
+    def _part(self, part: Element) -> Hashable:
+        return self._token(part) if self._stops and self._stops(part) else self.of(part)
+
+
+def _name(fact: tuple[str, Any]) -> str:
+    return fact[0]

@@ -1,0 +1,145 @@
+"""Which objects of two models are the same: by unique name, and those that were only renamed."""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from typing import TYPE_CHECKING
+
+from amalthea_uros.difference.fingerprint import Fingerprints
+from amalthea_uros.metamodel.element import Element
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable, Iterable
+
+    from amalthea_uros.difference.absence import Absences
+    from amalthea_uros.difference.names import Names, Token
+
+Pair = tuple[Element, Element]
+
+
+def pair_up(
+    old: Iterable[Element],
+    new: Iterable[Element],
+    old_key: Callable[[Element], Hashable],
+    new_key: Callable[[Element], Hashable],
+) -> list[Pair]:
+    """Pairs of objects with equal keys, those with the same key in their order; the key None fits nothing."""
+    waiting: dict[Hashable, deque[Element]] = defaultdict(deque)
+    for element in new:
+        key = new_key(element)
+        if key is not None:
+            waiting[key].append(element)
+    return [(element, waiting[key].popleft()) for element in old if waiting.get(key := old_key(element))]
+
+
+class Matching:
+    """The objects with an identity of two models, in pairs.
+
+    Attributes
+    ----------
+    pairs : the old and the new side of what is in both; renamed objects too
+    removed, added : what is in one of them only
+    """
+
+    def __init__(self, old: Names, new: Names, absences: Absences) -> None:
+        self._old, self._new, self._absences = old, new, absences
+        self.pairs: list[Pair] = []
+        self.removed: dict[Element, None] = {}
+        self.added: dict[Element, None] = {}
+        self._common = old.by_token.keys() & new.by_token.keys()
+        for token in old.by_token | new.by_token:
+            self._match_name(old.by_token.get(token, []), new.by_token.get(token, []))
+        if self.removed and self.added:
+            self._match_renamed()
+
+    def _match_name(self, old: list[Element], new: list[Element]) -> None:
+        if len(old) == len(new) == 1:
+            self.pairs.append((old[0], new[0]))
+            return
+        # Names that are not unique: those in the same container first.
+        pairs = pair_up(old, new, self._old.home, self._new.home)
+        self.pairs += pairs
+        rest = _without(old, (a for a, _ in pairs)), _without(new, (b for _, b in pairs))
+        common = min(map(len, rest))
+        self.pairs += zip(rest[0][:common], rest[1][:common], strict=True)
+        self.removed |= dict.fromkeys(rest[0][common:])
+        self.added |= dict.fromkeys(rest[1][common:])
+
+    def _match_renamed(self) -> None:
+        candidates = self._candidates()
+        while candidates:
+            self._translate(candidates)
+            carried = self._carried()
+            kept = self._with_equal_content(candidates)
+            if len(kept) == len(candidates):
+                self._accept([*candidates, *carried])
+                return
+            candidates = kept
+        self._translate([])
+
+    def _candidates(self) -> list[Pair]:
+        """Pairs of a removed and an added object that could be one; references to what is not matched may lead anywhere yet."""
+        numbers: dict[Hashable, int] = {}
+        old = self._loose_keys(self._old, self.removed, numbers)
+        new = self._loose_keys(self._new, self.added, numbers)
+        return [(old[key][0], new[key][0]) for key in old if len(old[key]) == 1 and len(new.get(key, ())) == 1]
+
+    def _loose_keys(
+        self, names: Names, unmatched: dict[Element, None], numbers: dict[Hashable, int]
+    ) -> dict[Hashable, list[Element]]:
+        def loose(target: Element) -> Token:
+            token = names.token(target)
+            return token if token in self._common else (type(target).__name__,)
+
+        fingerprints = Fingerprints(self._absences, loose, numbers, lambda part: names.token(part) in self._common)
+        found: dict[Hashable, list[Element]] = defaultdict(list)
+        for element in unmatched:
+            home = names.home(element)
+            # A part of something unmatched goes with it.
+            if not home or home in self._common:
+                found[home, fingerprints.nameless(element)].append(element)
+        return found
+
+    def _translate(self, pairs: list[Pair]) -> None:
+        self._new.translation = {self._new.own_token(new): self._old.own_token(old) for old, new in pairs}
+
+    def _carried(self) -> list[Pair]:
+        """Pairs of which only the names in front changed: ports of a renamed component, members of a namespace."""
+        carried: list[Pair] = []
+        while True:
+            translation = self._new.translation
+            known = set(translation.values())
+            removed = (e for e in self.removed if self._old.own_token(e) not in known)
+            added = (e for e in self.added if self._new.own_token(e) not in translation)
+            pairs = pair_up(removed, added, lambda e: _place(e, self._old), lambda e: _place(e, self._new))
+            if not pairs:
+                return carried
+            carried += pairs
+            translation |= {self._new.own_token(new): self._old.own_token(old) for old, new in pairs}
+
+    def _with_equal_content(self, candidates: list[Pair]) -> list[Pair]:
+        numbers: dict[Hashable, int] = {}
+        matched = self._common | set(self._new.translation.values())
+
+        def fingerprints(names: Names) -> Fingerprints:
+            return Fingerprints(self._absences, names.token, numbers, lambda part: names.token(part) in matched)
+
+        old, new = fingerprints(self._old), fingerprints(self._new)
+        return [(a, b) for a, b in candidates if old.nameless(a) == new.nameless(b)]
+
+    def _accept(self, pairs: list[Pair]) -> None:
+        self.pairs += pairs
+        for old, new in pairs:
+            del self.removed[old]
+            del self.added[new]
+
+
+def _place(element: Element, names: Names) -> Hashable:
+    namespace = element.__dict__.get("namespace")
+    around = names.token(namespace) if namespace is not None else None
+    return (type(element), element.__dict__.get("name"), names.home(element), around)
+
+
+def _without(elements: list[Element], taken: Iterable[Element]) -> list[Element]:
+    gone = set(taken)
+    return [element for element in elements if element not in gone]
