@@ -69,6 +69,7 @@ class Element:
         cls.is_referable = any(base.__name__ == "IReferable" for base in cls.__mro__)
 
     def __new__(cls, *_args: Any, **_features: Any) -> Self:
+        """A detached object, whatever is set."""
         self = object.__new__(cls)
         _set(self, "_container", None)
         return self

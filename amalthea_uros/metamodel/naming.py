@@ -47,7 +47,7 @@ def encode(name: str | None) -> str:
     if _PLAIN(name):
         return name
     # quote_plus also leaves the tilde alone, Java does not.
-    return quote_plus(name, safe="*").replace("~", "%7E")
+    return quote_plus(name, safe="*", errors="surrogatepass").replace("~", "%7E")
 
 
 def decode(segment: str) -> str:
@@ -57,7 +57,8 @@ def decode(segment: str) -> str:
 
 def name_of(element: Element | None) -> str:
     """The raw name of an object, "" if it has none."""
-    return getattr(element, "name", None) or ""
+    name = getattr(element, "name", None)
+    return name if isinstance(name, str) else ""
 
 
 def unique_name(element: Element) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import io
+import lzma
 import os
 import re
 import tempfile
@@ -24,10 +25,17 @@ ZIP_ENTRY = "ResourceContents"
 
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
-    (codecs.BOM_UTF16_LE, "utf-16"),
-    (codecs.BOM_UTF16_BE, "utf-16"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
+#: Codecs to which a byte order mark is a character like others; files in them that have none are not told from binary ones.
+_UNMARKED = frozenset({"utf-16-le", "utf-16-be"})
+_MARK = "\ufeff"
 _DECLARED = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
+
+
+#: What `zipfile` raises; an index error where an entry has no name.
+_DAMAGED = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, OSError, ValueError, IndexError)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +58,9 @@ def read_text(path: Path, max_size: int = MAX_SIZE) -> FileText:
     entry = None
     if data.startswith(b"PK\x03\x04"):
         entry, data = _unzip(path, data, max_size)
-    if not data.strip():
-        raise _refused(path, "XMI001", "the file is empty", "Check that it was written completely.")
     encoding = _encoding(data)
     try:
-        return FileText(data.decode(encoding), encoding, entry)
+        text = _decode(data, encoding)
     except (UnicodeError, LookupError) as error:
         raise _refused(
             path,
@@ -62,6 +68,9 @@ def read_text(path: Path, max_size: int = MAX_SIZE) -> FileText:
             f"this is not XML: its bytes are no {encoding} text ({error})",
             "AMALTHEA models are XML files in UTF-8, plain or zipped.",
         ) from None
+    if not text or text.isspace():
+        raise _refused(path, "XMI001", "the file is empty", "Check that it was written completely.")
+    return FileText(text, encoding, entry)
 
 
 def write_text(path: Path, content: FileText) -> None:
@@ -71,26 +80,50 @@ def write_text(path: Path, content: FileText) -> None:
     ------
     WriteError : the place cannot be written to.
     """
-    data = content.text.encode(content.encoding)
+    data = _encode(content.text, content.encoding)
     if content.zip_entry is not None:
         data = _zip(content.zip_entry, data)
-    target = path.resolve()  # a link stays a link, the file behind it is replaced
     temporary = None
     try:
+        target = path.resolve()  # a link stays a link, the file behind it is replaced
         mode = target.stat().st_mode & 0o777 if target.exists() else 0o666 & ~_umask()
-        descriptor, temporary = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+        descriptor, temporary = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
         with os.fdopen(descriptor, "wb") as stream:
             stream.write(data)
             stream.flush()
             os.fsync(stream.fileno())
         Path(temporary).chmod(mode)
         Path(temporary).replace(target)
-    except OSError as error:
+        temporary = None
+    except (OSError, ValueError) as error:
+        raise not_writable(path, error) from None
+    finally:
         if temporary:
             with suppress(OSError):
                 Path(temporary).unlink()
-        reason = error.strerror or str(error)
-        raise WriteError([Finding("XMI101", Severity.ERROR, f"the file cannot be written: {reason}", Location(path))]) from None
+
+
+def is_folder(path: Path) -> bool:
+    """Whether there is such a folder; of an impossible path, opening it tells what is wrong."""
+    try:
+        return path.is_dir()
+    except OSError:
+        return False
+
+
+def not_writable(path: Path, error: OSError | ValueError) -> WriteError:
+    """What to raise when a place cannot be written to."""
+    return WriteError([Finding("XMI101", Severity.ERROR, f"the file cannot be written: {_reason(error)}", Location(path))])
+
+
+def not_readable(path: Path, error: OSError | ValueError) -> ReadError:
+    """What to raise when a place cannot be read."""
+    return _refused(path, "XMI001", f"the file cannot be read: {_reason(error)}", "")
+
+
+def _reason(error: OSError | ValueError) -> str:
+    # A path with a zero byte is a ValueError.
+    return getattr(error, "strerror", None) or str(error)
 
 
 def _umask() -> int:
@@ -107,8 +140,8 @@ def _read_bytes(path: Path, max_size: int) -> bytes:
             data = stream.read(max_size + 1)
     except FileNotFoundError:
         raise _refused(path, "XMI001", "there is no such file", "Check the path.") from None
-    except OSError as error:
-        raise _refused(path, "XMI001", f"the file cannot be read: {error.strerror or error}", "") from None
+    except (OSError, ValueError) as error:
+        raise not_readable(path, error) from None
     if len(data) > max_size:
         raise _too_large(path, max_size)
     return data
@@ -128,11 +161,28 @@ def _unzip(path: Path, data: bytes, max_size: int) -> tuple[str, bytes]:
             with archive.open(names[0]) as stream:
                 # Never trust the size that the archive declares: stop when too much has come out.
                 content = stream.read(max_size + 1)
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError) as error:
+    except _DAMAGED as error:
         raise _refused(path, "XMI001", f"the archive is damaged or not supported: {error}", "") from None
     if len(content) > max_size:
         raise _too_large(path, max_size)
     return names[0], content
+
+
+def _decode(data: bytes, encoding: str) -> str:
+    """The characters of a file, provided that they give these bytes again."""
+    text = data.decode(encoding)
+    if encoding in _UNMARKED:
+        text = text.removeprefix(_MARK)
+    if not encoding.startswith("utf-8"):
+        text.encode()  # some encodings have lone surrogates, XML has not
+        if _encode(text, encoding) != data:
+            raise UnicodeError("written again, they would not be the same")
+    return text
+
+
+def _encode(text: str, encoding: str) -> bytes:
+    # What an encoding lacks, XML can write by its number.
+    return (_MARK + text if encoding in _UNMARKED else text).encode(encoding, "xmlcharrefreplace")
 
 
 def _zip(entry: str, data: bytes) -> bytes:

@@ -17,7 +17,7 @@ from amalthea_uros.metamodel.versions import (
 XMI_NAMESPACE = "http://www.omg.org/XMI"
 XSI_NAMESPACE = "http://www.w3.org/2001/XMLSchema-instance"
 
-_VERSION = re.compile(r"\d{1,4}(\.\d{1,4}){1,3}").fullmatch
+_VERSION = re.compile(r"[0-9]{1,4}(\.[0-9]{1,4}){1,3}").fullmatch
 
 
 class Header(NamedTuple):

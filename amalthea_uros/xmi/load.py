@@ -11,7 +11,7 @@ from pathlib import Path
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.xmi.files import MAX_SIZE, read_text
+from amalthea_uros.xmi.files import MAX_SIZE, is_folder, not_readable, read_text
 from amalthea_uros.xmi.reader import ReadResult, read
 from amalthea_uros.xmi.references import resolve
 
@@ -85,8 +85,11 @@ def model_files(paths: Iterable[StrPath]) -> list[Path]:
     """
     found: dict[Path, None] = {}
     for path in map(Path, paths):
-        if path.is_dir():
-            inside = sorted(entry for entry in path.iterdir() if entry.suffix == SUFFIX and entry.is_file())
+        if is_folder(path):
+            try:
+                inside = sorted(entry for entry in path.iterdir() if entry.suffix == SUFFIX and entry.is_file())
+            except OSError as error:
+                raise not_readable(path, error) from None
             if not inside:
                 raise ReadError(
                     [Finding("XMI001", Severity.ERROR, f"there is no {SUFFIX} file in this folder", Location(path))]

@@ -7,7 +7,7 @@ from pathlib import Path
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.model import Document, Model
-from amalthea_uros.xmi.files import ZIP_ENTRY, FileText, write_text
+from amalthea_uros.xmi.files import ZIP_ENTRY, FileText, is_folder, not_writable, write_text
 from amalthea_uros.xmi.load import SUFFIX, StrPath
 from amalthea_uros.xmi.writer import document_text
 
@@ -55,12 +55,15 @@ def _targets(model: Model, path: StrPath | None) -> list[tuple[Document, Path]]:
     if path is None:
         return [(document, _own_path(document)) for document in model.documents]
     given = Path(path)
-    if len(model.documents) == 1 and not given.is_dir():
+    if len(model.documents) == 1 and not is_folder(given):
         return [(model.documents[0], given)]
-    if given.exists() and not given.is_dir():
+    try:
+        given.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
         message = f"the model has {len(model.documents)} files, but this is one file and no folder"
-        raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(given), "Name a folder.")])
-    given.mkdir(parents=True, exist_ok=True)
+        raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(given), "Name a folder.")]) from None
+    except (OSError, ValueError) as error:
+        raise not_writable(given, error) from None
     return [(document, given / _own_path(document).name) for document in model.documents]
 
 

@@ -159,8 +159,8 @@ class Speller:
             return str(value)
         if value == feature.omitted:
             return None
-        text = literal.format(value)
         try:
+            text: str = literal.format(value)
             literal.parse(text)
         except ValueError as error:
             self.refuse(element, f"{feature.name!r}: {error}")

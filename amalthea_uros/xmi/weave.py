@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from math import copysign
 from typing import Any, NamedTuple
 
 from amalthea_uros.metamodel.element import Element
@@ -143,8 +144,8 @@ class Weaver:
         assert feature.literal
         current = element.__dict__.get(feature.name)
         if current is None:
-            return wanted is not None and _parsed(feature.literal.parse, value) == feature.literal.parse(wanted)
-        return bool(_parsed(feature.literal.parse, value) == current)
+            return wanted is not None and _equal(_parsed(feature.literal.parse, value), feature.literal.parse(wanted))
+        return _equal(_parsed(feature.literal.parse, value), current)
 
     def respelled(self, element: Element, key: str, references: list[str]) -> list[str]:
         """References as we would write them, as far as they were odd but understood."""
@@ -167,12 +168,13 @@ class Weaver:
         new_extra = [piece for raw in extra for piece in (separator, raw)]
         if not _in_order(nodes, children):
             return _rearranged(nodes, children, new_extra, separator)
-        added = _added_behind(nodes, children)
-        found: list[str | Part] = [item for child in added.get(None, ()) for item in (separator, _item(child))]
+        behind, before = _added(nodes, children)
+        found: list[str | Part] = [item for child in behind.get(None, ()) for item in (separator, _item(child))]
         for node in nodes:
             if node.kept:
+                found += [item for child in before.get(id(node.child), ()) for item in (_item(child), separator)]
                 found.append(node.child if isinstance(node.child, Part) else node.text)
-                found += [item for child in added.get(node, ()) for item in (separator, _item(child))]
+                found += [item for child in behind.get(id(node.child), ()) for item in (separator, _item(child))]
             elif found and isinstance(found[-1], str) and found[-1].isspace():
                 found.pop()
         if len(new_extra) > 0:
@@ -243,6 +245,11 @@ def _parsed(parse: Callable[[str], Any], text: str) -> Any:
         return None
 
 
+def _equal(one: Any, other: Any) -> bool:
+    """Whether two values are written alike; a negative zero equals zero."""
+    return bool(one == other) and (not isinstance(one, float) or copysign(1, one) == copysign(1, other))
+
+
 def _item(child: Child) -> str | Part:
     return child if isinstance(child, Part) else child.tag
 
@@ -269,18 +276,26 @@ def _in_order(nodes: list[Node], children: list[Child]) -> bool:
     return True
 
 
-def _added_behind(nodes: list[Node], children: list[Child]) -> dict[Node | None, list[Child]]:
-    """The children that the source does not have, by the node behind which they belong (None: at the start)."""
-    by_child = {id(node.child): node for node in nodes if node.child is not None}
-    added: dict[Node | None, list[Child]] = {}
-    before = None
+def _added(nodes: list[Node], children: list[Child]) -> tuple[dict[int | None, list[Child]], dict[int, list[Child]]]:
+    """The children that the source does not have, by the id of the child behind (None: at the start) or before which they belong."""
+    present = {id(node.child) for node in nodes}
+    firsts: dict[str, Child] = {}
     for child in children:
-        node = by_child.get(id(child))
-        if node is None:
-            added.setdefault(before, []).append(child)
+        if id(child) in present:
+            firsts.setdefault(child.feature.xml_name, child)
+    behind: dict[int | None, list[Child]] = {}
+    before: dict[int, list[Child]] = {}
+    last: Child | None = None
+    for child in children:
+        first = firsts.get(child.feature.xml_name)
+        if id(child) in present:
+            last = child
+        elif first is not None and (last is None or last.feature is not child.feature):
+            # In the source the children of the features before may stand behind those of this one.
+            before.setdefault(id(first), []).append(child)
         else:
-            before = node
-    return added
+            behind.setdefault(id(last) if last else None, []).append(child)
+    return behind, before
 
 
 def _rearranged(nodes: list[Node], children: list[Child], extra: list[str], separator: str) -> list[str | Part]:

@@ -7,6 +7,8 @@ out and commented, differs after saving only where the model differs.
 
 from __future__ import annotations
 
+import re
+
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.changes import spread_renames
 from amalthea_uros.metamodel.element import Element
@@ -91,8 +93,9 @@ class _Writer:
             self.fresh_content(self.root, tag, children, "")
             self.out += [self.newline, *(raw + self.newline for raw in epilog)]
             self.out[opening_at] = f"<{tag}{self.root_attributes()}{_extra_attributes(self.root)}"
-        if self.speller.uses_xsi and XSI_NAMESPACE not in self.out[opening_at]:
-            self.out[opening_at] += f' xmlns:xsi="{XSI_NAMESPACE}"'
+        prefix = self.speller.prefixes.xsi_type.partition(":")[0]
+        if self.speller.uses_xsi and not re.search(rf"\sxmlns:{prefix}\s*=", self.out[opening_at]):
+            self.out[opening_at] += f' xmlns:{prefix}="{XSI_NAMESPACE}"'
         return "".join(self.out)
 
     def root_attributes(self) -> str:
