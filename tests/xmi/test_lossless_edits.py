@@ -6,7 +6,7 @@ from collections import Counter
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from model_strategies import Builder, as_list, concrete, meaning, models, parse, stored_features, value_for
+from strategies import Builder, as_list, concrete, meaning, models, parse, stored_features, value_for
 from scrambler import ENCODINGS, Scrambler
 
 from amalthea_uros import load, save
