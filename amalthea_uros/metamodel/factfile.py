@@ -53,8 +53,9 @@ class FeatureFact(NamedTuple):
 
     @property
     def stored(self) -> bool:
-        """Whether the feature is written to files."""
-        return not self.derived and not self.readonly
+        """Whether the feature is written to files; a reference with an opposite mirrors a containment and is not."""
+        mirrors = self.kind is Kind.REFERENCE and self.opposite is not None
+        return not self.derived and not self.readonly and not mirrors
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,6 +46,17 @@ def test_the_order_of_a_feature_is_a_fact_of_the_version():
 
 
 @pytest.mark.parametrize("version", held_versions())
+def test_every_opposite_is_a_containment_and_its_mirror(version):
+    declared = facts(version)
+    for name in declared.classes:
+        for fact in declared.features(name):
+            if fact.opposite is not None:
+                other = declared.feature(fact.type, fact.opposite)
+                assert {fact.kind, other.kind} == {Kind.CONTAINMENT, Kind.REFERENCE}
+                assert fact.stored is (fact.kind is Kind.CONTAINMENT)
+
+
+@pytest.mark.parametrize("version", held_versions())
 def test_every_class_and_feature_has_its_python_side(version):
     declared = facts(version)
     for name in declared.classes:

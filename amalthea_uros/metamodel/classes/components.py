@@ -136,7 +136,6 @@ class ComponentInstance(ReferableBaseObject, ITaggable):
     type : Component that is used.
     """
 
-    containing_system: ISystem | None = reference("containingSystem")
     type: Component | None = reference("type")
 
 
@@ -148,7 +147,6 @@ class Connector(BaseObject, INamed, ITaggable):
     implemented_interfaces : Channel that carries the data, by interface of the connected ports.
     """
 
-    containing_system: ISystem | None = reference("containingSystem")
     source_port: QualifiedPort | None = containment("sourcePort")
     target_port: QualifiedPort | None = containment("targetPort")
     implemented_interfaces: list[InterfaceChannel] = containments("implementedInterfaces")
