@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from amalthea_uros.metamodel import classes
 from amalthea_uros.metamodel.defaults import enum_class
-from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import facts, held_versions
 from amalthea_uros.xmi.files import FileText

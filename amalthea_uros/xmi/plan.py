@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -71,9 +72,14 @@ class FeaturePlan:
             self.target = getattr(classes, fact.type)
             self.target_is_abstract = declared.classes[fact.type].abstract
         self.is_string = fact.type == "EString"
-        self.parse = Memo(self.literal.parse).__getitem__ if self.literal and not self.is_string else None
+        self.parse = _quick_parse(self.literal) if self.literal and not self.is_string else None
         #: Plans of the objects that may stand here, by `xsi:type`; filled as the reader meets them.
         self.parts: dict[str | None, ClassPlan] = {}
+
+
+def _quick_parse(literal: Literal) -> Callable[[str], Any]:
+    # Whole numbers are parsed as fast as they are looked up, and too often different.
+    return literal.parse if literal.python_type is int else Memo(literal.parse).__getitem__
 
 
 def reference_texts(feature: FeaturePlan, value: str) -> list[str]:

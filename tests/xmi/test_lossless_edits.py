@@ -6,8 +6,8 @@ from collections import Counter
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from strategies import Builder, as_list, concrete, meaning, models, parse, stored_features, value_for
 from scrambler import ENCODINGS, Scrambler
+from strategies import Builder, as_list, concrete, meaning, models, parse, stored_features, value_for
 
 from amalthea_uros import load, save
 from amalthea_uros.metamodel import classes
