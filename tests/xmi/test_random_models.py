@@ -3,13 +3,18 @@
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import strategies
 from hypothesis import given
 from hypothesis import strategies as st
 from strategies import models
-from support import meaning
 
 import amalthea_uros as amuros
 from amalthea_uros import Amalthea, Document, Model
+
+
+def meaning(model):
+    version = model.documents[0].facts_version
+    return strategies.meaning(*(document.root for document in model.documents), version=version)
 
 
 def saved(model, path, **options):
