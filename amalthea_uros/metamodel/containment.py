@@ -130,7 +130,7 @@ class ContainmentList(ReferenceList[E]):
         del self[:]
 
 
-def touch(element: Element, renames: bool = False) -> None:
+def touch(element: Element, renames: bool = False) -> Document | None:
     """Tell the document that an object changed, and whether references to it, or to its parts, may have to as well."""
     path = path_of(element)
     if renames:
@@ -138,6 +138,7 @@ def touch(element: Element, renames: bool = False) -> None:
     document: Document | None = getattr(path[-1], "_document", None)
     if document is not None:
         document.changes.note(path, renames)
+    return document
 
 
 def path_of(element: Element) -> list[Element]:
@@ -150,7 +151,10 @@ def path_of(element: Element) -> list[Element]:
 
 def release(value: Element) -> None:
     """Take the container from an object that is about to be taken out of it."""
-    touch(value, renames=True)
+    document = touch(value, renames=True)
+    if document is not None and document.source is not None:
+        # What changes while it is out goes unnoticed; should it come back, all of it is compared with the source.
+        document.changes.touched.update(value.walk())
     _set(value, "_container", None)
 
 

@@ -217,6 +217,21 @@ def test_a_part_moved_within_the_file(neat):
     assert changes(neat)
 
 
+@pytest.mark.parametrize("taken_out", ["the label", "all software"])
+def test_a_change_while_an_object_is_out_of_the_model(neat, taken_out):
+    root, software = neat.root, neat.root.sw_model
+    label = neat[Label, "Pedal"]
+    if taken_out == "the label":
+        software.labels.remove(label)
+        label.size.value = 9
+        software.labels.append(label)
+    else:
+        root.sw_model = None
+        label.size.value = 9
+        root.sw_model = software
+    expect(neat, ('value="16"', 'value="9"'))
+
+
 def test_an_xsi_type_in_a_file_that_had_none(tmp_path):
     path = tmp_path / "model.amxmi"
     path.write_text(
