@@ -17,6 +17,8 @@ from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, version_key
 from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
+from amalthea_uros.xmi.plan import FeaturePlan
+from amalthea_uros.xmi.reader import MAX_DEPTH
 from amalthea_uros.xmi.spell import Child, Part, Speller
 from amalthea_uros.xmi.weave import Weaver
 
@@ -67,6 +69,7 @@ class _Writer:
         self.weaver = Weaver(document, source, self.speller) if source else None
         self.version = document.version
         self.outside = (document.prolog, document.epilog)
+        self.depth = 1
         self.out: list[str] = []
 
     def document(self) -> str:
@@ -116,9 +119,20 @@ class _Writer:
         elif place is not None and element not in self.touched:
             self.out.append(self.source.text[self.source.start(place) : self.weaver.end(place)])
             return
+        if self.depth == MAX_DEPTH:
+            # The reader refuses what is nested deeper, and `part` itself runs into the recursion limit of Python.
+            self.speller.refuse(element, f"is nested more than {MAX_DEPTH} deep")
+            return
+        self.depth += 1
+        self.whole_part(feature, element, place, indent)
+        self.depth -= 1
+
+    def whole_part(self, feature: FeaturePlan, element: Element, place: int | None, indent: str) -> None:
+        """Write an object that changed, or that the source does not hold."""
         plan = self.speller.plan(element)
         if plan is None:
             return
+        tag = feature.xml_name
         shape = self.speller.shape(plan, element)
         children = self.speller.children(element, shape) if shape.children else []
         attributes = self.speller.tag(feature, plan, element, shape)

@@ -258,3 +258,27 @@ class TestWriting:
     def test_a_missing_folder(self, model, tmp_path):
         with pytest.raises(amuros.WriteError, match="No such file"):
             amuros.save(model, tmp_path / "none" / "model.amxmi")
+
+
+def test_what_the_reader_would_refuse_as_too_deep_is_not_written(tmp_path):
+    path = tmp_path / "deep.amxmi"
+
+    def nested(levels):
+        innermost = top = amuros.Group(name="G")
+        for _ in range(levels - 1):
+            innermost.items.append(amuros.Group(name="G"))
+            innermost = innermost.items[0]
+        runnable = amuros.Runnable(name="R", activity_graph=amuros.ActivityGraph(items=[top]))
+        return amuros.Model.of(amuros.Amalthea(sw_model=amuros.SWModel(runnables=[runnable])))
+
+    amuros.save(nested(196), path)
+    text = path.read_text()
+    assert sum(1 for _ in amuros.load(path).all(amuros.Group)) == 196
+    for levels in (197, 3000):
+        with pytest.raises(amuros.WriteError, match="is nested more than 200 deep"):
+            amuros.save(nested(levels), path)
+    assert path.read_text() == text
+    innermost = '<items xsi:type="am:Group" name="G" ordered="true" interruptible="true"/>'
+    path.write_text(text.replace(innermost, innermost.replace("/>", f">{innermost}</items>")))
+    with pytest.raises(amuros.ReadError, match="200 deep"):
+        amuros.load(path)
