@@ -12,6 +12,12 @@ PACKAGE = "amalthea_uros"
         ("diagnostics", ()),
         ("errors", ("diagnostics",)),
         ("resources", ()),
+        ("units", ()),
+        ("perf", ("units", "diagnostics")),
+        ("spec", ("units", "diagnostics", "errors", "resources")),
+        ("uros", ("spec", "perf", "units", "diagnostics", "errors")),
+        ("bridge", ("perf", "metamodel", "units", "diagnostics", "errors")),
+        ("analyze", ("perf", "units", "diagnostics")),
         ("metamodel", ("diagnostics",)),
         ("difference", ("metamodel",)),
         ("xmi", ("diagnostics", "errors", "resources", "metamodel")),
@@ -19,6 +25,19 @@ PACKAGE = "amalthea_uros"
     ],
 )
 def test_a_room_imports_only_what_it_may(room, allowed):
-    rooms = ("cli", "diagnostics", "difference", "errors", "metamodel", "report", "resources", "xmi")
+    rooms = (
+        "analyze",
+        "bridge",
+        "cli",
+        "diagnostics",
+        "difference",
+        "errors",
+        "metamodel",
+        "perf",
+        "report",
+        "resources",
+        "spec",
+    )
+    rooms += ("units", "uros", "xmi")
     forbidden = [f"{PACKAGE}.{other}*" for other in rooms if other not in (*allowed, room)]
     (archrule(room).match(f"{PACKAGE}.{room}*").should_not_import(*forbidden).check(PACKAGE, only_direct_imports=True))

@@ -1,0 +1,63 @@
+"""Conditions on modes and channels, and assignments to modes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TypeAlias
+
+
+class Relation(StrEnum):
+    """How two values are compared."""
+
+    EQUAL = "=="
+    NOT_EQUAL = "!="
+    LESS = "<"
+    LESS_OR_EQUAL = "<="
+    GREATER = ">"
+    GREATER_OR_EQUAL = ">="
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModeValueIs:
+    """A mode label compared with a value: a literal, or a number as text."""
+
+    label: str
+    relation: Relation
+    value: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModeLabelsAre:
+    """Two mode labels compared with each other."""
+
+    first: str
+    relation: Relation
+    second: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChannelFillIs:
+    """The number of elements in a channel compared with a number."""
+
+    channel: str
+    relation: Relation
+    level: int
+
+
+Comparison: TypeAlias = ModeValueIs | ModeLabelsAre | ChannelFillIs
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """True if all comparisons of at least one of the alternatives are."""
+
+    alternatives: tuple[tuple[Comparison, ...], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModeAssignment:
+    """A value that a mode label gets: a literal, or a number as text."""
+
+    label: str
+    value: str

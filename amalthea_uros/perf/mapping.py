@@ -1,0 +1,59 @@
+"""Which scheduler dispatches which task, and which memory holds which label."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from amalthea_uros.perf.os import Parameter
+from amalthea_uros.units import Time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TaskAllocation:
+    """A task on a scheduler.
+
+    Attributes
+    ----------
+    priority : higher numbers are served first
+    deadline : relative to the activation
+    cores : those of the scheduler's that the task may use; empty: all of them
+    """
+
+    task: str
+    scheduler: str
+    priority: int | None = None
+    deadline: Time | None = None
+    cores: tuple[str, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IsrAllocation:
+    """An interrupt service routine on an interrupt controller."""
+
+    isr: str
+    controller: str
+    priority: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Placement:
+    """A label, channel or other element in a memory.
+
+    Attributes
+    ----------
+    address : in bytes, in the sense of `Mapping.addresses`
+    """
+
+    element: str
+    memory: str
+    address: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mapping:
+    """The mapping of software to hardware."""
+
+    tasks: tuple[TaskAllocation, ...] = ()
+    isrs: tuple[IsrAllocation, ...] = ()
+    placements: tuple[Placement, ...] = ()

@@ -1,0 +1,450 @@
+"""Software: tasks, interrupt service routines, runnables, and what they do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TypeAlias
+
+from amalthea_uros.perf.conditions import Condition
+from amalthea_uros.perf.distributions import Distribution
+from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.units import DataSize
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """Execution demand in ticks.
+
+    Attributes
+    ----------
+    ticks : on any core; None if it is given for some core types only
+    by_core_type : on cores of a type, instead
+    """
+
+    ticks: Distribution[int] | None = None
+    by_core_type: tuple[tuple[str, Distribution[int]], ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Execute:
+    """Computation that takes ticks of the core's clock."""
+
+    demand: Demand
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExecutionNeed:
+    """Computation counted in something else, such as instructions, that a feature of the core type converts to ticks."""
+
+    needs: tuple[tuple[str, Distribution[int]], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Call:
+    """Execution of a runnable within the caller.
+
+    Attributes
+    ----------
+    times : how often the runnable is called here on average, where that is known
+    """
+
+    runnable: str
+    counter: Counter | None = None
+    times: Count | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Count:
+    """A number that was measured or estimated: least, mean, most."""
+
+    least: int
+    mean: float
+    most: int
+
+
+class AccessKind(StrEnum):
+    """What an access does."""
+
+    READ = "read"
+    WRITE = "write"
+
+
+class Communication(StrEnum):
+    """When the data of a job are read and written: where the accesses stand, at its start and end, or at its period."""
+
+    EXPLICIT = "explicit"
+    IMPLICIT = "implicit"
+    LET = "LET"
+
+
+class Protection(StrEnum):
+    """How a label is kept consistent."""
+
+    NONE = "none"
+    AUTOMATIC = "automatic"
+    CUSTOM = "custom"
+    BY_MODEL = "by model elements"
+    INHERITED = "inherited"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LabelAccess:
+    """Read or write of a label.
+
+    Attributes
+    ----------
+    communication : None: not stated
+    times : how many accesses this stands for
+    """
+
+    label: str
+    kind: AccessKind
+    communication: Communication | None = None
+    protection: Protection | None = None
+    times: Count | float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Group:
+    """Activities taken together.
+
+    Attributes
+    ----------
+    ordered : whether they run in the order given
+    interruptible : whether they can be preempted
+    """
+
+    activities: tuple[Activity, ...]
+    name: str = ""
+    ordered: bool = True
+    interruptible: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chance:
+    """A branch that is taken with a probability: its weight divided by the sum of all weights."""
+
+    weight: float
+    activities: tuple[Activity, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProbabilitySwitch:
+    """One of several branches, by chance."""
+
+    branches: tuple[Chance, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """A branch that is taken if its condition holds and none before it did."""
+
+    activities: tuple[Activity, ...]
+    condition: Condition | None = None
+    name: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Switch:
+    """The first branch whose condition holds, or else the default."""
+
+    cases: tuple[Case, ...]
+    default: tuple[Activity, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loop:
+    """Repeated while the condition holds, which is tested first."""
+
+    activities: tuple[Activity, ...]
+    condition: Condition | None = None
+
+
+class SemaphoreOperation(StrEnum):
+    """What is done with a semaphore; exclusive waits until nobody else holds it."""
+
+    REQUEST = "request"
+    EXCLUSIVE = "exclusive"
+    RELEASE = "release"
+
+
+class Waiting(StrEnum):
+    """Whether who waits keeps the core (active, polling) or gives it away (passive)."""
+
+    ACTIVE = "active"
+    PASSIVE = "passive"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SemaphoreAccess:
+    """Begin or end of a critical section."""
+
+    semaphore: str
+    operation: SemaphoreOperation
+    waiting: Waiting | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trigger:
+    """Firing of an inter-process stimulus."""
+
+    stimulus: str
+    counter: Counter | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RaiseEvent:
+    """Raising of a custom event."""
+
+    event: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetEvent:
+    """Setting of OS events, for one process or (None) for every one."""
+
+    events: tuple[str, ...]
+    process: str | None = None
+    counter: Counter | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClearEvent:
+    """Clearing of OS events."""
+
+    events: tuple[str, ...]
+    counter: Counter | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WaitEvent:
+    """Waiting for OS events, for all of them or for any."""
+
+    events: tuple[str, ...]
+    all_of_them: bool = True
+    waiting: Waiting | None = None
+    counter: Counter | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Send:
+    """Putting elements into a channel."""
+
+    channel: str
+    elements: int = 1
+
+
+class ReceiveOperation(StrEnum):
+    """From which end of a channel, and whether the elements are taken out."""
+
+    FIFO_READ = "FIFO read"
+    FIFO_TAKE = "FIFO take"
+    LIFO_READ = "LIFO read"
+    LIFO_TAKE = "LIFO take"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Receive:
+    """Getting elements out of a channel."""
+
+    channel: str
+    elements: int = 1
+    operation: ReceiveOperation | None = None
+    must_be_new: bool = False
+    index: int = 0
+    at_least: int = 0
+
+
+class ModeOperation(StrEnum):
+    """What is done with a mode label."""
+
+    READ = "read"
+    SET = "set"
+    INCREMENT = "increment"
+    DECREMENT = "decrement"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModeAccess:
+    """Access to a mode label; `value` is what is set, `step` by how much it changes."""
+
+    label: str
+    operation: ModeOperation
+    value: str | None = None
+    step: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class SchedulePoint:
+    """Call of the scheduler, where cooperative tasks can be preempted."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Terminate:
+    """Immediate end of the job."""
+
+    counter: Counter | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Migrate:
+    """Move of the task to another scheduler."""
+
+    scheduler: str
+
+
+Activity: TypeAlias = (
+    Execute
+    | ExecutionNeed
+    | Call
+    | LabelAccess
+    | Group
+    | ProbabilitySwitch
+    | Switch
+    | Loop
+    | SemaphoreAccess
+    | Trigger
+    | RaiseEvent
+    | SetEvent
+    | ClearEvent
+    | WaitEvent
+    | Send
+    | Receive
+    | ModeAccess
+    | SchedulePoint
+    | Terminate
+    | Migrate
+)
+
+
+def walk(activities: tuple[Activity, ...]) -> Iterator[Activity]:
+    """All activities with those inside groups, branches and loops, in order."""
+    for activity in activities:
+        yield activity
+        for inner in _inner(activity):
+            yield from walk(inner)
+
+
+def _inner(activity: Activity) -> Iterator[tuple[Activity, ...]]:
+    match activity:
+        case Group() | Loop():
+            yield activity.activities
+        case ProbabilitySwitch():
+            yield from (branch.activities for branch in activity.branches)
+        case Switch():
+            yield from (case.activities for case in activity.cases)
+            yield activity.default or ()
+
+
+class Preemption(StrEnum):
+    """When other tasks may preempt a task: always, at schedule points, or never."""
+
+    PREEMPTIVE = "preemptive"
+    COOPERATIVE = "cooperative"
+    NON_PREEMPTIVE = "non-preemptive"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task(Named):
+    """A process that a scheduler dispatches.
+
+    Attributes
+    ----------
+    activation_limit : most jobs at a time; further activations are lost
+    """
+
+    stimuli: tuple[str, ...] = ()
+    activities: tuple[Activity, ...] = ()
+    preemption: Preemption = Preemption.PREEMPTIVE
+    activation_limit: int = 1
+
+
+class IsrCategory(StrEnum):
+    """The categories of OSEK."""
+
+    CATEGORY_1 = "category 1"
+    CATEGORY_2 = "category 2"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Isr(Named):
+    """An interrupt service routine."""
+
+    stimuli: tuple[str, ...] = ()
+    activities: tuple[Activity, ...] = ()
+    category: IsrCategory | None = None
+
+
+Process: TypeAlias = Task | Isr
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Runnable(Named):
+    """A function.
+
+    Attributes
+    ----------
+    callback : whether the executor of a middleware calls it
+    condition : without it being true, calls have no effect
+    """
+
+    activities: tuple[Activity, ...] = ()
+    callback: bool = False
+    service: bool = False
+    condition: Condition | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Label(Named):
+    """A variable."""
+
+    size: DataSize | None = None
+    constant: bool = False
+    volatile: bool = False
+    protection: Protection | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Channel(Named):
+    """A queue; sizes in bits, capacity in elements."""
+
+    element_size: DataSize | None = None
+    default_elements: int = 0
+    capacity: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OsEvent(Named):
+    """An event of the operating system."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mode(Named):
+    """What a mode label can hold: literals, or numbers if there are none."""
+
+    literals: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModeLabel(Named):
+    """A variable on which behaviour depends."""
+
+    mode: str | None = None
+    initial: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Software:
+    """All software of a system."""
+
+    tasks: tuple[Task, ...] = ()
+    isrs: tuple[Isr, ...] = ()
+    runnables: tuple[Runnable, ...] = ()
+    labels: tuple[Label, ...] = ()
+    channels: tuple[Channel, ...] = ()
+    os_events: tuple[OsEvent, ...] = ()
+    modes: tuple[Mode, ...] = ()
+    mode_labels: tuple[ModeLabel, ...] = ()

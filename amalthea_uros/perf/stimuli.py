@@ -1,0 +1,233 @@
+"""What activates tasks and interrupt service routines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TypeAlias
+
+from amalthea_uros.perf.conditions import Condition, ModeAssignment
+from amalthea_uros.perf.distributions import Distribution
+from amalthea_uros.perf.named import Named
+from amalthea_uros.units import Frequency, Time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Counter:
+    """Lets only every n-th time take effect; counting goes on across jobs.
+
+    Attributes
+    ----------
+    prescaler : the n
+    offset : number of the first effective time, counted from 1; 0 stands for the prescaler itself
+    """
+
+    prescaler: int = 1
+    offset: int = 0
+
+    def lets_through(self, occurrence: int) -> bool:
+        """Whether an occurrence, counted from 1, takes effect."""
+        return occurrence >= max(self.offset, 1) and (occurrence - self.offset) % self.prescaler == 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AbstractStimulus(Named):
+    """What all stimuli have.
+
+    Attributes
+    ----------
+    condition : tested at each occurrence; if it is false, nothing happens
+    assignments : modes that are set at each occurrence, before the activations
+    """
+
+    condition: Condition | None = None
+    assignments: tuple[ModeAssignment, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Periodic(AbstractStimulus):
+    """Activation at offset + i * period, shifted by jitter that does not accumulate.
+
+    Attributes
+    ----------
+    jitter : shift against the ideal grid, possibly negative
+    min_distance : least time between two occurrences
+    """
+
+    period: Time
+    offset: Time = 0
+    jitter: Distribution[int] | None = None
+    min_distance: Time | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RelativePeriodic(AbstractStimulus):
+    """Activation at a varying distance from the one before; also what is called sporadic."""
+
+    distance: Distribution[int]
+    offset: Time = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Synthetic(AbstractStimulus):
+    """Activation at a list of times that is repeated with the period."""
+
+    period: Time
+    times: tuple[Time, ...]
+    offset: Time = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Burst(AbstractStimulus):
+    """Several activations at the start of each period.
+
+    Attributes
+    ----------
+    length : of a burst; occurrences that would lie behind it do not happen
+    distance : of the occurrences in a burst
+    count : occurrences in a burst
+    """
+
+    period: Time
+    length: Time
+    distance: Time
+    count: int
+    offset: Time = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Single(AbstractStimulus):
+    """Activation that happens once."""
+
+    time: Time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scenario:
+    """A clock that drives a variable rate: occurrences where its integral reaches offset + k * recurrence."""
+
+    clock: str
+    offset: float = 0.0
+    recurrence: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VariableRate(AbstractStimulus):
+    """Activation at a rate that changes.
+
+    Attributes
+    ----------
+    rate : occurrences in a step of time
+    max_increase, max_decrease : how much the rate changes from one step to the next at most; None: any
+    scenario : replaces the statistical description
+    """
+
+    step: Time
+    rate: Distribution[float]
+    max_increase: float | None = None
+    max_decrease: float | None = None
+    scenario: Scenario | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArrivalCurvePoint:
+    """A number of consecutive occurrences and the least and the most time that they span; None: no limit."""
+
+    occurrences: int
+    lower: Time | None = None
+    upper: Time | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArrivalCurve(AbstractStimulus):
+    """Activation of which only limits are known."""
+
+    points: tuple[ArrivalCurvePoint, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InterProcess(AbstractStimulus):
+    """Activation by triggers that processes execute."""
+
+    counter: Counter | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EventTriggered(AbstractStimulus):
+    """Activation by any of some events."""
+
+    events: tuple[str, ...]
+    counter: Counter | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Custom(AbstractStimulus):
+    """Activation without meaning to a tool."""
+
+    description: str = ""
+
+
+Stimulus: TypeAlias = (
+    Periodic
+    | RelativePeriodic
+    | Synthetic
+    | Burst
+    | Single
+    | VariableRate
+    | ArrivalCurve
+    | InterProcess
+    | EventTriggered
+    | Custom
+)
+
+
+class Curve(StrEnum):
+    """The shape of a varying frequency."""
+
+    SINE = "sine"
+    TRIANGLE = "triangle"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClockFunction(Named):
+    """A frequency that follows a curve.
+
+    Attributes
+    ----------
+    lowest : minimum of the curve
+    swing : its height
+    shift : time at which the rising curve passes the middle
+    """
+
+    curve: Curve
+    period: Time
+    lowest: Frequency
+    swing: Frequency
+    shift: Time = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClockStep:
+    """A frequency from a time on."""
+
+    time: Time
+    frequency: Frequency
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClockSteps(Named):
+    """A frequency that changes in steps, which repeat with the period if there is one."""
+
+    steps: tuple[ClockStep, ...]
+    period: Time | None = None
+
+
+Clock: TypeAlias = ClockFunction | ClockSteps
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stimuli:
+    """All stimuli of a system, and the clocks that drive some of them."""
+
+    stimuli: tuple[Stimulus, ...] = ()
+    clocks: tuple[Clock, ...] = ()

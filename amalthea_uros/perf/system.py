@@ -1,0 +1,94 @@
+"""A system: all six models together, and its objects by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TypeVar
+
+from amalthea_uros.perf.constraints import Constraints
+from amalthea_uros.perf.events import Event, EventChain, Events
+from amalthea_uros.perf.hardware import Clock, Core, Hardware, Memory
+from amalthea_uros.perf.mapping import Mapping as SystemMapping
+from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.os import InterruptController, Os, Scheduler
+from amalthea_uros.perf.software import Label, Process, Runnable, Software
+from amalthea_uros.perf.stimuli import Stimuli, Stimulus
+
+N = TypeVar("N", bound=Named)
+
+
+@dataclass(frozen=True, kw_only=True)
+class System:
+    """The generic performance model of a system.
+
+    The mappings find objects by name; where a name occurs twice, the last one counts (an extracted model has unique names).
+    """
+
+    hardware: Hardware = field(default_factory=Hardware)
+    os: Os = field(default_factory=Os)
+    stimuli: Stimuli = field(default_factory=Stimuli)
+    software: Software = field(default_factory=Software)
+    mapping: SystemMapping = field(default_factory=SystemMapping)
+    events: Events = field(default_factory=Events)
+    constraints: Constraints = field(default_factory=Constraints)
+
+    @cached_property
+    def clocks(self) -> Mapping[str, Clock]:
+        """The clocks of the hardware."""
+        return _by_name(self.hardware.clocks)
+
+    @cached_property
+    def cores(self) -> Mapping[str, Core]:
+        """The cores, in the order of the hardware."""
+        return _by_name(core for structure in self.hardware.walk() for core in structure.cores)
+
+    @cached_property
+    def memories(self) -> Mapping[str, Memory]:
+        """The memories."""
+        return _by_name(memory for structure in self.hardware.walk() for memory in structure.memories)
+
+    @cached_property
+    def schedulers(self) -> Mapping[str, Scheduler]:
+        """The schedulers of all operating systems."""
+        return _by_name(scheduler for system in self.os.systems for scheduler in system.schedulers)
+
+    @cached_property
+    def interrupt_controllers(self) -> Mapping[str, InterruptController]:
+        """The interrupt controllers of all operating systems."""
+        return _by_name(controller for system in self.os.systems for controller in system.interrupt_controllers)
+
+    @cached_property
+    def stimuli_by_name(self) -> Mapping[str, Stimulus]:
+        """The stimuli."""
+        return _by_name(self.stimuli.stimuli)
+
+    @cached_property
+    def processes(self) -> Mapping[str, Process]:
+        """Tasks, then interrupt service routines."""
+        return _by_name((*self.software.tasks, *self.software.isrs))
+
+    @cached_property
+    def runnables(self) -> Mapping[str, Runnable]:
+        """The runnables."""
+        return _by_name(self.software.runnables)
+
+    @cached_property
+    def labels(self) -> Mapping[str, Label]:
+        """The labels."""
+        return _by_name(self.software.labels)
+
+    @cached_property
+    def events_by_name(self) -> Mapping[str, Event]:
+        """The events."""
+        return _by_name(self.events.events)
+
+    @cached_property
+    def chains(self) -> Mapping[str, EventChain]:
+        """The event chains."""
+        return _by_name(self.events.chains)
+
+
+def _by_name(objects: Iterable[N]) -> dict[str, N]:
+    return {item.name: item for item in objects}

@@ -1,0 +1,192 @@
+"""Times, frequencies, data sizes and bit rates, as exact numbers and as text.
+
+Inside, a time is a whole number of picoseconds, a data size of bits, a bit rate of bits per second, and a frequency an exact
+fraction in hertz (333.3 MHz is no whole number of anything). Text always carries its unit: "10 ms", "250 kbit/s", "4 B".
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from difflib import get_close_matches
+from fractions import Fraction
+from math import ceil, floor
+from typing import NamedTuple, TypeAlias
+
+#: Picoseconds.
+Time: TypeAlias = int
+#: Hertz.
+Frequency: TypeAlias = Fraction
+#: Bits.
+DataSize: TypeAlias = int
+#: Bits per second.
+BitRate: TypeAlias = int
+
+PICOSECOND: Time = 1
+NANOSECOND: Time = 1000 * PICOSECOND
+MICROSECOND: Time = 1000 * NANOSECOND
+MILLISECOND: Time = 1000 * MICROSECOND
+SECOND: Time = 1000 * MILLISECOND
+
+_NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S*)\s*", re.ASCII)
+_LONGEST_NUMBER = 40
+
+
+def _data_units(suffix: str = "") -> dict[str, int]:
+    """Units of data, biggest first among equals in base: decimal and binary prefixes, bytes and bits."""
+    found = {}
+    for symbol, bits in (("B", 8), ("bit", 1)):
+        found[symbol + suffix] = bits
+        for power, letter in enumerate("kMGT", start=1):
+            found[f"{letter}{symbol}{suffix}"] = bits * 1000**power
+            found[f"{letter.upper()}i{symbol}{suffix}"] = bits * 1024**power
+    return found
+
+
+class Dimension(NamedTuple):
+    """A kind of quantity.
+
+    Attributes
+    ----------
+    article : its name with the article, for messages
+    units : unit -> its size in the unit used inside
+    example : how a value looks
+    whole : whether only whole numbers of the unit used inside are values
+    """
+
+    article: str
+    units: Mapping[str, int]
+    example: str
+    whole: str = ""
+
+
+TIME = Dimension(
+    "a time",
+    {
+        "ps": PICOSECOND,
+        "ns": NANOSECOND,
+        "us": MICROSECOND,
+        "µs": MICROSECOND,
+        "ms": MILLISECOND,
+        "s": SECOND,
+        "min": 60 * SECOND,
+        "h": 3600 * SECOND,
+    },
+    "10 ms",
+    "picoseconds",
+)
+FREQUENCY = Dimension("a frequency", {"Hz": 1, "kHz": 10**3, "MHz": 10**6, "GHz": 10**9}, "50 Hz")
+DATA_SIZE = Dimension("a data size", _data_units(), "4 B", "bits")
+BIT_RATE = Dimension("a bit rate", _data_units("/s"), "250 kbit/s", "bits per second")
+
+
+def parse(text: str, dimension: Dimension) -> Fraction:
+    """The value of a text such as "10 ms", in the unit used inside; exact.
+
+    Raises
+    ------
+    ValueError : no number, no unit, an unknown unit, or a fraction of what is counted in whole numbers; says what and why.
+    """
+    match = _QUANTITY.fullmatch(text)
+    if match is None or len(match[1]) > _LONGEST_NUMBER:
+        raise ValueError(f"{shortened(text)!r} is not {dimension.article} such as {dimension.example!r}")
+    number, unit = match.groups()
+    if not unit:
+        raise ValueError(f"{text.strip()!r} has no unit; {dimension.article} looks like {dimension.example!r}")
+    if unit not in dimension.units:
+        raise ValueError(f"{shortened(unit)!r} is not a unit of {dimension.article.split(' ', 1)[1]}{_advice(unit, dimension)}")
+    value = Fraction(number) * dimension.units[unit]
+    if dimension.whole and value.denominator != 1:
+        raise ValueError(f"{text.strip()!r} is no whole number of {dimension.whole}")
+    return value
+
+
+def _advice(unit: str, dimension: Dimension) -> str:
+    folded = {known.lower(): known for known in dimension.units}
+    near = folded.get(unit.lower()) or next(iter(get_close_matches(unit, dimension.units, n=1)), None)
+    return f", did you mean {near!r}?" if near else f"; units are {', '.join(dimension.units)}"
+
+
+def shortened(text: str, length: int = 40) -> str:
+    """The text, or its start if it is long."""
+    return text if len(text) <= length else f"{text[:length]}..."
+
+
+def parse_time(text: str) -> Time:
+    """Picoseconds of a text such as "10 ms"; ValueError as for `parse`."""
+    return int(parse(text, TIME))
+
+
+def parse_frequency(text: str) -> Frequency:
+    """Hertz of a text such as "300 MHz"; ValueError as for `parse`."""
+    return parse(text, FREQUENCY)
+
+
+def parse_data_size(text: str) -> DataSize:
+    """Bits of a text such as "4 B"; ValueError as for `parse`."""
+    return int(parse(text, DATA_SIZE))
+
+
+def parse_bit_rate(text: str) -> BitRate:
+    """Bits per second of a text such as "250 kbit/s"; ValueError as for `parse`."""
+    return int(parse(text, BIT_RATE))
+
+
+#: Units for output, biggest first.
+_TIME_STEPS = (("s", SECOND), ("ms", MILLISECOND), ("us", MICROSECOND), ("ns", NANOSECOND), ("ps", PICOSECOND))
+_FREQUENCY_STEPS = (("GHz", 10**9), ("MHz", 10**6), ("kHz", 10**3), ("Hz", 1))
+_DATA_STEPS = tuple((unit, DATA_SIZE.units[unit]) for unit in ("GiB", "GB", "MiB", "MB", "KiB", "kB", "B", "bit"))
+_RATE_STEPS = (("Gbit/s", 10**9), ("Mbit/s", 10**6), ("kbit/s", 10**3), ("bit/s", 1))
+
+
+def _steps_text(value: Fraction | int, steps: tuple[tuple[str, int], ...]) -> str:
+    """The value in the biggest unit in which it is at least 1, with as many decimals as it has."""
+    exact = Fraction(value)
+    unit, size = next((step for step in steps if abs(exact) >= step[1]), steps[-1])
+    number = exact / size
+    if number.denominator == 1:
+        return f"{number.numerator} {unit}"
+    text = f"{float(number):.12g}"
+    return f"{text} {unit}"
+
+
+def time_text(value: Time) -> str:
+    """A time for people: "12 us", "16.65 us", "0 s"."""
+    return _steps_text(value, _TIME_STEPS) if value else "0 s"
+
+
+def frequency_text(value: Frequency) -> str:
+    """A frequency for people: "300 MHz"."""
+    return _steps_text(value, _FREQUENCY_STEPS)
+
+
+def data_size_text(value: DataSize) -> str:
+    """A data size for people, in the biggest unit that needs no decimals: "240 KiB", "4 B"."""
+    unit, size = next(step for step in _DATA_STEPS if (value and value % step[1] == 0) or step[1] == 1)
+    return f"{value // size} {unit}" if value else "0 B"
+
+
+def bit_rate_text(value: BitRate) -> str:
+    """A bit rate for people: "250 kbit/s"."""
+    return _steps_text(value, _RATE_STEPS)
+
+
+def ticks_of_time(time: Time, frequency: Frequency) -> Fraction:
+    """How many ticks of a clock a time is; exact, so that the caller decides how to round."""
+    return Fraction(time) * frequency / SECOND
+
+
+def time_of_ticks(ticks: int | Fraction, frequency: Frequency) -> Fraction:
+    """Picoseconds that a number of ticks takes; exact, so that the caller decides how to round."""
+    return Fraction(ticks) * SECOND / frequency
+
+
+def up(value: Fraction) -> int:
+    """Rounded as an upper bound has to be."""
+    return ceil(value)
+
+
+def down(value: Fraction) -> int:
+    """Rounded as a lower bound has to be."""
+    return floor(value)
