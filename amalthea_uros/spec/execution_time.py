@@ -1,0 +1,98 @@
+"""How long something executes: a time, bounds, a distribution, a measured histogram; per platform if wanted."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from amalthea_uros.spec.section import Section, Shorthand
+from amalthea_uros.spec.values import Count, Duration, Name, problem
+
+
+class Bucket(Section):
+    """Execution times between two values, and how often they were measured."""
+
+    min: Duration
+    """Least execution time of the bucket."""
+    max: Duration
+    """Greatest execution time of the bucket."""
+    count: Count
+    """How often an execution time in the bucket was measured."""
+
+
+class ExecutionTime(Shorthand):
+    """An execution time: `12 us`, or with `min` and `max`, or per platform with `on`."""
+
+    shorthand = (
+        "min",
+        "max",
+    )
+
+    min: Duration | None = None
+    """Best-case execution time."""
+    avg: Duration | None = None
+    """Mean execution time."""
+    max: Duration | None = None
+    """Worst-case execution time."""
+    distribution: Literal["uniform", "gauss", "beta", "weibull"] | None = None
+    """How execution times are distributed between `min` and `max`; left out: not known."""
+    deviation: Duration | None = None
+    """Standard deviation of the gauss distribution, whose mean is `avg`."""
+    alpha: float | None = Field(None, gt=0)
+    """First shape of the beta distribution."""
+    beta: float | None = Field(None, gt=0)
+    """Second shape of the beta distribution."""
+    exceeding: float | None = Field(None, gt=0, lt=1000)
+    """Per mille of execution times that a weibull distribution has above `max`."""
+    histogram: list[Bucket] | None = Field(None, min_length=1)
+    """Measured execution times."""
+    on: dict[Name, ExecutionTime] | None = Field(None, min_length=1)
+    """Execution times by platform; `default` for all others."""
+
+    @model_validator(mode="after")
+    def _is_complete(self) -> Self:
+        if self.on is not None:
+            self._only("on")
+        elif self.histogram is not None:
+            self._only("histogram")
+            if any(bucket.min > bucket.max for bucket in self.histogram):
+                raise problem("'min' of a bucket is greater than its 'max'")
+        else:
+            self._check_bounds()
+            self._check_shape()
+        return self
+
+    def _only(self, key: str) -> None:
+        others = sorted(self.model_fields_set - {key})
+        if others:
+            raise problem(f"{key!r} stands for itself, {', '.join(map(repr, others))} cannot stand beside it")
+
+    def _check_bounds(self) -> None:
+        if self.min is None or self.max is None:
+            raise problem("an execution time is a time such as '12 us', or has both 'min' and 'max'")
+        if self.min > self.max:
+            raise problem("'min' is greater than 'max'")
+        if self.avg is not None and not self.min <= self.avg <= self.max:
+            raise problem("'avg' is not between 'min' and 'max'")
+
+    def _check_shape(self) -> None:
+        needed = {
+            None: (),
+            "uniform": (),
+            "gauss": ("avg", "deviation"),
+            "beta": ("alpha", "beta"),
+            "weibull": ("avg",),
+        }[self.distribution]
+        for key in needed:
+            if getattr(self, key) is None:
+                raise problem(f"a {self.distribution} distribution needs {key!r}")
+        optional = {"exceeding"} if self.distribution == "weibull" else set()
+        allowed = {"min", "avg", "max", "distribution", *needed, *optional} - (
+            {"avg"} if self.distribution == "uniform" else set()
+        )
+        for key in sorted(self.model_fields_set - allowed):
+            kind = f"a {self.distribution} distribution" if self.distribution else "an execution time without 'distribution'"
+            raise problem(f"{kind} has no {key!r}")
+        if self.distribution == "weibull" and not self.min < self.avg < self.max:  # type: ignore[operator]
+            raise problem("a weibull distribution needs 'avg' strictly between 'min' and 'max'")

@@ -1,0 +1,256 @@
+"""YAML text -> nodes with their places.
+
+The text is untrusted: its size, its depth and what its aliases expand to are limited, tags are refused. Scalars follow the core
+schema of YAML 1.2 (`on` and `no` are text, `1:30` is no number). All mistakes that do not stop the parser are reported.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import yaml
+
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import ReadError
+
+MAX_SIZE = 5_000_000
+MAX_DEPTH = 40
+MAX_NODES = 400_000
+#: More mistakes are not told in one run; a person mends the first ones first.
+MAX_FINDINGS = 100
+
+_INTEGER = re.compile(r"[-+]?\d{1,30}")
+_FLOAT = re.compile(r"[-+]?(\.\d+|\d+(\.\d*)?)([eE][-+]?\d{1,3})?")
+_WORDS = {"": None, "~": None, "null": None, "Null": None, "NULL": None} | {
+    word: value for value, name in ((True, "true"), (False, "false")) for word in (name, name.title(), name.upper())
+}
+
+_Parser: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+#: The events and marks of libyaml and of PyYAML's own parser have no common type.
+_Event: TypeAlias = Any
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a node begins; line and column are counted from 0."""
+
+    line: int
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A single value."""
+
+    place: Place
+    value: str | int | float | bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class Sequence:
+    """A list of nodes."""
+
+    place: Place
+    items: list[Node]
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping:
+    """Nodes by key."""
+
+    place: Place
+    items: dict[str, Node]
+    keys: dict[str, Place]
+
+
+Node: TypeAlias = Scalar | Sequence | Mapping
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """The text of a file, to show lines of it."""
+
+    path: Path
+    lines: list[str]
+
+    def location(self, place: Place) -> Location:
+        """A place as a location that carries its line."""
+        text = self.lines[place.line] if place.line < len(self.lines) else ""
+        return Location(self.path, place.line + 1, place.column + 1, text)
+
+
+def read_nodes(path: Path, text: str) -> tuple[Node, Source, list[Finding]]:
+    """The content of a YAML document, and what is wrong with it as far as that does not stop reading.
+
+    Raises
+    ------
+    ReadError : the text is no YAML document, or goes beyond a limit.
+    """
+    source = Source(path, text.split("\n"))
+    if len(text) > MAX_SIZE:
+        message = f"the file has {len(text) / 1e6:.1f} million characters, more than {MAX_SIZE / 1e6:g} million are refused"
+        raise ReadError(
+            [Finding("YML002", Severity.ERROR, message, Location(path), "Split the application, or generate less.")]
+        )
+    reader = _Reader(source)
+    try:
+        node = reader.document(text)
+    except yaml.MarkedYAMLError as error:
+        raise reader.stop("YML001", _reason(error), error.problem_mark or error.context_mark) from None
+    except yaml.reader.ReaderError as error:
+        raise ReadError([_unreadable(source, text, error)]) from None
+    return node, source, reader.findings
+
+
+def _reason(error: yaml.MarkedYAMLError) -> str:
+    parts = [part for part in (error.context, error.problem) if part]
+    return f"this is no YAML: {', '.join(parts)}"
+
+
+def _unreadable(source: Source, text: str, error: yaml.reader.ReaderError) -> Finding:
+    match = re.search(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]", text)
+    if match is None:
+        return Finding("YML001", Severity.ERROR, f"this is no YAML: {error.reason}", Location(source.path))
+    line = text.count("\n", 0, match.start())
+    place = Place(line, match.start() - text.rfind("\n", 0, match.start()) - 1)
+    location = Location(source.path, place.line + 1, place.column + 1)
+    return Finding("YML001", Severity.ERROR, f"this is no YAML: the character U+{ord(match[0]):04X} is not allowed", location)
+
+
+class _Reader:
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.findings: list[Finding] = []
+        self.anchors: dict[str, Node] = {}
+        self.count = 0
+
+    def document(self, text: str) -> Node:
+        """The only document of the text."""
+        parser = _Parser(text)
+        try:
+            events = iter(parser.get_event, None)
+            for event in events:
+                if isinstance(event, yaml.DocumentStartEvent):
+                    break
+            else:
+                return Scalar(Place(0, 0), None)
+            node = self.node(next(events), events, 1)
+            next(events)
+            extra = next(events)
+            if isinstance(extra, yaml.DocumentStartEvent):
+                raise self.stop("YML001", "the file holds several YAML documents, expected one", extra.start_mark)
+            return node
+        finally:
+            parser.dispose()
+
+    def node(self, event: _Event, events: Iterator[_Event], depth: int) -> Node:
+        """The node that begins with an event."""
+        if depth > MAX_DEPTH:
+            raise self.stop("YML002", f"the content is nested more than {MAX_DEPTH} deep", event.start_mark)
+        if isinstance(event, yaml.AliasEvent):
+            return self.alias(event)
+        if getattr(event, "tag", None) not in (None, "!"):
+            raise self.stop("YML001", "tags are not allowed", event.start_mark, "Write the plain value.")
+        place = _place(event.start_mark)
+        node: Node
+        if isinstance(event, yaml.ScalarEvent):
+            node = Scalar(place, _value(event))
+        elif isinstance(event, yaml.SequenceStartEvent):
+            node = Sequence(place, self.items(events, depth))
+        else:
+            node = self.mapping(place, events, depth)
+        self.tally(event.start_mark)
+        if event.anchor:
+            self.anchors[event.anchor] = node
+        return node
+
+    def items(self, events: Iterator[_Event], depth: int) -> list[Node]:
+        """The nodes of a sequence."""
+        found: list[Node] = []
+        for event in events:
+            if isinstance(event, yaml.SequenceEndEvent):
+                break
+            found.append(self.node(event, events, depth + 1))
+        return found
+
+    def mapping(self, place: Place, events: Iterator[_Event], depth: int) -> Mapping:
+        """The nodes of a mapping; of a key that occurs twice the first value counts."""
+        found = Mapping(place, {}, {})
+        for event in events:
+            if isinstance(event, yaml.MappingEndEvent):
+                break
+            if not isinstance(event, yaml.ScalarEvent):
+                raise self.stop("YML001", "a key has to be a plain text", event.start_mark)
+            value = self.node(next(events), events, depth + 1)
+            where = _place(event.start_mark)
+            if event.value in found.items:
+                self.second(event.value, found.keys[event.value], where)
+                continue
+            found.items[event.value] = value
+            found.keys[event.value] = where
+        return found
+
+    def second(self, key: str, first: Place, where: Place) -> None:
+        """Note a key that occurs again."""
+        message = f"the key {key!r} stands here a second time, first in line {first.line + 1}"
+        self.findings.append(Finding("YML003", Severity.ERROR, message, self.source.location(where), "Keep one of the two."))
+        if len(self.findings) == MAX_FINDINGS:
+            raise ReadError(self.findings)
+
+    def alias(self, event: _Event) -> Node:
+        """The node that an alias stands for; it counts with everything in it, once more."""
+        node = self.anchors.get(event.anchor)
+        if node is None:
+            raise self.stop("YML001", f"there is no complete anchor &{event.anchor} above", event.start_mark)
+        for _ in _walk(node):
+            self.tally(event.start_mark)
+        return node
+
+    def tally(self, mark: Any) -> None:
+        """Count a node, and stop where there are too many."""
+        self.count += 1
+        if self.count > MAX_NODES:
+            raise self.stop("YML002", f"the content has more than {MAX_NODES:,} values, counted with expanded aliases", mark)
+
+    def stop(self, rule: str, message: str, mark: Any, help_text: str = "") -> ReadError:
+        """The error that ends reading, together with what was found before."""
+        location = self.source.location(_place(mark)) if mark else Location(self.source.path)
+        return ReadError([*self.findings, Finding(rule, Severity.ERROR, message, location, help_text)])
+
+
+def _place(mark: Any) -> Place:
+    return Place(mark.line, mark.column)
+
+
+def _value(event: _Event) -> str | int | float | bool | None:
+    text: str = event.value
+    is_plain, _ = event.implicit
+    if not is_plain:
+        return text
+    if text in _WORDS:
+        return _WORDS[text]
+    if _INTEGER.fullmatch(text):
+        return int(text)
+    return float(text) if _FLOAT.fullmatch(text) else text
+
+
+def _walk(node: Node) -> Iterator[Node]:
+    yield node
+    if not isinstance(node, Scalar):
+        for inner in node.items.values() if isinstance(node, Mapping) else node.items:
+            yield from _walk(inner)
+
+
+def plain(node: Node) -> Any:
+    """The node as dicts, lists and values."""
+    match node:
+        case Scalar():
+            return node.value
+        case Sequence():
+            return [plain(item) for item in node.items]
+        case Mapping():
+            return {key: plain(item) for key, item in node.items.items()}

@@ -1,0 +1,97 @@
+"""What all sections of an `app.yaml` have in common: their keys are known, and they know their places."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, PrivateAttr, model_validator
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
+
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.spec.nodes import Mapping, Node, Sequence, Source
+
+
+class Section(BaseModel):
+    """A mapping of the file."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True, protected_namespaces=())
+
+    _node: Mapping | None = PrivateAttr(None)
+    _source: Source | None = PrivateAttr(None)
+
+    def location(self, key: str | None = None, index: int | None = None) -> Location | None:
+        """Where the section begins, or the value of a key, or an item of that value; None if it was not read from a file.
+
+        A key that is not stated stands where the section stands.
+        """
+        if self._node is None or self._source is None:
+            return None
+        node: Node = self._node
+        if key is not None and key in self._node.items:
+            node = self._node.items[key]
+            if index is not None and isinstance(node, Sequence):
+                node = node.items[index]
+        return self._source.location(node.place)
+
+    def states(self, key: str) -> bool:
+        """Whether the author wrote the key."""
+        return key in self.model_fields_set
+
+
+class Shorthand(Section):
+    """A section for which a plain value may stand.
+
+    Attributes
+    ----------
+    shorthand : the keys that get the plain value
+    nested : the section of that value, where it may be a mapping itself
+    """
+
+    shorthand: ClassVar[tuple[str, ...]]
+    nested: ClassVar[type[Section] | None] = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_plain_value(cls, value: Any) -> Any:
+        if isinstance(value, Section) or (isinstance(value, dict) and not cls._is_nested(value)):
+            return value
+        return dict.fromkeys(cls.shorthand, value)
+
+    @classmethod
+    def _is_nested(cls, value: dict[str, Any]) -> bool:
+        if cls.nested is None or not cls.model_fields.keys().isdisjoint(value):
+            return False
+        return not cls.nested.model_fields.keys().isdisjoint(value)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        reference = handler(core_schema)
+        schema = handler.resolve_ref_schema(reference)
+        if "anyOf" not in schema:
+            whole = dict(schema)
+            schema.clear()
+            properties = whole["properties"]
+            description = whole.pop("description", None)
+            plain = [properties[cls.shorthand[0]]]
+            schema.update(anyOf=[*plain, whole], **({"description": description} if description else {}))
+        return reference
+
+
+def settle(value: Any, node: Node, source: Source) -> None:
+    """Tell a section and all within it where they stand."""
+    if isinstance(value, Section) and isinstance(node, Mapping):
+        value._node, value._source = node, source
+        for name, field in type(value).model_fields.items():
+            # A section that is not stated, or for which a shorthand stands, is where the outer one is.
+            inner = node.items.get(field.alias or name, node)
+            if inner is not node or isinstance(getattr(value, name), Section):
+                settle(getattr(value, name), inner, source)
+    elif isinstance(value, Section):
+        settle(value, Mapping(node.place, {}, {}), source)
+    elif isinstance(value, list | tuple) and isinstance(node, Sequence):
+        for item, inner in zip(value, node.items, strict=True):
+            settle(item, inner, source)
+    elif isinstance(value, dict) and isinstance(node, Mapping):
+        for key, item in value.items():
+            settle(item, node.items[key], source)

@@ -1,0 +1,86 @@
+"""Single values of an `app.yaml`: names, quantities with units, and numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any, TypeAlias
+
+from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from amalthea_uros import units
+
+#: Longer names serve nobody.
+LONGEST_NAME = 200
+
+
+def problem(message: str) -> PydanticCustomError:
+    """The exception by which a validator says what is wrong with a value."""
+    # Braces would be taken for placeholders.
+    return PydanticCustomError("value", message.replace("{", "{{").replace("}", "}}"))
+
+
+def _quantity(parse: Callable[[str], Any], dimension: units.Dimension) -> Callable[[Any], Any]:
+    def convert(value: Any) -> Any:
+        if isinstance(value, bool) or not isinstance(value, str | int | float):
+            raise problem(f"expected {dimension.article} such as {dimension.example!r}")
+        try:
+            return parse(str(value))
+        except ValueError as error:
+            raise problem(str(error)) from None
+
+    return convert
+
+
+def _positive(value: Any) -> Any:
+    if value <= 0:
+        raise problem("must be greater than zero")
+    return value
+
+
+def _not_negative(value: Any) -> Any:
+    if value < 0:
+        raise problem("must not be negative")
+    return value
+
+
+def _text_schema(dimension: units.Dimension) -> WithJsonSchema:
+    known = "|".join(dimension.units)
+    number = r"[+]?([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][-+]?[0-9]+)?"
+    return WithJsonSchema({"type": "string", "pattern": f"^\\s*{number}\\s*({known})\\s*$", "examples": [dimension.example]})
+
+
+def _name(value: Any) -> Any:
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
+        raise problem("expected a name")
+    text = str(value)
+    if not text.strip() or text != text.strip() or len(text) > LONGEST_NAME or not text.isprintable():
+        raise problem(f"{units.shortened(text)!r} is no name: 1 to {LONGEST_NAME} printable characters without blanks around")
+    return text
+
+
+_TIME = BeforeValidator(_quantity(units.parse_time, units.TIME))
+_FREQUENCY = BeforeValidator(_quantity(units.parse_frequency, units.FREQUENCY))
+_DATA_SIZE = BeforeValidator(_quantity(units.parse_data_size, units.DATA_SIZE))
+_BIT_RATE = BeforeValidator(_quantity(units.parse_bit_rate, units.BIT_RATE))
+
+#: A time above zero, in picoseconds.
+Duration: TypeAlias = Annotated[int, _TIME, AfterValidator(_positive), _text_schema(units.TIME)]
+#: A time of zero or more, in picoseconds.
+Offset: TypeAlias = Annotated[int, _TIME, AfterValidator(_not_negative), _text_schema(units.TIME)]
+#: A frequency above zero, in hertz.
+Rate: TypeAlias = Annotated[Any, _FREQUENCY, AfterValidator(_positive), _text_schema(units.FREQUENCY)]
+#: A data size above zero, in bits.
+Size: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_positive), _text_schema(units.DATA_SIZE)]
+#: A data size of zero or more, in bits.
+SizeOrNothing: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_not_negative), _text_schema(units.DATA_SIZE)]
+#: A bit rate above zero, in bits per second.
+BitRate: TypeAlias = Annotated[int, _BIT_RATE, AfterValidator(_positive), _text_schema(units.BIT_RATE)]
+#: What an object is called.
+Name: TypeAlias = Annotated[str, BeforeValidator(_name), WithJsonSchema({"type": "string", "minLength": 1})]
+#: How many there are.
+Count: TypeAlias = Annotated[int, Field(strict=True, ge=1, le=1_000_000)]
+#: How many there are, possibly none.
+CountOrNone: TypeAlias = Annotated[int, Field(strict=True, ge=0, le=1_000_000)]
+#: A scheduling priority; higher numbers are served first.
+Priority: TypeAlias = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]
