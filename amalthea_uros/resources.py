@@ -11,3 +11,7 @@ def resource_folder(name: str) -> Path:
     """The folder `schemas` or `templates`: inside the package when installed, beside it in a checkout."""
     installed = _PACKAGE / name
     return installed if installed.is_dir() else _PACKAGE.parent / name
+
+
+#: The folder of the platforms, which are data and no code.
+PLATFORMS = _PACKAGE / "platforms"

@@ -1,0 +1,186 @@
+"""The callbacks of an application, all kinds alike: how often they run, which message makes them ready, what they send."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.spec.application import Application, Client, MessageCallback, Node, Service, Subscription, Timer
+from amalthea_uros.spec.application import Callback as Section
+from amalthea_uros.spec.middleware import Executor
+from amalthea_uros.units import SECOND, DataSize, Frequency, Time
+from amalthea_uros.uros.notes import Notes
+
+
+class Kind(StrEnum):
+    """What a callback belongs to."""
+
+    SUBSCRIPTION = "subscription"
+    TIMER = "timer"
+    SERVICE = "service"
+    CLIENT = "client"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Message:
+    """A message that leaves or reaches the controller.
+
+    Attributes
+    ----------
+    callback : who receives it or sends it
+    topic : or the service, for requests and responses
+    size : without headers
+    interval : least time between two of them
+    """
+
+    callback: str
+    topic: str
+    size: DataSize
+    interval: Time
+    reliable: bool
+    origin: Location | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Callback:
+    """A callback.
+
+    Attributes
+    ----------
+    interval : least time between two executions that are due
+    incoming : the message that makes it ready; None for timers
+    outgoing : messages that an execution sends
+    buffer : label by which the executor hands the message over
+    """
+
+    section: Section
+    kind: Kind
+    node: Node
+    interval: Time
+    in_executor: bool
+    incoming: Message | None
+    outgoing: tuple[Message, ...]
+    buffer: str | None
+
+    @property
+    def name(self) -> str:
+        """The name of the callback, and of its task."""
+        return self.section.name
+
+    @property
+    def origin(self) -> Location | None:
+        """Where the callback stands."""
+        return self.section.location()
+
+
+def callbacks_of(application: Application, executor: Executor, notes: Notes) -> tuple[Callback, ...]:
+    """All callbacks in the order of the file, as far as they are sound; notes tell of the others."""
+    found = [
+        callback
+        for node in application.nodes
+        for kind, section in _sections(node)
+        if (callback := _callback(kind, section, node, executor, notes)) is not None
+    ]
+    return tuple(found)
+
+
+def _sections(node: Node) -> Iterator[tuple[Kind, Section]]:
+    for kind, sections in (
+        (Kind.SUBSCRIPTION, node.subscriptions),
+        (Kind.TIMER, node.timers),
+        (Kind.SERVICE, node.services),
+        (Kind.CLIENT, node.clients),
+    ):
+        yield from ((kind, section) for section in sections)
+
+
+def _callback(kind: Kind, section: Section, node: Node, executor: Executor, notes: Notes) -> Callback | None:
+    interval = _interval(section, notes)
+    outgoing = tuple(_outgoing(section, node, interval or SECOND, notes))
+    if interval is None:
+        return None
+    return Callback(
+        section=section,
+        kind=kind,
+        node=node,
+        interval=interval,
+        in_executor=(section.runs_in or executor.callbacks) in ("executor", "in-executor"),
+        incoming=_incoming(section, interval),
+        outgoing=outgoing,
+        buffer=(section.buffer or f"{section.name}_message") if isinstance(section, MessageCallback) else None,
+    )
+
+
+def interval_of_rate(rate: Frequency) -> Time:
+    """The time between two occurrences, rounded down: a bound must not be less dense than the truth."""
+    return int(SECOND / rate)
+
+
+def _interval(section: Section, notes: Notes) -> Time | None:
+    key = "period" if isinstance(section, Timer) else "interval"
+    stated: Time | None = getattr(section, key)
+    rate: Frequency | None = getattr(section, "rate", None)
+    if stated is None and rate is None:
+        message = f"{section.name!r} has neither {key!r} nor 'rate'"
+        notes.error("APP003", message, section.location(), f"Give '{key}: 20 ms', or 'rate: 50 Hz'.")
+        return None
+    by_rate = None if rate is None else interval_of_rate(rate)
+    if stated is not None and by_rate is not None and stated != by_rate:
+        message = f"{key!r} and 'rate' of {section.name!r} contradict each other"
+        notes.error("APP003", message, section.location("rate"), "Keep one of the two.")
+    interval = stated if stated is not None else by_rate
+    if not interval:
+        notes.error("APP003", f"'rate' of {section.name!r} is beyond one per picosecond", section.location("rate"))
+        return None
+    return interval
+
+
+def _incoming(section: Section, interval: Time) -> Message | None:
+    match section:
+        case Subscription():
+            topic, size, reliable = section.topic, section.message_size, section.reliability == "reliable"
+        case Service():
+            topic, size, reliable = section.name, section.request_size, True
+        case Client():
+            topic, size, reliable = section.service, section.response_size, True
+        case _:
+            return None
+    return Message(
+        callback=section.name, topic=topic, size=size, interval=interval, reliable=reliable, origin=section.location()
+    )
+
+
+def _outgoing(section: Section, node: Node, interval: Time, notes: Notes) -> Iterator[Message]:
+    """What a callback sends: messages to topics, requests to services, and the response if it is a service."""
+
+    def message(topic: str, size: DataSize, reliable: bool, origin: Location | None) -> Message:
+        return Message(callback=section.name, topic=topic, size=size, interval=interval, reliable=reliable, origin=origin)
+
+    for index, topic in enumerate(section.publishes):
+        publisher = next((publisher for publisher in node.publishers if publisher.topic == topic), None)
+        if publisher is None:
+            topics = [publisher.topic for publisher in node.publishers]
+            notes.unknown(f"publisher of node {node.name!r}", topic, topics, section.location("publishes", index))
+        else:
+            yield message(topic, publisher.message_size, publisher.reliability == "reliable", publisher.location())
+    for index, name in enumerate(section.requests):
+        client = next((client for client in node.clients if client.name == name), None)
+        if client is None:
+            names = [client.name for client in node.clients]
+            notes.unknown(f"client of node {node.name!r}", name, names, section.location("requests", index))
+        else:
+            yield message(client.service, client.request_size, True, client.location())
+    if isinstance(section, Service):
+        yield message(section.name, section.response_size, True, section.location())
+
+
+def in_order(callbacks: Iterable[Callback], executor: Executor, notes: Notes) -> tuple[Callback, ...]:
+    """Callbacks in the order in which they were added to the executor."""
+    by_name = {callback.name: callback for callback in callbacks}
+    for index, name in enumerate(executor.order):
+        if name not in by_name:
+            notes.unknown("callback", name, by_name, executor.location("order", index))
+    names = [name for name in executor.order if name in by_name]
+    return tuple(by_name[name] for name in dict.fromkeys([*names, *by_name]))

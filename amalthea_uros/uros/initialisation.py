@@ -1,0 +1,92 @@
+"""The start of the middleware as a state machine.
+
+Entities are created one after the other, each by two states: in one cycle of the task the request is sent, in the following cycles the
+response is looked for; the next request is sent in the cycle after the one that found it. Nothing blocks. After S. R. Bappanadu,
+"Modeling and Timing Analysis of Micro-ROS Application on an Off-Road Vehicle Control Unit", University of Stuttgart, 2022, section 4.2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from amalthea_uros.spec.application import Application, Node
+from amalthea_uros.spec.middleware import ResponseTime
+from amalthea_uros.units import Time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entity:
+    """Something that the agent creates on request."""
+
+    kind: str
+    name: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Initialisation:
+    """How the middleware starts.
+
+    Attributes
+    ----------
+    entities : in the order of their creation
+    period : of the task that creates them
+    least_cycles, most_cycles : activations of that task from the first request to the last response; most: None if not known
+    """
+
+    entities: tuple[Entity, ...]
+    period: Time
+    least_cycles: int
+    most_cycles: int | None
+
+    @property
+    def least_time(self) -> Time:
+        """Least time from the first request to the activation that finds the last response."""
+        return max(0, self.least_cycles - 1) * self.period
+
+    @property
+    def most_time(self) -> Time | None:
+        """Most time from the first request to the activation that finds the last response; None if not known."""
+        return None if self.most_cycles is None else max(0, self.most_cycles - 1) * self.period
+
+
+def entities_of(application: Application) -> tuple[Entity, ...]:
+    """All entities in the order of their creation: the session, then each node with what belongs to it."""
+    if not application.nodes:
+        return ()
+    return (Entity(kind="session", name="client"), *(entity for node in application.nodes for entity in _of_node(node)))
+
+
+def _of_node(node: Node) -> Iterator[Entity]:
+    yield Entity(kind="participant", name=node.name)
+    for publisher in node.publishers:
+        yield from _of_topic(publisher.topic, "publisher", "datawriter")
+    for subscription in node.subscriptions:
+        yield from _of_topic(subscription.topic, "subscriber", "datareader")
+    for service in node.services:
+        yield Entity(kind="replier", name=service.name)
+    for client in node.clients:
+        yield Entity(kind="requester", name=client.service)
+
+
+def _of_topic(topic: str, *kinds: str) -> Iterator[Entity]:
+    yield Entity(kind="topic", name=topic)
+    yield from (Entity(kind=kind, name=topic) for kind in kinds)
+
+
+def initialisation(application: Application, period: Time, response_time: ResponseTime | None) -> Initialisation:
+    """The start of an application whose middleware runs with a period."""
+    entities = entities_of(application)
+    fastest = response_cycles(response_time.min, period) if response_time else 1
+    slowest = response_cycles(response_time.max, period) if response_time else None
+    return Initialisation(
+        entities=entities,
+        period=period,
+        least_cycles=len(entities) * (1 + fastest),
+        most_cycles=None if slowest is None else len(entities) * (1 + slowest),
+    )
+
+
+def response_cycles(response_time: Time, period: Time) -> int:
+    """In how many cycles the response is looked for until it is found; the first look is one cycle after the request."""
+    return max(1, -(-response_time // period))

@@ -1,0 +1,67 @@
+"""Labels: those that are stated, the buffers of messages, and those that are only used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.mapping import Placement
+from amalthea_uros.perf.software import AccessKind, Label, LabelAccess, Runnable, walk
+from amalthea_uros.spec.description import Description
+from amalthea_uros.units import DataSize
+from amalthea_uros.uros.callbacks import Callback
+from amalthea_uros.uros.hardware import Controller
+from amalthea_uros.uros.notes import Notes
+
+#: Size of a label that nobody states: a 32-bit word.
+DEFAULT_SIZE: DataSize = 32
+
+
+def labels_of(description: Description, callbacks: Iterable[Callback], runnables: Mapping[str, Runnable]) -> tuple[Label, ...]:
+    """All labels that are stated or accessed."""
+    sizes = {name: (label.size, label.location()) for name, label in description.labels.items()}
+    for callback in callbacks:
+        if callback.buffer is not None and callback.incoming is not None:
+            sizes.setdefault(callback.buffer, (callback.incoming.size, callback.origin))
+    for runnable in runnables.values():
+        for access in _accesses(runnable):
+            sizes.setdefault(access.label, (DEFAULT_SIZE, runnable.origin))
+    return tuple(Label(name=name, size=size, origin=origin) for name, (size, origin) in sizes.items())
+
+
+def _accesses(runnable: Runnable) -> list[LabelAccess]:
+    return [activity for activity in walk(runnable.activities) if isinstance(activity, LabelAccess)]
+
+
+def placements(labels: Iterable[Label], description: Description, controller: Controller, notes: Notes) -> list[Placement]:
+    """Which label lies in which memory."""
+    found = []
+    for label in labels:
+        stated = description.labels.get(label.name)
+        memory = stated.memory if stated and stated.memory else controller.label_memory
+        if stated and stated.memory and stated.memory not in controller.memories:
+            notes.unknown("memory", stated.memory, controller.memories, stated.location("memory"))
+        elif memory is not None:
+            found.append(Placement(element=label.name, memory=memory))
+    return found
+
+
+def note_slips(description: Description, runnables: Mapping[str, Runnable], notes: Notes) -> None:
+    """Note labels that are only read and nearly named like one that is only written: most likely a slip of the pen."""
+    readers: dict[str, Location | None] = {}
+    written = set()
+    for runnable in runnables.values():
+        for access in _accesses(runnable):
+            if access.kind is AccessKind.READ:
+                readers.setdefault(access.label, runnable.origin)
+            else:
+                written.add(access.label)
+    unread = written - readers.keys() - description.labels.keys()
+    for name, origin in readers.items():
+        if name in written or name in description.labels:
+            continue
+        near = get_close_matches(name, unread, n=1, cutoff=0.8)
+        if near:
+            message = f"nothing writes the label {name!r}, and nothing reads {near[0]!r}"
+            notes.warning("APP008", message, origin, f"Did you mean {near[0]!r}? State both under 'labels' if not.")

@@ -1,0 +1,41 @@
+"""Names that have to be unique."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.spec.description import Description
+from amalthea_uros.uros.notes import Notes
+
+
+def check_names(description: Description, notes: Notes) -> None:
+    """Note processes, callbacks and nodes that share a name."""
+    nodes = description.application.nodes
+    _check("node", ((node.name, node.location("name")) for node in nodes), notes)
+    _check("task, interrupt service routine or callback", _processes(description), notes)
+
+
+def _processes(description: Description) -> Iterable[tuple[str, Location | None]]:
+    nodes = description.application.nodes
+    if nodes:
+        executor = description.middleware.executor
+        yield executor.name, executor.location("name")
+        can = description.middleware.transport.can
+        if can is not None and can.interrupt is not None:
+            yield can.interrupt.name, can.interrupt.location("name")
+    for process in (*description.tasks, *description.isrs):
+        yield process.name, process.location("name")
+    for node in nodes:
+        for callback in (*node.subscriptions, *node.timers, *node.services, *node.clients):
+            yield callback.name, callback.location("name")
+
+
+def _check(kind: str, names: Iterable[tuple[str, Location | None]], notes: Notes) -> None:
+    seen: dict[str, Location | None] = {}
+    for name, location in names:
+        if name in seen:
+            first = seen[name]
+            where = f", the first one stands in line {first.line}" if first and first.line else ""
+            notes.error("APP002", f"there are two of {kind} named {name!r}{where}", location, "Give one of them another name.")
+        seen.setdefault(name, location)

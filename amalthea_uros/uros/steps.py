@@ -1,0 +1,45 @@
+"""What a function does, as activities: locks, reads, computes, writes, triggers, unlocks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from amalthea_uros.perf.software import (
+    AccessKind,
+    Activity,
+    Execute,
+    LabelAccess,
+    SemaphoreAccess,
+    SemaphoreOperation,
+    Trigger,
+    Waiting,
+)
+
+
+def trigger_name(task: str) -> str:
+    """The stimulus by which a task is triggered."""
+    return f"trigger_of_{task}"
+
+
+def steps(
+    execute: Iterable[Execute],
+    *,
+    reads: Iterable[str] = (),
+    writes: Iterable[str] = (),
+    triggers: Iterable[str] = (),
+    locks: Iterable[str] = (),
+) -> tuple[Activity, ...]:
+    """The activities of a function; what it locks it releases in the opposite order."""
+    held = list(locks)
+    return (
+        *(_access(lock, SemaphoreOperation.REQUEST) for lock in held),
+        *(LabelAccess(label=label, kind=AccessKind.READ) for label in reads),
+        *execute,
+        *(LabelAccess(label=label, kind=AccessKind.WRITE) for label in writes),
+        *(_access(lock, SemaphoreOperation.RELEASE) for lock in reversed(held)),
+        *(Trigger(stimulus=trigger_name(task)) for task in triggers),
+    )
+
+
+def _access(lock: str, operation: SemaphoreOperation) -> SemaphoreAccess:
+    return SemaphoreAccess(semaphore=lock, operation=operation, waiting=Waiting.PASSIVE)

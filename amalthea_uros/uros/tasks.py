@@ -1,0 +1,47 @@
+"""What becomes a task or an interrupt service routine, before priorities are known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.software import Activity, IsrCategory, Preemption
+from amalthea_uros.units import Time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannedTask:
+    """A task.
+
+    Attributes
+    ----------
+    stimuli : names
+    period : least time between two activations; None where it is not known
+    priority : what the author states
+    outranks : whether it comes before other tasks of the same period
+    """
+
+    name: str
+    core: str
+    stimuli: tuple[str, ...]
+    activities: tuple[Activity, ...]
+    period: Time | None
+    priority: int | None = None
+    deadline: Time | None = None
+    preemption: Preemption = Preemption.PREEMPTIVE
+    activation_limit: int = 1
+    outranks: bool = False
+    origin: Location | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannedIsr:
+    """An interrupt service routine."""
+
+    name: str
+    core: str
+    stimuli: tuple[str, ...]
+    activities: tuple[Activity, ...]
+    priority: int
+    category: IsrCategory = IsrCategory.CATEGORY_2
+    origin: Location | None = None
