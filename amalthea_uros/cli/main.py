@@ -12,9 +12,11 @@ from amalthea_uros import __version__
 
 #: Command -> what `amuros --help` says of it; the module of the same name holds the rest.
 COMMANDS = {
+    "build": "Build a model from an app.yaml.",
     "diff": "Compare two models by meaning.",
     "fmt": "Rewrite models in canonical form.",
     "info": "Show what is in a model.",
+    "schema": "Print the JSON Schema of app.yaml.",
 }
 
 

@@ -19,20 +19,22 @@ def known_platforms() -> list[str]:
     return sorted(path.stem for path in PLATFORMS.glob("*.yaml"))
 
 
-def whole_hardware(stated: Hardware, folder: Path) -> tuple[Hardware, str | None]:
+def whole_hardware(stated: Hardware, folder: Path, other: str | None = None) -> tuple[Hardware, str | None]:
     """What an application states about its hardware, completed by its platform; and the name of the platform.
 
     Parameters
     ----------
     folder : where the file of the application lies; platform files are found from there
+    other : the platform to take instead of the one that is stated
 
     Raises
     ------
     ReadError : the platform is not known, or its file is wrong.
     """
-    if stated.platform is None:
+    named = other or stated.platform
+    if named is None:
         return stated, None
-    platform = read_section(_file(stated, stated.platform, folder), Platform)
+    platform = read_section(_file(stated, named, folder), Platform)
     own = {key: getattr(stated, key) for key in stated.model_fields_set if key != "platform"}
     if "frequency" in own and "cores" not in own and platform.hardware.cores:
         # One clock for everything, whatever the cores of the platform state.

@@ -1,0 +1,161 @@
+"""What was built, and what was decided on the way."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import IO, Any
+
+from amalthea_uros import __version__
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Single, Stimulus
+from amalthea_uros.perf.system import System
+from amalthea_uros.pipeline import Built
+from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.units import time_text
+from amalthea_uros.uros.assemble import Assembly
+from amalthea_uros.uros.initialisation import Initialisation
+
+
+def write_text(built: Built, path: Path, description: Path, stream: IO[str]) -> None:
+    """Tables that a person reads."""
+    terminal, assembly = Terminal(stream), built.assembly
+    objects = sum(1 for _ in built.model.walk())
+    name = terminal.style(str(path), "1")
+    terminal.line(f"{name}: AMALTHEA {built.model.documents[0].version}, {objects:,} objects, built from {description}")
+    _tasks(terminal, assembly)
+    _isrs(terminal, assembly.system)
+    _traffic(terminal, assembly)
+    if assembly.initialisation is not None:
+        terminal.heading("Start of the middleware")
+        terminal.line(f"  {start_text(assembly.initialisation)}")
+    _pools(terminal, assembly)
+
+
+def _tasks(terminal: Terminal, assembly: Assembly) -> None:
+    system = assembly.system
+    reasons = {choice.task: choice.reason for choice in assembly.choices}
+    rows = []
+    for allocation in system.mapping.tasks:
+        task = system.processes[allocation.task]
+        scheduler = system.schedulers[allocation.scheduler]
+        when = ", ".join(activation_text(system.stimuli_by_name[name]) for name in task.stimuli)
+        rows.append((task.name, when, allocation.priority, ", ".join(scheduler.cores), reasons.get(task.name, "")))
+    if rows:
+        terminal.heading(f"Tasks ({len(rows)})")
+        terminal.table(("task", "activated", "priority", "core", "why"), rows, right=(2,))
+
+
+def _isrs(terminal: Terminal, system: System) -> None:
+    rows = []
+    for allocation in system.mapping.isrs:
+        isr = system.processes[allocation.isr]
+        when = ", ".join(activation_text(system.stimuli_by_name[name]) for name in isr.stimuli)
+        cores = ", ".join(system.interrupt_controllers[allocation.controller].cores)
+        rows.append((isr.name, when, allocation.priority, cores))
+    if rows:
+        terminal.heading(f"Interrupt service routines ({len(rows)})")
+        terminal.table(("ISR", "activated", "priority", "core"), rows, right=(2,))
+
+
+def activation_text(stimulus: Stimulus) -> str:
+    """When a stimulus activates, in a few words."""
+    match stimulus:
+        case Periodic(period=period, offset=offset):
+            return f"every {time_text(period)}" + (f" from {time_text(offset)}" if offset else "")
+        case RelativePeriodic():
+            return "sporadic"
+        case Burst(period=period, count=count):
+            return f"{count} times every {time_text(period)}"
+        case Single(time=time):
+            return f"once at {time_text(time)}"
+    return {"InterProcess": "triggered", "Synthetic": "at listed times"}.get(type(stimulus).__name__, type(stimulus).__name__)
+
+
+def _traffic(terminal: Terminal, assembly: Assembly) -> None:
+    if not assembly.traffic:
+        return
+    share = float(sum(item.share for item in assembly.traffic))
+    terminal.heading(f"Messages on the CAN bus ({share:.1%} of it at most)")
+    rows = [
+        (
+            item.message.topic,
+            "in" if item.incoming else "out",
+            time_text(item.message.interval),
+            f"{item.length} B",
+            item.frames,
+            time_text(item.bus_time),
+        )
+        for item in assembly.traffic
+    ]
+    headings = ("topic", "way", "every", "with headers", "frames", "bus time")
+    terminal.table(headings, rows, right=(2, 3, 4, 5))
+
+
+def start_text(start: Initialisation) -> str:
+    """How the middleware starts, in a sentence."""
+    text = f"{len(start.entities)} entities one after the other, {start.least_cycles} cycles ({time_text(start.least_time)}) or more"
+    if start.most_cycles is None or start.most_time is None:
+        return text
+    return f"{text}, {start.most_cycles} cycles ({time_text(start.most_time)}) at most"
+
+
+def _pools(terminal: Terminal, assembly: Assembly) -> None:
+    used = [pool for pool in assembly.pools if pool.needed]
+    if not used:
+        return
+    terminal.heading("Static pools")
+    rows = [(pool.option, pool.needed, pool.available, "" if pool.stated else "default") for pool in used]
+    terminal.table(("option", "needed", "available", ""), rows, right=(1, 2))
+
+
+def write_json(built: Built, path: Path, description: Path, stream: IO[str]) -> None:
+    """The same for programs; times are picoseconds under names that end in `_ps`."""
+    assembly = built.assembly
+    start = assembly.initialisation
+    result = {
+        "amuros": __version__,
+        "model": str(path),
+        "description": str(description),
+        "amalthea": built.model.documents[0].version,
+        "choices": [{"task": c.task, "period_ps": c.period, "reason": c.reason} for c in assembly.choices],
+        "messages": [
+            {
+                "topic": item.message.topic,
+                "incoming": item.incoming,
+                "interval_ps": item.message.interval,
+                "bytes": item.length,
+                "frames": item.frames,
+                "bus_time_ps": item.bus_time,
+            }
+            for item in assembly.traffic
+        ],
+        "initialisation": start
+        and {
+            "entities": [{"kind": entity.kind, "name": entity.name} for entity in start.entities],
+            "least_cycles": start.least_cycles,
+            "most_cycles": start.most_cycles,
+            "least_time_ps": start.least_time,
+            "most_time_ps": start.most_time,
+        },
+        "pools": [
+            {"option": p.option, "needed": p.needed, "available": p.available, "stated": p.stated} for p in assembly.pools
+        ],
+        "findings": [_finding(finding) for finding in assembly.findings],
+    }
+    json.dump(result, stream, indent=2, ensure_ascii=False)
+    stream.write("\n")
+
+
+def _finding(finding: Finding) -> dict[str, Any]:
+    place = finding.location
+    return {
+        "rule": finding.rule,
+        "severity": finding.severity,
+        "message": finding.message,
+        "help": finding.help,
+        "file": str(place.path) if place else None,
+        "line": place.line if place else None,
+        "column": place.column if place else None,
+        "object": finding.object,
+    }

@@ -1,0 +1,41 @@
+"""The JSON Schema of `app.yaml`, for completion and checks in editors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amalthea_uros.spec.description import Description
+
+#: What editors understand; pydantic speaks a later draft, from which the sections of this format need only other key words.
+_DRAFT = "http://json-schema.org/draft-07/schema#"
+
+
+def json_schema() -> dict[str, Any]:
+    """The schema, draft-07."""
+    schema = Description.model_json_schema(by_alias=True, ref_template="#/definitions/{model}")
+    definitions: dict[str, Any] = schema.pop("$defs")
+    whole: dict[str, Any] = {"$schema": _DRAFT, "title": "amuros application"} | _tidied(schema)
+    return whole | {"definitions": {name: _tidied(definitions[name]) for name in sorted(definitions)}}
+
+
+def _tidied(schema: Any) -> Any:
+    """Without the titles that repeat keys, and without `null`, which nobody writes."""
+    if isinstance(schema, list):
+        return [_tidied(item) for item in schema]
+    if not isinstance(schema, dict):
+        return schema
+    found = {key: _tidied(value) for key, value in schema.items() if key != "title" or not isinstance(value, str)}
+    if found.get("default", 0) is None:
+        del found["default"]
+    alternatives = found.get("anyOf")
+    if alternatives is not None:
+        kept = [item for item in alternatives if item != {"type": "null"}]
+        if len(kept) == 1:
+            del found["anyOf"]
+            found = kept[0] | found
+        else:
+            found["anyOf"] = kept
+    if "$ref" in found and len(found) > 1:
+        # Draft-07 ignores whatever stands beside a reference.
+        found["allOf"] = [{"$ref": found.pop("$ref")}]
+    return found
