@@ -31,6 +31,8 @@ SECOND: Time = 1000 * MILLISECOND
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S*)\s*", re.ASCII)
 _LONGEST_NUMBER = 40
+#: Quantities fit into 64 bits, also where they are summed up in arrays: times up to 106 days.
+_LIMIT = 2**63
 
 
 def _data_units(suffix: str = "") -> dict[str, int]:
@@ -97,6 +99,8 @@ def parse(text: str, dimension: Dimension) -> Fraction:
     if unit not in dimension.units:
         raise ValueError(f"{shortened(unit)!r} is not a unit of {dimension.article.split(' ', 1)[1]}{_advice(unit, dimension)}")
     value = Fraction(number) * dimension.units[unit]
+    if abs(value) >= _LIMIT:
+        raise ValueError(f"{text.strip()!r} is out of range")
     if dimension.whole and value.denominator != 1:
         raise ValueError(f"{text.strip()!r} is no whole number of {dimension.whole}")
     return value

@@ -35,11 +35,11 @@ def whole_hardware(stated: Hardware, folder: Path, other: str | None = None) -> 
     if named is None:
         return stated, None
     platform = read_section(_file(stated, named, folder), Platform)
-    own = {key: getattr(stated, key) for key in stated.model_fields_set if key != "platform"}
-    if "frequency" in own and "cores" not in own and platform.hardware.cores:
+    added = {key: getattr(platform.hardware, key) for key in platform.hardware.model_fields_set - stated.model_fields_set}
+    if stated.frequency is not None and "cores" in added:
         # One clock for everything, whatever the cores of the platform state.
-        own["cores"] = [core.model_copy(update={"frequency": None}) for core in platform.hardware.cores]
-    return platform.hardware.model_copy(update=own), platform.platform
+        added["cores"] = [core.model_copy(update={"frequency": None}) for core in added["cores"]]
+    return stated.model_copy(update=added), platform.platform
 
 
 def _file(stated: Hardware, name: str, folder: Path) -> Path:

@@ -56,6 +56,7 @@ class Chains:
     notes: Notes
     events: dict[str, perf.Event] = field(default_factory=dict)
     chains: dict[str, perf.EventChain] = field(default_factory=dict)
+    _seen: set[str] = field(default_factory=set)
 
     def add_all(self, sections: Sequence[Chain]) -> tuple[LatencyConstraint, ...]:
         """Add all chains of the file, and give the limits of their latency."""
@@ -72,12 +73,14 @@ class Chains:
 
     def _add(self, section: Chain, by_name: Mapping[str, Chain], above: tuple[str, ...]) -> perf.EventChain | None:
         """Add a chain, after those that it consists of."""
-        if section.name in self.chains:
-            return self.chains[section.name]
         if section.name in above:
             circle = " -> ".join((*above[above.index(section.name) :], section.name))
-            self.notes.error("APP004", f"the chain {section.name!r} is part of itself: {circle}", section.location("sequence"))
+            place = by_name[above[-1]].location("sequence")
+            self.notes.error("APP004", f"the chain {section.name!r} is part of itself: {circle}", place)
             return None
+        if section.name in self._seen:
+            return self.chains.get(section.name)
+        self._seen.add(section.name)
         above = (*above, section.name)
         if section.path is not None:
             found = self._path(section)

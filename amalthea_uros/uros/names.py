@@ -13,7 +13,7 @@ def check_names(description: Description, notes: Notes) -> None:
     """Note processes, callbacks and nodes that share a name."""
     nodes = description.application.nodes
     _check("node", ((node.name, node.location("name")) for node in nodes), notes)
-    _check("task, interrupt service routine or callback", _processes(description), notes)
+    _check("process", _processes(description), notes)
 
 
 def _processes(description: Description) -> Iterable[tuple[str, Location | None]]:
@@ -33,9 +33,13 @@ def _processes(description: Description) -> Iterable[tuple[str, Location | None]
 
 def _check(kind: str, names: Iterable[tuple[str, Location | None]], notes: Notes) -> None:
     seen: dict[str, Location | None] = {}
-    for name, location in names:
+    for name, location in sorted(names, key=lambda item: _line(item[1])):
         if name in seen:
             first = seen[name]
             where = f", the first one stands in line {first.line}" if first and first.line else ""
-            notes.error("APP002", f"there are two of {kind} named {name!r}{where}", location, "Give one of them another name.")
+            notes.error("APP002", f"the {kind} name {name!r} is used twice{where}", location, "Give one of them another name.")
         seen.setdefault(name, location)
+
+
+def _line(location: Location | None) -> tuple[int, int]:
+    return (location.line or 0, location.column or 0) if location else (0, 0)

@@ -11,6 +11,8 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 class Notes:
     """Collects findings.
 
+    The same mistake may be met on several ways; it is told once.
+
     Attributes
     ----------
     findings : in the order in which they came up
@@ -18,18 +20,24 @@ class Notes:
 
     def __init__(self) -> None:
         self.findings: list[Finding] = []
+        self._known: set[Finding] = set()
+
+    def _add(self, finding: Finding) -> None:
+        if finding not in self._known:
+            self._known.add(finding)
+            self.findings.append(finding)
 
     def error(self, rule: str, message: str, location: Location | None, help_text: str = "") -> None:
         """Something that makes a model impossible."""
-        self.findings.append(Finding(rule, Severity.ERROR, message, location, help_text))
+        self._add(Finding(rule, Severity.ERROR, message, location, help_text))
 
     def warning(self, rule: str, message: str, location: Location | None, help_text: str = "") -> None:
         """Something that the author has to think about."""
-        self.findings.append(Finding(rule, Severity.WARNING, message, location, help_text))
+        self._add(Finding(rule, Severity.WARNING, message, location, help_text))
 
     def info(self, rule: str, message: str, location: Location | None, help_text: str = "") -> None:
         """Something worth knowing."""
-        self.findings.append(Finding(rule, Severity.INFO, message, location, help_text))
+        self._add(Finding(rule, Severity.INFO, message, location, help_text))
 
     def unknown(self, kind: str, name: str, known: Iterable[str], location: Location | None) -> None:
         """A name that nothing has."""

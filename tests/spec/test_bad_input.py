@@ -1,0 +1,202 @@
+"""Whatever is wrong with an app.yaml is told with its place, all of it in one run."""
+
+import pytest
+
+from amalthea_uros.errors import ReadError
+from amalthea_uros.spec.read import read_description
+
+GOOD = """\
+amuros: 1
+name: app
+hardware: {platform: single-core}
+middleware:
+  executor: {period: 1 ms, execution_time: 12 us}
+application:
+  nodes:
+    - name: node
+      timers:
+        - {name: Timer, period: 1 ms, execution_time: 4 us}
+"""
+
+
+@pytest.fixture
+def told(tmp_path):
+    """What is told of a text: (line, column, rule, message, help) each."""
+
+    def tell(text):
+        path = tmp_path / "app.yaml"
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        with pytest.raises(ReadError) as caught:
+            read_description(path)
+        for finding in caught.value.findings:
+            assert finding.severity == "error"
+            if finding.location.line is not None:
+                assert finding.location.path == path
+        return [(f.location.line, f.location.column, f.rule, f.message, f.help) for f in caught.value.findings]
+
+    return tell
+
+
+def changed(old, new):
+    assert GOOD.count(old) == 1
+    return GOOD.replace(old, new)
+
+
+def test_the_good_one_is_good(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text(GOOD)
+    assert read_description(path).application.nodes[0].timers[0].name == "Timer"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "finding"),
+    [
+        ("platform:", "platfrm:", (3, 12, "YML010", "unknown key 'platfrm'", "Did you mean 'platform'?")),
+        (
+            "period: 1 ms, execution_time: 4",
+            "Period: 1 ms, execution_time: 4",
+            (10, 25, "YML010", "unknown key 'Period'", "Did you mean 'period'?"),
+        ),
+        (
+            "executor:",
+            "executor: {}\n  executor:",
+            (6, 3, "YML003", "the key 'executor' stands here a second time, first in line 5", "Keep one of the two."),
+        ),
+        ("name: app\n", "", (1, 1, "YML011", "the key 'name' is missing", "")),
+        (
+            "execution_time: 4 us",
+            "execution_time: 4",
+            (10, 55, "YML012", "execution_time: '4' has no unit; a time looks like '10 ms'", ""),
+        ),
+        ("execution_time: 4 us", "execution_time: 0 us", (10, 55, "YML012", "execution_time: must be greater than zero", "")),
+        ("execution_time: 4 us", "execution_time: -4 us", (10, 55, "YML012", "execution_time: must be greater than zero", "")),
+        (
+            "execution_time: 4 us",
+            "execution_time: [4 us]",
+            (10, 55, "YML012", "execution_time: expected a time such as '10 ms'", ""),
+        ),
+        (
+            "execution_time: 4 us",
+            "execution_time: {min: 4 us}",
+            (10, 55, "YML012", "execution_time: an execution time is a time such as '12 us', or has both 'min' and 'max'", ""),
+        ),
+        (
+            "execution_time: 4 us",
+            "execution_time: {min: 4 us, max: 3 us}",
+            (10, 55, "YML012", "execution_time: 'min' is greater than 'max'", ""),
+        ),
+        (
+            "execution_time: 4 us",
+            "execution_time: {min: 4 us, max: 5 us, avg: 6 us}",
+            (10, 55, "YML012", "execution_time: 'avg' is not between 'min' and 'max'", ""),
+        ),
+        (
+            "execution_time: 4 us",
+            "execution_time: {min: 4 us, max: 5 us, distribution: gaus}",
+            (
+                10,
+                92,
+                "YML012",
+                "distribution: expected 'uniform', 'gauss', 'beta' or 'weibull', found 'gaus'",
+                "Did you mean 'gauss'?",
+            ),
+        ),
+        (
+            "execution_time: 4 us",
+            "execution_time: {min: 4 us, max: 5 us, distribution: gauss}",
+            (10, 55, "YML012", "execution_time: a gauss distribution needs 'avg'", ""),
+        ),
+        (
+            "name: Timer",
+            "name: ''",
+            (10, 18, "YML012", "name: '' is no name: 1 to 200 printable characters without blanks around", ""),
+        ),
+        (
+            "nodes:\n",
+            "nodes: 5\n  nods:\n",
+            (7, 10, "YML012", "nodes: expected a list, found 5", "Write [a, b], or one item per line behind '- '."),
+        ),
+        ("amuros: 1", "amuros: 2", (1, 9, "YML012", "amuros: expected 1, found 2", "")),
+    ],
+)
+def test_a_mistake_with_its_place(told, old, new, finding):
+    assert finding in told(changed(old, new))
+
+
+def test_all_mistakes_in_one_run(told):
+    text = changed("platform:", "platfrm:").replace("1 ms", "1 mss").replace("node\n", "node\n      tmers: []\n")
+    assert [(line, rule) for line, _, rule, _, _ in told(text)] == [
+        (3, "YML010"),
+        (5, "YML012"),
+        (9, "YML010"),
+        (11, "YML012"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "rule", "reason"),
+    [
+        ("", None, "YML001", "the file is empty"),
+        ("# nothing\n", None, "YML001", "the file is empty"),
+        ("- a list\n", 1, "YML012", "expected keys and values, found a list"),
+        ("a: [1\nb: 2\n", 2, "YML001", "this is no YAML"),
+        ("a: b: c\n", 1, "YML001", "this is no YAML"),
+        ("a: 1\n--- \nb: 2\n", 2, "YML001", "several YAML documents"),
+        ("a: !!python/object/apply:os.system [ls]\n", 1, "YML001", "tags are not allowed"),
+        ("a: *nothing\n", 1, "YML001", "no complete anchor &nothing"),
+        ("a: &a [*a]\n", 1, "YML001", "no complete anchor &a"),
+        ("a: \x07\n", 1, "YML001", "the character U+0007 is not allowed"),
+        (b"\xff\xfe\x00", None, "YML001", "not UTF-8"),
+        ("a: " + "[" * 100_000, 1, "YML002", "nested more than 40 deep"),
+        ("? [a]\n: b\n", 1, "YML001", "a key has to be a plain text"),
+        ("a: 1\n" * 2_100_000, None, "YML002", "more than 5 million"),
+        ("a:\n" + "- b\n" * 500_000, 400_002, "YML002", "more than 400,000 values"),
+    ],
+    ids=lambda value: value[:20] if isinstance(value, str) else "",
+)
+def test_what_is_no_description_at_all(told, text, line, rule, reason):
+    findings = told(text)
+    assert len(findings) <= 100
+    assert findings[-1][0] == line
+    assert findings[-1][2] == rule
+    assert reason in findings[-1][3]
+
+
+def test_aliases_that_explode(told):
+    levels = "".join(f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]\n" for n in range(1, 12))
+    ((line, _, rule, message, _),) = told("a0: &a0 [x]\n" + levels)
+    # The sixth level holds 9 to the power of 6 values.
+    assert (line, rule) == (7, "YML002")
+    assert "expanded aliases" in message
+
+
+def test_aliases_that_do_not(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text(changed("execution_time: 12 us", "execution_time: &cost 12 us").replace("4 us", "*cost"))
+    assert read_description(path).application.nodes[0].timers[0].execution_time.max == 12_000_000
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(ReadError, match="no such file"):
+        read_description(tmp_path / "none.yaml")
+    with pytest.raises(ReadError, match="is a directory"):
+        read_description(tmp_path)
+
+
+def test_words_that_older_yaml_took_for_something_else(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text(changed("name: app", "name: on").replace("name: Timer", "name: 1:30").replace("name: node", "name: no"))
+    description = read_description(path)
+    assert (description.name, description.application.nodes[0].name) == ("on", "no")
+    assert description.application.nodes[0].timers[0].name == "1:30"
+
+
+def test_places_of_values(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text(GOOD)
+    timer = read_description(path).application.nodes[0].timers[0]
+    assert (timer.location().line, timer.location().column) == (10, 11)
+    assert (timer.location("period").column, timer.execution_time.location().column) == (33, 55)
+    # What is not stated stands where its section does.
+    assert timer.location("offset") == timer.location()
+    assert timer.location().text == GOOD.splitlines()[9]

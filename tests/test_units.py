@@ -1,0 +1,89 @@
+"""Quantities as text and as exact numbers."""
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from amalthea_uros import units
+
+
+@pytest.mark.parametrize(
+    ("text", "picoseconds"),
+    [
+        ("10 ms", 10 * 10**9),
+        ("250us", 250 * 10**6),
+        ("1.5 us", 1_500_000),
+        ("0.001 ns", 1),
+        ("2e-3 s", 2 * 10**9),
+        ("5 min", 300 * 10**12),
+        ("1 h", 3600 * 10**12),
+        ("3 µs", 3 * 10**6),
+    ],
+)
+def test_times(text, picoseconds):
+    assert units.parse_time(text) == picoseconds
+
+
+@pytest.mark.parametrize(
+    ("text", "bits"), [("4 B", 32), ("1 kB", 8000), ("1 KiB", 8192), ("10 MB", 80_000_000), ("3 bit", 3), ("2 Kibit", 2048)]
+)
+def test_data_sizes(text, bits):
+    assert units.parse_data_size(text) == bits
+
+
+def test_rates():
+    assert units.parse_bit_rate("250 kbit/s") == 250_000
+    assert units.parse_bit_rate("1 MB/s") == 8_000_000
+    assert units.parse_frequency("33.333 MHz") == Fraction(33_333_000)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("10", "has no unit"),
+        ("", "is not a time"),
+        ("ms", "is not a time"),
+        ("10 mss", "did you mean 'ms'"),
+        ("10 MS", "did you mean 'ms'"),
+        ("10 V", "units are ps, ns"),
+        ("0.5 ps", "no whole number of picoseconds"),
+        ("1e999 s", "out of range"),
+        ("9" * 50 + " s", "is not a time"),
+        ("-1e7 s", "out of range"),
+        ("nan s", "is not a time"),
+    ],
+)
+def test_what_is_no_time(text, reason):
+    with pytest.raises(ValueError, match=reason):
+        units.parse_time(text)
+
+
+@pytest.mark.parametrize(
+    ("picoseconds", "text"),
+    [(0, "0 s"), (12_000_000, "12 us"), (16_650_000, "16.65 us"), (10**12, "1 s"), (1, "1 ps"), (-2 * 10**9, "-2 ms")],
+)
+def test_times_as_text(picoseconds, text):
+    assert units.time_text(picoseconds) == text
+
+
+def test_other_text():
+    assert units.frequency_text(Fraction(300 * 10**6)) == "300 MHz"
+    assert units.data_size_text(32) == "4 B"
+    assert units.data_size_text(3) == "3 bit"
+    assert units.data_size_text(8 * 1024 * 240) == "240 KiB"
+    assert units.bit_rate_text(250_000) == "250 kbit/s"
+
+
+@given(st.integers(0, 10**11))
+def test_a_time_with_few_digits_is_what_its_text_says(picoseconds):
+    assert units.parse_time(units.time_text(picoseconds)) == picoseconds
+
+
+@given(st.integers(0, 10**9), st.integers(1, 4000))
+def test_ticks_and_times_are_exact(ticks, megahertz):
+    frequency = Fraction(megahertz * 10**6)
+    exact = units.time_of_ticks(ticks, frequency)
+    assert exact * frequency == ticks * units.SECOND
+    assert units.ticks_of_time(units.up(exact), frequency) >= ticks >= units.ticks_of_time(units.down(exact), frequency)

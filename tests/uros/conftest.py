@@ -1,0 +1,30 @@
+"""Descriptions as text, and the systems that they become."""
+
+import textwrap
+
+import pytest
+
+from amalthea_uros import pipeline
+from amalthea_uros.errors import ReadError
+
+
+class Author:
+    """Writes an app.yaml and has it assembled."""
+
+    def __init__(self, folder):
+        self.path = folder / "app.yaml"
+
+    def describe(self, text, platform=None):
+        self.path.write_text(textwrap.dedent(text).lstrip("\n"))
+        return pipeline.describe(self.path, platform)
+
+    def findings(self, text):
+        """What is told of a description that is refused: (line, rule, message) each."""
+        with pytest.raises(ReadError) as caught:
+            self.describe(text)
+        return [(f.location.line, f.rule, f.message) for f in caught.value.findings if f.severity == "error"]
+
+
+@pytest.fixture
+def author(tmp_path):
+    return Author(tmp_path)

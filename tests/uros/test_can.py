@@ -1,0 +1,68 @@
+"""CAN frames and XRCE-DDS blocks, against the figures of the papers."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from amalthea_uros.units import MICROSECOND
+from amalthea_uros.uros.can import Bus, Identifier, block_header, blocks, frames, message_time
+
+
+@pytest.mark.parametrize("data_bytes", range(9))
+def test_the_longest_frame_of_davis_2007(data_bytes):
+    # Equations (1) and (2) of the paper: 55 + 10 s bits with 11-bit identifiers, 80 + 10 s with 29-bit ones.
+    assert Bus(bit_rate=1).frame_bits(data_bytes) == 55 + 10 * data_bytes
+    assert Bus(bit_rate=1, identifier=Identifier.EXTENDED).frame_bits(data_bytes) == 80 + 10 * data_bytes
+
+
+def stuffed_length(bits):
+    """Bit stuffing as ISO 11898-1 has it: behind five equal bits one of the other value, which counts for the next five."""
+    sent, run, last = 0, 0, None
+    for bit in bits:
+        run = run + 1 if bit == last else 1
+        last, sent = bit, sent + 1
+        if run == 5:
+            last, run, sent = 1 - bit, 1, sent + 1
+    return sent
+
+
+@given(st.integers(0, 8), st.sampled_from(Identifier), st.data())
+def test_no_frame_is_longer_than_the_longest_nor_shorter_than_the_shortest(data_bytes, identifier, data):
+    bus = Bus(bit_rate=1, identifier=identifier)
+    count = identifier.value + 8 * data_bytes
+    bits = data.draw(st.lists(st.integers(0, 1), min_size=count, max_size=count))
+    length = stuffed_length(bits) + 13
+    assert bus.least_frame_bits(data_bytes) <= length <= bus.frame_bits(data_bytes)
+
+
+def test_the_longest_frame_exists():
+    # Five equal bits, then runs of four of alternating value, each completed to five by the stuff bit before it.
+    bits = [0] * 5 + [bit for index in range(30) for bit in [1 - index % 2] * 4]
+    assert stuffed_length(bits[:98]) + 13 == Bus(bit_rate=1).frame_bits(8) == 135
+
+
+@pytest.mark.parametrize(
+    ("length", "count"),
+    # Lengths of the messages that create entities, and the two ends of a block.
+    [(24, 4), (52, 8), (84, 12), (40, 6), (19, 3), (14, 2), (7, 1), (8, 2), (0, 1)],
+)
+def test_frames_of_a_message(length, count):
+    assert frames(length) == count
+
+
+def test_headers_of_blocks():
+    assert [block_header(index, 3) for index in range(3)] == [0x01, 0x00, 0x02]
+    assert block_header(0, 1) == 0x03
+
+
+@given(st.binary(max_size=200))
+def test_blocks_hold_the_message(message):
+    found = blocks(message)
+    assert b"".join(block[1:] for block in found) == message
+    assert len(found) == frames(len(message))
+    assert all(len(block) <= 8 for block in found)
+
+
+def test_bus_time_of_a_message():
+    # Two frames of 135 bits at 4 us each.
+    assert message_time(Bus(bit_rate=250_000), 14) == 1080 * MICROSECOND

@@ -1,0 +1,103 @@
+"""The start of the middleware, and its static pools."""
+
+import pytest
+
+from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import parse_time
+from amalthea_uros.uros.initialisation import Entity, response_cycles
+
+APP = """
+    amuros: 1
+    name: app
+    hardware: {{platform: single-core}}
+    middleware:
+      executor: {{period: 1 ms}}
+      initialisation: {{response_time: {{min: 9.304 ms, max: 101.150 ms}}}}
+      limits: {{{limits}}}
+    application:
+      nodes:
+        - name: node
+          publishers:
+            - {{topic: out, message_size: {size}, reliability: {reliability}}}
+          timers:
+            - {{name: Timer, period: 1 ms, execution_time: 2 us, publishes: [out]}}
+          subscriptions:
+            - {{name: A, topic: a, message_size: 4 B, interval: 1 ms, execution_time: 2 us}}
+            - {{name: B, topic: b, message_size: 4 B, interval: 1 ms, execution_time: 2 us}}
+          services:
+            - {{name: Ask, rate: 1 Hz, request_size: 4 B, response_size: 4 B, execution_time: 2 us}}
+"""
+
+
+def app(limits="", size="4 B", reliability="reliable"):
+    return APP.format(limits=limits, size=size, reliability=reliability)
+
+
+@pytest.mark.parametrize(
+    ("response", "cycles"),
+    # Response times that were measured on the controller (thesis, section 4.2), at a task cycle of 1 ms.
+    [("97.258 ms", 98), ("101.150 ms", 102), ("9.304 ms", 10), ("0.4 ms", 1), ("1 ms", 1)],
+)
+def test_the_response_is_looked_for_in_each_cycle(response, cycles):
+    assert response_cycles(parse_time(response), MS) == cycles
+
+
+def test_entities_in_the_order_of_creation(author):
+    start = author.describe(app()).initialisation
+    assert start.entities == tuple(
+        Entity(kind=kind, name=name)
+        for kind, name in [
+            ("session", "client"),
+            ("participant", "node"),
+            ("topic", "out"),
+            ("publisher", "out"),
+            ("datawriter", "out"),
+            ("topic", "a"),
+            ("subscriber", "a"),
+            ("datareader", "a"),
+            ("topic", "b"),
+            ("subscriber", "b"),
+            ("datareader", "b"),
+            ("replier", "Ask"),
+        ]
+    )
+    # A cycle for each request, then 10 to 102 in which the response is looked for.
+    assert (start.least_cycles, start.most_cycles) == (12 * 11, 12 * 103)
+    assert start.most_time == (12 * 103 - 1) * MS
+
+
+def test_what_the_application_needs(author):
+    pools = {pool.option: (pool.needed, pool.available) for pool in author.describe(app("RMW_UXRCE_MAX_NODES: 2")).pools}
+    assert pools == {
+        "RMW_UXRCE_MAX_SESSIONS": (1, 1),
+        "RMW_UXRCE_MAX_NODES": (1, 2),
+        "RMW_UXRCE_MAX_TOPICS": (3, 3),
+        "RMW_UXRCE_MAX_PUBLISHERS": (1, 4),
+        "RMW_UXRCE_MAX_SUBSCRIPTIONS": (2, 4),
+        "RMW_UXRCE_MAX_SERVICES": (1, 4),
+        "RMW_UXRCE_MAX_CLIENTS": (0, 4),
+    }
+
+
+def test_a_pool_that_is_too_small(author):
+    assert author.findings(app("RMW_UXRCE_MAX_SUBSCRIPTIONS: 1")) == [
+        (7, "UR120", "the application needs 2 of RMW_UXRCE_MAX_SUBSCRIPTIONS, which is 1")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("size", "reliability", "fits"),
+    [
+        ("500 B", "best-effort", True),  # with 12 B of headers just the MTU
+        ("501 B", "best-effort", False),
+        ("501 B", "reliable", True),
+        ("1524 B", "reliable", True),  # three buffers
+        ("1525 B", "reliable", False),
+    ],
+)
+def test_messages_fit_into_the_buffers(author, size, reliability, fits):
+    text = app("RMW_UXRCE_MTU: 512 B, RMW_UXRCE_STREAM_HISTORY: 3", size, reliability)
+    if fits:
+        assert author.describe(text)
+    else:
+        assert [(line, rule) for line, rule, _ in author.findings(text)] == [(12, "UR121")]
