@@ -21,6 +21,7 @@ mirror the containment named by `opposite`. The order of the features is the ord
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
@@ -144,14 +145,25 @@ def _feature(line: str) -> FeatureFact:
     name, *words = declaration.split()
     kind = _KINDS.get(words[0], Kind.ATTRIBUTE)
     type_name, *flags = words if kind is Kind.ATTRIBUTE else words[1:]
+    bounds = [_bounds(flag) for flag in flags if _BOUNDS.fullmatch(flag)]
     return FeatureFact(
         name=name,
         kind=kind,
         type=type_name,
-        required="1" in flags or "1..*" in flags,
-        many="*" in flags or "1..*" in flags,
+        required=any(lower not in ("", "0") for lower, _ in bounds),
+        many=any(upper != "1" for _, upper in bounds),
         derived="derived" in flags,
         readonly="readonly" in flags,
         default=json.loads(default) if default else None,
         opposite=flags[flags.index("opposite") + 1] if "opposite" in flags else None,
     )
+
+
+#: How many values a feature takes: "1", "*", "1..*", "2..2".
+_BOUNDS = re.compile(r"(?:\d+\.\.)?(?:\d+|\*)")
+
+
+def _bounds(text: str) -> tuple[str, str]:
+    """The least and the greatest number of values; an upper bound alone says nothing of the lower one, but 1 means exactly one."""
+    lower, _, upper = text.rpartition("..")
+    return (lower or ("1" if upper == "1" else "")), upper

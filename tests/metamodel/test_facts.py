@@ -87,3 +87,13 @@ class TestAgainstTheEcoreFiles:
         for cls in dump["classes"]:
             expected = [feature.split(".")[1] for feature in cls.get("allFeatures", [])]
             assert [feature.name for feature in declared.features(cls["name"])] == expected
+
+    @pytest.mark.parametrize("version", known_versions())
+    def test_the_bounds_of_all_features(self, version):
+        dump = json.loads((SHARED / "metamodel" / f"amalthea-{version}.json").read_text())
+        declared = facts(version)
+        for cls in dump["classes"]:
+            for feature in (*cls.get("attributes", []), *cls.get("references", [])):
+                held = declared.feature(cls["name"], feature["name"])
+                assert held.many == (feature["upper"] != 1), (cls["name"], feature["name"])
+                assert held.required == (feature["lower"] > 0), (cls["name"], feature["name"])

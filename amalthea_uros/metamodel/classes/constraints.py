@@ -60,7 +60,7 @@ class RunnableSequencingConstraint(ReferableBaseObject):
     """
 
     order_type: RunnableOrderType | None = attribute("orderType")
-    runnable_groups: RunnableEntityGroup | None = containment("runnableGroups")
+    runnable_groups: list[RunnableEntityGroup] = containments("runnableGroups")
     process_scope: list[AbstractProcess] = references("processScope")
 
 
@@ -117,7 +117,7 @@ class RunnableSeparationConstraint(SeparationConstraint, RunnableConstraint, Bas
     groups : Two groups are kept apart from each other, a single one is kept away from the targets.
     """
 
-    groups: RunnableGroup | None = containment("groups")
+    groups: list[RunnableGroup] = containments("groups")
 
 
 class ProcessSeparationConstraint(SeparationConstraint, ProcessConstraint, BaseObject):
@@ -128,7 +128,7 @@ class ProcessSeparationConstraint(SeparationConstraint, ProcessConstraint, BaseO
     groups : Two groups are kept apart from each other, a single one is kept away from the targets.
     """
 
-    groups: ProcessGroup | None = containment("groups")
+    groups: list[ProcessGroup] = containments("groups")
 
 
 class DataSeparationConstraint(SeparationConstraint, DataConstraint, BaseObject):
@@ -139,7 +139,7 @@ class DataSeparationConstraint(SeparationConstraint, DataConstraint, BaseObject)
     groups : Two groups are kept apart from each other, a single one is kept away from the targets.
     """
 
-    groups: LabelEntityGroup | None = containment("groups")
+    groups: list[LabelEntityGroup] = containments("groups")
 
 
 class RunnablePairingConstraint(PairingConstraint, RunnableConstraint, BaseObject):
@@ -328,7 +328,7 @@ class EventChainSynchronizationConstraint(SynchronizationConstraint):
     type : Whether the stimuli or the responses of the chains are compared.
     """
 
-    scope: EventChain | None = reference("scope")
+    scope: list[EventChain] = references("scope")
     type: SynchronizationType | None = attribute("type")
 
 
