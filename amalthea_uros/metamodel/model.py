@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from amalthea_uros.diagnostics import Finding
+from amalthea_uros.diagnostics import Finding, Location
 from amalthea_uros.metamodel.changes import Changes
 from amalthea_uros.metamodel.classes.base import Amalthea
 from amalthea_uros.metamodel.containment import Revision
@@ -46,6 +46,7 @@ class Document:
     prolog : comments and processing instructions before the root element, `epilog` those behind it
     spellings : odd ids and references, by object and XML name
     href_features : references that stand as `href` elements although ours would be an attribute (or the reverse: False)
+    origins : where objects come from that were not read from this document, such as a line of a description
     """
 
     def __init__(self, root: Amalthea, version: str | None = None, path: Path | None = None) -> None:
@@ -58,6 +59,7 @@ class Document:
         self.spellings: dict[tuple[Element, str], Spelling] = {}
         self.href_features: dict[tuple[Element, str], bool] = {}
         self.changes = Changes()
+        self.origins: dict[Element, Location] = {}
         self._model: Model | None = None
         object.__setattr__(root, "_document", self)
 
@@ -65,6 +67,21 @@ class Document:
     def facts_version(self) -> str:
         """The version whose facts apply: that of the file, or the nearest older one."""
         return nearest_version(self.version)
+
+    def location_of(self, element: Element) -> Location | None:
+        """Where an object stands in the file, or where it comes from; failing both, the same of what it is part of.
+
+        None if the document has no file either.
+        """
+        holder: Element | None = element
+        while holder is not None:
+            if holder in self.origins:
+                return self.origins[holder]
+            if self.source is not None and self.path is not None and holder in self.source.index:
+                line, column = self.source.position_of(holder)
+                return Location(self.path, line, column, self.source.line(line))
+            holder = holder.container
+        return Location(self.path) if self.path else None
 
     @property
     def model(self) -> Model:

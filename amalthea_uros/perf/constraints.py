@@ -114,15 +114,7 @@ class OrderConstraint(Named):
     processes: tuple[str, ...] = ()
 
 
-Constraint: TypeAlias = (
-    LatencyConstraint
-    | DelayConstraint
-    | RepetitionConstraint
-    | EventSynchronization
-    | ChainSynchronization
-    | DataAgeConstraint
-    | OrderConstraint
-)
+Constraint: TypeAlias = LatencyConstraint | DelayConstraint | RepetitionConstraint | EventSynchronization | ChainSynchronization
 
 
 class Severity(StrEnum):
@@ -275,4 +267,6 @@ class Constraints:
     """All that is demanded of a system."""
 
     constraints: tuple[Constraint, ...] = ()
+    data_ages: tuple[DataAgeConstraint, ...] = ()
+    orders: tuple[OrderConstraint, ...] = ()
     requirements: tuple[Requirement, ...] = ()

@@ -90,8 +90,8 @@ class Burst(AbstractStimulus):
 
     period: Time
     length: Time
-    distance: Time
-    count: int
+    distance: Time = 0
+    count: int = 1
     offset: Time = 0
 
 

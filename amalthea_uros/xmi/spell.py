@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.naming import place, unique_name
@@ -279,8 +279,7 @@ class Speller:
     def finding(self, element: Element, message: str, help_text: str) -> Finding:
         """A finding that names the object."""
         name = place(element)
-        path = self.document.path
-        return Finding("XMI100", Severity.ERROR, f"{name}: {message}", Location(path) if path else None, help_text, name)
+        return Finding("XMI100", Severity.ERROR, f"{name}: {message}", self.document.location_of(element), help_text, name)
 
 
 def _converted(value: object, expected: type) -> Any:

@@ -1,0 +1,176 @@
+"""How a value of the one side becomes one of the other, in both directions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from enum import StrEnum
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit, FrequencyUnit, TimeUnit
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.units import SECOND
+
+
+class Codec(NamedTuple):
+    """Two functions, inverse to each other; both take None for what is not given.
+
+    Attributes
+    ----------
+    build : value of perf -> value of a feature
+    extract : value of a feature, and the object that has it -> value of perf
+    """
+
+    build: Callable[[Any, Building], Any]
+    extract: Callable[[Any, Extracting, Element], Any]
+
+
+#: Texts, numbers, truth values.
+PLAIN = Codec(lambda value, _: value, lambda value, _context, _element: value)
+
+
+def enumeration(pairs: Mapping[StrEnum, StrEnum]) -> Codec:
+    """Literals by a table; what the table does not have is not given."""
+    back = {theirs: ours for ours, theirs in pairs.items()}
+    return Codec(lambda value, _: pairs.get(value), lambda value, _context, _element: back.get(value))
+
+
+def same_names(ours: type[StrEnum], theirs: type[StrEnum], **others: str) -> Codec:
+    """Literals whose names are the same on both sides, except for some.
+
+    Parameters
+    ----------
+    others : our name -> their name
+    """
+    return enumeration({literal: theirs[others.get(literal.name, literal.name)] for literal in ours})
+
+
+# Quantities. Units without meaning, and values that are not given, give None.
+
+_TIMES = {TimeUnit.S: SECOND, TimeUnit.MS: 10**9, TimeUnit.US: 10**6, TimeUnit.NS: 10**3, TimeUnit.PS: 1}
+_FREQUENCIES = {FrequencyUnit.GHZ: 10**9, FrequencyUnit.MHZ: 10**6, FrequencyUnit.KHZ: 10**3, FrequencyUnit.HZ: 1}
+
+
+def _data_factors(units: type[StrEnum]) -> dict[Any, int]:
+    """Bits of a unit of data, by the prefix and the B or bit in its name."""
+    found = {}
+    for unit in units:
+        word = unit.value.removesuffix("PerSecond")
+        size = 8 if word.endswith("B") else 1
+        prefix = word.removesuffix("B").removesuffix("bit")
+        base, letter = (1024, prefix[:1]) if prefix.endswith("i") else (1000, prefix)
+        if unit.value != "_undefined_":
+            found[unit] = size * base ** " kMGT".upper().index(letter.upper() or " ")
+    return found
+
+
+_SIZES = _data_factors(DataSizeUnit)
+_RATES = _data_factors(DataRateUnit)
+_SIZE_UNITS = (DataSizeUnit.B, DataSizeUnit.BIT)
+_RATE_UNITS = (
+    DataRateUnit.GBIT_PER_SECOND,
+    DataRateUnit.MBIT_PER_SECOND,
+    DataRateUnit.KBIT_PER_SECOND,
+    DataRateUnit.BIT_PER_SECOND,
+)
+
+
+def build_time(value: int | None) -> am.Time | None:
+    """Picoseconds in the biggest unit that gives a whole number."""
+    if value is None:
+        return None
+    unit = next(unit for unit, size in _TIMES.items() if value % size == 0) if value else TimeUnit.MS
+    return am.Time(value=value // _TIMES[unit], unit=unit)
+
+
+def extract_time(value: Any) -> int | None:
+    """Picoseconds of a time."""
+    size = _TIMES.get(value.unit) if value is not None else None
+    return None if size is None else (value.value or 0) * size
+
+
+def _build_frequency(value: Fraction | None, context: Building) -> am.Frequency | None:
+    if value is None:
+        return None
+    for unit, size in _FREQUENCIES.items():
+        number = value / size
+        if (number >= 1 or size == 1) and Fraction(repr(float(number))) == number:
+            return am.Frequency(value=float(number), unit=unit)
+    context.refuse(None, f"the frequency {value} Hz cannot be written as a decimal number")
+    return None
+
+
+def _extract_frequency(value: Any) -> Fraction | None:
+    size = _FREQUENCIES.get(value.unit) if value is not None else None
+    # The decimal number that stands in the file, not the binary one that is next to it.
+    return None if size is None or not _is_finite(value.value) else Fraction(repr(value.value or 0.0)) * size
+
+
+def _is_finite(value: float | None) -> bool:
+    return value is None or abs(value) < float("inf")
+
+
+def _extract_data(value: Any, factors: Mapping[Any, int]) -> int | None:
+    size = factors.get(value.unit) if value is not None else None
+    return None if size is None else (value.value or 0) * size
+
+
+def _build_size(value: int | None, _context: Building) -> am.DataSize | None:
+    if value is None:
+        return None
+    unit = next(unit for unit in _SIZE_UNITS if value % _SIZES[unit] == 0)
+    return am.DataSize(value=value // _SIZES[unit], unit=unit)
+
+
+def _build_rate(value: int | None, _context: Building) -> am.DataRate | None:
+    if value is None:
+        return None
+    unit = next(unit for unit in _RATE_UNITS if value % _RATES[unit] == 0)
+    return am.DataRate(value=value // _RATES[unit], unit=unit)
+
+
+TIME = Codec(lambda value, _: build_time(value), lambda value, _context, _element: extract_time(value))
+FREQUENCY = Codec(_build_frequency, lambda value, _context, _element: _extract_frequency(value))
+SIZE = Codec(_build_size, lambda value, _context, _element: _extract_data(value, _SIZES))
+RATE = Codec(_build_rate, lambda value, _context, _element: _extract_data(value, _RATES))
+TIMES = Codec(
+    lambda values, _: [build_time(value) for value in values],
+    lambda values, _context, _element: tuple(time for time in map(extract_time, values) if time is not None),
+)
+
+
+# References
+
+
+def reference(kind: Kind) -> Codec:
+    """The name of an object."""
+
+    def build(name: str | None, context: Building) -> Element | None:
+        return None if name is None else context.find(kind, name)
+
+    return Codec(build, _name_of)
+
+
+def references(kind: Kind) -> Codec:
+    """The names of objects, in order."""
+
+    def build(names: tuple[str, ...], context: Building) -> list[Element]:
+        return [found for name in names if (found := context.find(kind, name)) is not None]
+
+    def extract(values: list[Element], context: Extracting, element: Element) -> tuple[str, ...]:
+        return tuple(name for value in values if (name := _name_of(value, context, element)) is not None)
+
+    return Codec(build, extract)
+
+
+def _name_of(value: Element | None, context: Extracting, element: Element) -> str | None:
+    if value is None:
+        return None
+    name = context.names.get(value)
+    if name is None:
+        what = getattr(value, "name", None) or value
+        context.note("EXT003", f"{type(value).__name__} {what!r} is referred to, but not part of the model", element)
+    return name

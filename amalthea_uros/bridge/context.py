@@ -1,0 +1,140 @@
+"""What one run of building or extracting knows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from amalthea_uros.bridge.kinds import Kind, kind_of
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import WriteError
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.model import Model
+from amalthea_uros.metamodel.versions import facts, version_key
+from amalthea_uros.perf.named import Named
+
+
+class Building:
+    """perf -> AMALTHEA objects of one version.
+
+    Attributes
+    ----------
+    origins : where objects come from, as far as that is known
+    types : data types by their size in bits, as far as something needs one
+    findings : what makes a model impossible
+    """
+
+    def __init__(self, version: str) -> None:
+        self.version = version
+        self.facts = facts(version)
+        self.origins: dict[Element, Location] = {}
+        self.types: dict[int, Element] = {}
+        self.findings: list[Finding] = []
+        self._elements: dict[tuple[Kind, str], Element] = {}
+        self._home: Named | None = None
+
+    def is_at_least(self, *version: int) -> bool:
+        """Whether the version is that one or a later one."""
+        return version_key(self.version) >= version
+
+    def register(self, item: Named, element: Element) -> None:
+        """Let references find an object, and remember where it comes from."""
+        kind = kind_of(type(element))
+        assert kind
+        if (kind, item.name) in self._elements:
+            self.refuse(item, f"there are two objects of the kind {kind.name.lower().replace('_', ' ')} named {item.name!r}")
+        self._elements[kind, item.name] = element
+        if item.origin is not None:
+            self.origins[element] = item.origin
+
+    def find(self, kind: Kind, name: str) -> Element | None:
+        """The object of that name; None, with a finding, if there is none."""
+        found = self._elements.get((kind, name))
+        if found is None:
+            what = kind.name.lower().replace("_", " ")
+            self.refuse(self._home, f"there is no {what} named {name!r}")
+        return found
+
+    def at(self, item: Named) -> None:
+        """Say whose references are looked up from now on."""
+        self._home = item
+
+    def refuse(self, item: Named | None, message: str) -> None:
+        """Note why the model cannot be built."""
+        name = item.name if item else ""
+        text = f"{name}: {message}" if name else message
+        self.findings.append(Finding("BLD001", Severity.ERROR, text, item.origin if item else None, object=name))
+
+    def finish(self) -> None:
+        """Raise what was noted.
+
+        Raises
+        ------
+        WriteError : something was noted.
+        """
+        if self.findings:
+            raise WriteError(dict.fromkeys(self.findings))
+
+
+class Extracting:
+    """AMALTHEA objects -> perf.
+
+    Attributes
+    ----------
+    names : unique within each kind
+    findings : what could not be taken over
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.names: dict[Element, str] = {}
+        self.findings: list[Finding] = []
+        self._left_out: dict[str, tuple[int, Element]] = {}
+
+    def name(self, elements: Iterable[Element]) -> None:
+        """Give all objects that others refer to a name that is unique in their kind."""
+        taken: set[tuple[Kind, str]] = set()
+        for element in elements:
+            kind = kind_of(type(element))
+            if kind is None:
+                continue
+            own = getattr(element, "name", None) or f"unnamed_{type(element).__name__}"
+            found = own
+            if (kind, found) in taken:
+                found = element.qualified_name if "/" in element.qualified_name else own
+                count = 2
+                while (kind, found) in taken:
+                    found = f"{own}_{count}"
+                    count += 1
+                message = f"the name {own!r} occurs more than once, this {type(element).__name__} is called {found!r} here"
+                self.note("EXT002", message, element)
+            taken.add((kind, found))
+            self.names[element] = found
+
+    def location(self, element: Element) -> Location | None:
+        """Where an object stands."""
+        document = element.document
+        return document.location_of(element) if document else None
+
+    def note(self, rule: str, message: str, element: Element, severity: Severity = Severity.WARNING) -> None:
+        """Note something about an object."""
+        self.findings.append(Finding(rule, severity, message, self.location(element), object=self.called(element)))
+
+    def called(self, element: Element) -> str:
+        """The name of an object, or of what it is part of."""
+        holder: Element | None = element
+        while holder is not None and holder not in self.names:
+            holder = holder.container
+        return self.names[holder] if holder is not None else ""
+
+    def leave_out(self, element: Element) -> None:
+        """Count an object that the generic performance model has no place for."""
+        name = type(element).__name__
+        count, first = self._left_out.get(name, (0, element))
+        self._left_out[name] = (count + 1, first)
+
+    def finish(self) -> tuple[Finding, ...]:
+        """All findings; what was left out is told once for each class."""
+        for name, (count, first) in self._left_out.items():
+            what = f"one {name} is" if count == 1 else f"{count} objects of the class {name} are"
+            self.note("EXT001", f"{what} not taken into account", first, Severity.INFO)
+        return tuple(dict.fromkeys(self.findings))

@@ -1,0 +1,138 @@
+"""Tables that say which class of AMALTHEA stands for which of perf, and how their fields correspond."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import MISSING, dataclass, fields
+from typing import Any
+
+from amalthea_uros.bridge.codecs import PLAIN, Codec
+from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.features import features_of
+from amalthea_uros.perf.named import Named
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A field of perf and the feature of AMALTHEA that holds it.
+
+    Attributes
+    ----------
+    feature : its Python name
+    """
+
+    name: str
+    feature: str
+    codec: Codec = PLAIN
+
+
+class Entry:
+    """A class on each side.
+
+    A value that is not given on the side of AMALTHEA becomes the default of the field; where there is none, the object is incomplete
+    and left out with a note.
+    """
+
+    def __init__(self, ours: type[Any], theirs: type[Element], *columns: Field) -> None:
+        self.ours = ours
+        self.theirs = theirs
+        self.columns = columns
+        self.is_named = issubclass(ours, Named)
+        declared = {field.name: field for field in fields(ours)}
+        self._defaults = {column.name: _default(declared[column.name]) for column in columns}
+        features = features_of(theirs)
+        self._xml_names = {column.feature: features[column.feature].xml_name for column in columns}
+
+    def shell(self, item: Any, context: Building) -> Element:
+        """The object of AMALTHEA with nothing but its name, which references will find."""
+        element = self.theirs(name=item.name)
+        context.register(item, element)
+        return element
+
+    def fill(self, element: Element, item: Any, context: Building) -> Element:
+        """Set all features."""
+        if self.is_named:
+            context.at(item)
+        for column in self.columns:
+            value = getattr(item, column.name)
+            if value is None or value == () or value == "":
+                continue
+            # What a version does not know is left out where it says nothing but the default; the rest the writer refuses.
+            is_known = context.facts.feature(self.theirs.__name__, self._xml_names[column.feature]) is not None
+            if is_known or value != self._defaults[column.name]:
+                setattr(element, column.feature, column.codec.build(value, context))
+        return element
+
+    def build(self, item: Any, context: Building) -> Any:
+        """The object of AMALTHEA for one that nothing refers to."""
+        return self.fill(self.theirs(), item, context)
+
+    def extract(self, element: Element, context: Extracting) -> Any:
+        """The object of perf; None, with a note, if something is missing without which it has no meaning."""
+        values: dict[str, Any] = {}
+        for column in self.columns:
+            value = getattr(element, column.feature)
+            if value is not None:
+                value = column.codec.extract(value, context, element)
+            if value is None:
+                value = self._defaults[column.name]
+                if value is MISSING:
+                    what = self._xml_names[column.feature]
+                    context.note("EXT004", f"a {type(element).__name__} without {what} is left out", element)
+                    return None
+            values[column.name] = value
+        if self.is_named:
+            values["name"] = context.names[element]
+            values["origin"] = context.location(element)
+        return self.ours(**values)
+
+
+def _default(field: Any) -> Any:
+    return field.default_factory() if field.default_factory is not MISSING else field.default
+
+
+class Table:
+    """Entries for the alternatives of one type."""
+
+    def __init__(self, *entries: Entry) -> None:
+        self.by_ours: Mapping[type[Any], Entry] = {entry.ours: entry for entry in entries}
+        self.by_theirs: Mapping[type[Element], Entry] = {entry.theirs: entry for entry in entries}
+
+    def shells(self, items: Iterable[Any], context: Building) -> list[Element]:
+        """Objects that are filled later, by `fill`."""
+        return [self.by_ours[type(item)].shell(item, context) for item in items]
+
+    def fill(self, elements: Iterable[Element], items: Iterable[Any], context: Building) -> None:
+        """Set the features of objects that were made by `shells`."""
+        for element, item in zip(elements, items, strict=True):
+            self.by_ours[type(item)].fill(element, item, context)
+
+    def build(self, item: Any, context: Building) -> Any:
+        """The object of AMALTHEA."""
+        return self.by_ours[type(item)].build(item, context)
+
+    def extract(self, element: Element, context: Extracting) -> Any:
+        """The object of perf; None if there is none for it."""
+        entry = self.by_theirs.get(type(element))
+        if entry is None:
+            context.leave_out(element)
+            return None
+        return entry.extract(element, context)
+
+    def extract_all(self, elements: Iterable[Element], context: Extracting) -> tuple[Any, ...]:
+        """The objects of perf, without those for which there is none."""
+        return tuple(item for element in elements if (item := self.extract(element, context)) is not None)
+
+
+def part(table: Table) -> Codec:
+    """An object within another one."""
+    return Codec(table.build, lambda value, context, _element: table.extract(value, context))
+
+
+def parts(table: Table) -> Codec:
+    """Objects within another one, in order."""
+    return Codec(
+        lambda items, context: [table.build(item, context) for item in items],
+        lambda values, context, _element: table.extract_all(values, context),
+    )

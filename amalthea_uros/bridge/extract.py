@@ -1,0 +1,158 @@
+"""An AMALTHEA model as the generic performance model.
+
+Models of any origin and version are taken as they are: what is missing, leads nowhere, or has no place in the generic performance model
+becomes a finding, and the rest is extracted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from amalthea_uros.bridge.context import Extracting
+from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDERS, extract_requirement
+from amalthea_uros.bridge.tables.events import CHAINS, EVENTS
+from amalthea_uros.bridge.tables.hardware import HardwareExtractor
+from amalthea_uros.bridge.tables.mapping import extract_mapping
+from amalthea_uros.bridge.tables.os import SEMAPHORES, Allocations, extract_overhead, extract_system
+from amalthea_uros.bridge.tables.software import (
+    CHANNELS,
+    LABELS,
+    MODE_LABELS,
+    OS_EVENTS,
+    PROCESSES,
+    RUNNABLES,
+    extract_modes,
+)
+from amalthea_uros.bridge.tables.stimuli import CLOCKS, STIMULI
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.model import Model
+from amalthea_uros.perf.constraints import Constraints
+from amalthea_uros.perf.events import Events
+from amalthea_uros.perf.hardware import Hardware
+from amalthea_uros.perf.mapping import Mapping
+from amalthea_uros.perf.os import Os
+from amalthea_uros.perf.software import Software
+from amalthea_uros.perf.stimuli import Stimuli
+from amalthea_uros.perf.system import System
+
+E = TypeVar("E", bound=Element)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extraction:
+    """What came out of a model.
+
+    Attributes
+    ----------
+    findings : what could not be taken over, each with its place
+    """
+
+    system: System
+    findings: tuple[Finding, ...]
+
+
+def extract(model: Model) -> Extraction:
+    """The system that a model describes."""
+    context = Extracting(model)
+    context.name(element for element in model.walk() if not element.unresolved)
+    system = _Extract(model, context).system()
+    return Extraction(system=system, findings=context.finish())
+
+
+class _Extract:
+    def __init__(self, model: Model, context: Extracting) -> None:
+        self.model = model
+        self.context = context
+
+    def parts(self, cls: type[E], feature: str) -> list[Any]:
+        """What a feature holds in the sub-models of a class, of all files."""
+        sub_models = (part for document in self.model.documents for part in document.root.contents())
+        return [item for part in sub_models if isinstance(part, cls) for item in getattr(part, feature)]
+
+    def system(self) -> System:
+        """The whole."""
+        context = self.context
+        return System(
+            hardware=self.hardware(),
+            os=self.os(),
+            stimuli=Stimuli(
+                stimuli=STIMULI.extract_all(self.parts(am.StimuliModel, "stimuli"), context),
+                clocks=CLOCKS.extract_all(self.parts(am.StimuliModel, "clocks"), context),
+            ),
+            software=self.software(),
+            mapping=self.mapping(),
+            events=Events(
+                events=EVENTS.extract_all(self.parts(am.EventModel, "events"), context),
+                chains=CHAINS.extract_all(self.parts(am.ConstraintsModel, "event_chains"), context),
+            ),
+            constraints=self.constraints(),
+        )
+
+    def hardware(self) -> Hardware:
+        """The hardware of all files."""
+        found = [HardwareExtractor(self.context).extract(model) for model in self.model.all(am.HWModel)]
+        return Hardware(
+            clocks=tuple(clock for hardware in found for clock in hardware.clocks),
+            core_types=tuple(core_type for hardware in found for core_type in hardware.core_types),
+            structures=tuple(structure for hardware in found for structure in hardware.structures),
+        )
+
+    def os(self) -> Os:
+        """The operating systems of all files."""
+        context = self.context
+        allocations = Allocations(self.parts(am.MappingModel, "scheduler_allocation"))
+        return Os(
+            systems=tuple(
+                extract_system(system, allocations, context) for system in self.parts(am.OSModel, "operating_systems")
+            ),
+            overheads=tuple(extract_overhead(overhead, context) for overhead in self.parts(am.OSModel, "os_overheads")),
+            semaphores=SEMAPHORES.extract_all(self.parts(am.OSModel, "semaphores"), context),
+        )
+
+    def software(self) -> Software:
+        """The software of all files."""
+        context, parts = self.context, self.parts
+        for feature in ("process_prototypes", "custom_entities", "process_chains"):
+            for element in parts(am.SWModel, feature):
+                context.leave_out(element)
+        return Software(
+            tasks=PROCESSES.extract_all(parts(am.SWModel, "tasks"), context),
+            isrs=PROCESSES.extract_all(parts(am.SWModel, "isrs"), context),
+            runnables=RUNNABLES.extract_all(parts(am.SWModel, "runnables"), context),
+            labels=LABELS.extract_all(parts(am.SWModel, "labels"), context),
+            channels=CHANNELS.extract_all(parts(am.SWModel, "channels"), context),
+            os_events=OS_EVENTS.extract_all(parts(am.SWModel, "events"), context),
+            modes=extract_modes(parts(am.SWModel, "modes"), context),
+            mode_labels=MODE_LABELS.extract_all(parts(am.SWModel, "mode_labels"), context),
+        )
+
+    def mapping(self) -> Mapping:
+        """The mapping of all files."""
+        found = [extract_mapping(mapping, self.context) for mapping in self.model.all(am.MappingModel)]
+        return Mapping(
+            tasks=tuple(item for mapping in found for item in mapping.tasks),
+            isrs=tuple(item for mapping in found for item in mapping.isrs),
+            placements=tuple(item for mapping in found for item in mapping.placements),
+        )
+
+    def constraints(self) -> Constraints:
+        """The constraints and requirements of all files."""
+        context, parts = self.context, self.parts
+        for feature in (
+            "affinity_constraints",
+            "data_coherency_groups",
+            "data_stability_groups",
+            "physical_section_constraints",
+        ):
+            for element in parts(am.ConstraintsModel, feature):
+                context.leave_out(element)
+        requirements = (extract_requirement(r, context) for r in parts(am.ConstraintsModel, "requirements"))
+        return Constraints(
+            constraints=CONSTRAINTS.extract_all(parts(am.ConstraintsModel, "timing_constraints"), context),
+            data_ages=DATA_AGES.extract_all(parts(am.ConstraintsModel, "data_age_constraints"), context),
+            orders=ORDERS.extract_all(parts(am.ConstraintsModel, "runnable_sequencing_constraints"), context),
+            requirements=tuple(requirement for requirement in requirements if requirement is not None),
+        )

@@ -1,0 +1,84 @@
+"""Conditions and assignments of modes.
+
+AMALTHEA nests conditions, conjunctions and disjunctions as objects; until 1.2 under other names.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amalthea_uros.bridge.codecs import Codec, enumeration, reference
+from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.bridge.entries import Entry, Field, Table, parts
+from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.perf import conditions as perf
+
+_RELATION = enumeration(
+    {
+        perf.Relation.EQUAL: am.RelationalOperator.EQUAL,
+        perf.Relation.NOT_EQUAL: am.RelationalOperator.NOT_EQUAL,
+        perf.Relation.LESS: am.RelationalOperator.LESS_THAN,
+        perf.Relation.LESS_OR_EQUAL: am.RelationalOperator.LESS_THAN_OR_EQUAL,
+        perf.Relation.GREATER: am.RelationalOperator.GREATER_THAN,
+        perf.Relation.GREATER_OR_EQUAL: am.RelationalOperator.GREATER_THAN_OR_EQUAL,
+    }
+)
+_MODE_LABEL = reference(Kind.MODE_LABEL)
+
+_COMPARISONS = Table(
+    Entry(
+        perf.ModeValueIs,
+        am.ModeValueCondition,
+        Field("label", "label", _MODE_LABEL),
+        Field("relation", "relation", _RELATION),
+        Field("value", "value"),
+    ),
+    Entry(
+        perf.ModeLabelsAre,
+        am.ModeLabelCondition,
+        Field("first", "label1", _MODE_LABEL),
+        Field("relation", "relation", _RELATION),
+        Field("second", "label2", _MODE_LABEL),
+    ),
+    Entry(
+        perf.ChannelFillIs,
+        am.ChannelFillCondition,
+        Field("channel", "channel", reference(Kind.DATA)),
+        Field("relation", "relation", _RELATION),
+        Field("level", "fill_level"),
+    ),
+)
+
+
+def _build(condition: perf.Condition, context: Building) -> Element:
+    is_new = context.is_at_least(2)
+    conjunction = am.ConditionConjunction if is_new else am.ModeConditionConjunction
+    entries: list[Any] = []
+    for alternative in condition.alternatives:
+        comparisons = [_COMPARISONS.build(comparison, context) for comparison in alternative]
+        entries.append(comparisons[0] if len(comparisons) == 1 else conjunction(entries=comparisons))
+    return (am.ConditionDisjunction if is_new else am.ModeConditionDisjunction)(entries=entries)
+
+
+def _extract(value: Element, context: Extracting, _element: Element) -> perf.Condition:
+    alternatives = []
+    for entry in getattr(value, "entries", ()):
+        is_several = isinstance(entry, am.ConditionConjunction | am.ModeConditionConjunction)
+        alternatives.append(_COMPARISONS.extract_all(entry.entries if is_several else [entry], context))
+    return perf.Condition(tuple(alternatives))
+
+
+CONDITION = Codec(_build, _extract)
+
+_ASSIGNMENTS = Table(
+    Entry(perf.ModeAssignment, am.ModeAssignment, Field("label", "label", _MODE_LABEL), Field("value", "value"))
+)
+_ENTRIES = parts(_ASSIGNMENTS)
+
+#: The list of assignments is an object of its own.
+ASSIGNMENTS = Codec(
+    lambda items, context: am.ModeValueList(entries=_ENTRIES.build(items, context)),
+    lambda value, context, element: _ENTRIES.extract(value.entries, context, element),
+)

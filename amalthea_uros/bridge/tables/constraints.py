@@ -1,0 +1,257 @@
+"""Timing constraints and requirements."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amalthea_uros.bridge.codecs import FREQUENCY, TIME, Codec, reference, references, same_names
+from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.bridge.entries import Entry, Field, Table, part
+from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.perf import constraints as perf
+
+_EVENT = reference(Kind.EVENT)
+_TOLERANCE = Field("tolerance", "tolerance", TIME)
+_EVERY = Field("every_occurrence", "multiple_occurrences_allowed")
+
+CONSTRAINTS = Table(
+    Entry(
+        perf.LatencyConstraint,
+        am.EventChainLatencyConstraint,
+        Field("chain", "scope", reference(Kind.CHAIN)),
+        Field("kind", "type", same_names(perf.LatencyKind, am.LatencyType)),
+        Field("minimum", "minimum", TIME),
+        Field("maximum", "maximum", TIME),
+    ),
+    Entry(
+        perf.DelayConstraint,
+        am.DelayConstraint,
+        Field("source", "source", _EVENT),
+        Field("target", "target", _EVENT),
+        Field("matching", "mapping_type", same_names(perf.Matching, am.MappingType, ONE_TO_ONE="ONETOONE")),
+        Field("lower", "lower", TIME),
+        Field("upper", "upper", TIME),
+    ),
+    Entry(
+        perf.RepetitionConstraint,
+        am.RepetitionConstraint,
+        Field("event", "event", _EVENT),
+        # 0 is what the metamodel gives where nothing is stated.
+        Field("span", "span", Codec(lambda value, _: value, lambda value, _context, _element: value or 1)),
+        Field("lower", "lower", TIME),
+        Field("upper", "upper", TIME),
+        Field("jitter", "jitter", TIME),
+        Field("period", "period", TIME),
+    ),
+    Entry(
+        perf.EventSynchronization,
+        am.EventSynchronizationConstraint,
+        Field("events", "events", references(Kind.EVENT)),
+        _TOLERANCE,
+        _EVERY,
+    ),
+    Entry(
+        perf.ChainSynchronization,
+        am.EventChainSynchronizationConstraint,
+        Field("chains", "scope", references(Kind.CHAIN)),
+        Field("end", "type", same_names(perf.ChainEnd, am.SynchronizationType)),
+        _TOLERANCE,
+        _EVERY,
+    ),
+)
+
+
+class _Ages(Entry):
+    """Data age: as a time or as a number of cycles, which are two classes in AMALTHEA."""
+
+    def fill(self, element: Any, item: Any, context: Building) -> Element:
+        found = super().fill(element, item, context)
+        if (item.earliest_cycle, item.latest_cycle) != (None, None):
+            element.data_age = am.DataAgeCycle(minimum_cycle=item.earliest_cycle, maximum_cycle=item.latest_cycle)
+        elif (item.earliest, item.latest) != (None, None):
+            times = {"minimum_time": item.earliest, "maximum_time": item.latest}
+            element.data_age = am.DataAgeTime(**{name: TIME.build(time, context) for name, time in times.items()})
+        return found
+
+    def extract(self, element: Any, context: Extracting) -> perf.DataAgeConstraint | None:
+        found = super().extract(element, context)
+        if found is None:
+            return None
+        match element.data_age:
+            case am.DataAgeCycle(minimum_cycle=earliest, maximum_cycle=latest):
+                values: dict[str, Any] = {"earliest_cycle": earliest, "latest_cycle": latest}
+            case am.DataAgeTime(minimum_time=earliest, maximum_time=latest):
+                values = {
+                    "earliest": TIME.extract(earliest, context, element),
+                    "latest": TIME.extract(latest, context, element),
+                }
+            case _:
+                values = {}
+        return perf.DataAgeConstraint(
+            name=found.name, origin=found.origin, runnable=found.runnable, label=found.label, **values
+        )
+
+
+DATA_AGES = Table(
+    _Ages(
+        perf.DataAgeConstraint,
+        am.DataAgeConstraint,
+        Field("runnable", "runnable", reference(Kind.RUNNABLE)),
+        Field("label", "label", reference(Kind.DATA)),
+    )
+)
+
+# Requirements
+
+_BOUND = Field("bound", "limit_type", same_names(perf.Bound, am.LimitType, UPPER="UPPER_LIMIT", LOWER="LOWER_LIMIT"))
+_VALUE = Field("value", "limit_value")
+_FLOAT = Field("value", "limit_value", Codec(lambda value, _: float(value), lambda value, _context, _element: value))
+
+_LIMITS = Table(
+    Entry(
+        perf.TimeLimit,
+        am.TimeRequirementLimit,
+        Field("metric", "metric", same_names(perf.TimeMetric, am.TimeMetric, END_TO_END="ENDTOEND")),
+        Field("value", "limit_value", TIME),
+        _BOUND,
+    ),
+    Entry(
+        perf.CountLimit,
+        am.CountRequirementLimit,
+        Field(
+            "metric",
+            "metric",
+            same_names(
+                perf.CountMetric,
+                am.CountMetric,
+                LOST_ACTIVATIONS="MTA_LIMIT_EXCEEDING",
+                CACHE_HITS="CACHE_HIT",
+                CACHE_MISSES="CACHE_MISS",
+            ),
+        ),
+        _VALUE,
+        _BOUND,
+    ),
+    Entry(
+        perf.LoadLimit,
+        am.CPUPercentageRequirementLimit,
+        Field(
+            "metric",
+            "metric",
+            same_names(perf.LoadMetric, am.CPUPercentageMetric, **{m.name: f"CPU{m.name}" for m in perf.LoadMetric}),
+        ),
+        _FLOAT,
+        _BOUND,
+        Field("core", "hardware_context", reference(Kind.MODULE)),
+    ),
+    Entry(
+        perf.RatioLimit,
+        am.PercentageRequirementLimit,
+        Field(
+            "metric",
+            "metric",
+            same_names(
+                perf.RatioMetric,
+                am.PercentageMetric,
+                CORE_EXECUTION_TIME="CORE_EXECUTION_TIME_RELATIVE",
+                MEMORY_ACCESS_TIME="MEMORY_ACCESS_TIME_RELATIVE",
+                OS_OVERHEAD="OS_OVERHEAD_RELATIVE",
+                CACHE_HITS="CACHE_HIT_RATIO",
+                CACHE_MISSES="CACHE_MISS_RATIO",
+            ),
+        ),
+        _FLOAT,
+        _BOUND,
+    ),
+    Entry(
+        perf.FrequencyLimit,
+        am.FrequencyRequirementLimit,
+        Field(
+            "metric",
+            "metric",
+            same_names(
+                perf.FrequencyMetric,
+                am.FrequencyMetric,
+                CACHE_HITS="CACHE_HIT_FREQUENCY",
+                CACHE_MISSES="CACHE_MISS_FREQUENCY",
+            ),
+        ),
+        Field("value", "limit_value", FREQUENCY),
+        _BOUND,
+    ),
+)
+_LIMIT = part(_LIMITS)
+_SEVERITY = same_names(perf.Severity, am.Severity)
+
+
+def build_requirement(requirement: perf.Requirement, context: Building) -> am.Requirement:
+    """A requirement on a process or on a runnable."""
+    context.at(requirement)
+    element: am.Requirement
+    if requirement.runnable is not None:
+        runnable = reference(Kind.RUNNABLE).build(requirement.runnable, context)
+        element = am.RunnableRequirement(name=requirement.name, runnable=runnable)
+    else:
+        process = reference(Kind.PROCESS).build(requirement.process, context)
+        element = am.ProcessRequirement(name=requirement.name, process=process)
+    element.limit = _LIMIT.build(requirement.limit, context)
+    if requirement.severity is not None:
+        element.severity = _SEVERITY.build(requirement.severity, context)
+    if requirement.origin is not None:
+        context.origins[element] = requirement.origin
+    return element
+
+
+def extract_requirement(element: am.Requirement, context: Extracting) -> perf.Requirement | None:
+    """The way back; None, with a note, if it is one on something else, or has no limit."""
+    process: str | None = None
+    runnable: str | None = None
+    match element:
+        case am.ProcessRequirement(process=holder):
+            process = reference(Kind.PROCESS).extract(holder, context, element)
+        case am.RunnableRequirement(runnable=holder):
+            runnable = reference(Kind.RUNNABLE).extract(holder, context, element)
+        case _:
+            context.leave_out(element)
+            return None
+    limit = None if element.limit is None else _LIMIT.extract(element.limit, context, element)
+    if limit is None or (process is None and runnable is None):
+        context.note("EXT004", f"a {type(element).__name__} without object or limit is left out", element)
+        return None
+    return perf.Requirement(
+        name=element.name or "",
+        origin=context.location(element),
+        process=process,
+        runnable=runnable,
+        limit=limit,
+        severity=_SEVERITY.extract(element.severity, context, element),
+    )
+
+
+# Order
+
+_ORDERING = same_names(
+    perf.Ordering,
+    am.RunnableOrderType,
+    IMMEDIATE_ANYWHERE="IMMEDIATE_SUCCESSOR_ANY_SEQUENCE",
+    IMMEDIATE_AT_START="IMMEDIATE_SUCCESSOR_START_SEQUENCE",
+    IMMEDIATE_AT_END="IMMEDIATE_SUCCESSOR_END_SEQUENCE",
+)
+_GROUPS = Codec(
+    lambda groups, context: [am.RunnableEntityGroup(runnables=references(Kind.RUNNABLE).build(g, context)) for g in groups],
+    lambda values, context, _element: tuple(
+        references(Kind.RUNNABLE).extract(group.runnables, context, group) for group in values
+    ),
+)
+
+ORDERS = Table(
+    Entry(
+        perf.OrderConstraint,
+        am.RunnableSequencingConstraint,
+        Field("groups", "runnable_groups", _GROUPS),
+        Field("ordering", "order_type", _ORDERING),
+        Field("processes", "process_scope", references(Kind.PROCESS)),
+    )
+)

@@ -1,0 +1,139 @@
+"""The event model, and event chains."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amalthea_uros.bridge.codecs import Codec, reference, references, same_names
+from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.bridge.entries import Entry, Field, Table
+from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.perf import events as perf
+
+_PROCESS = Field("process", "process", reference(Kind.PROCESS))
+_RUNNABLE = Field("runnable", "runnable", reference(Kind.RUNNABLE))
+_CORE = Field("core", "processing_unit", reference(Kind.MODULE))
+
+EVENTS = Table(
+    Entry(
+        perf.ProcessEvent,
+        am.ProcessEvent,
+        Field("change", "event_type", same_names(perf.ProcessChange, am.ProcessEventType)),
+        Field("process", "entity", reference(Kind.PROCESS)),
+        _CORE,
+    ),
+    Entry(
+        perf.RunnableEvent,
+        am.RunnableEvent,
+        Field("change", "event_type", same_names(perf.RunnableChange, am.RunnableEventType)),
+        Field("runnable", "entity", reference(Kind.RUNNABLE)),
+        _PROCESS,
+        _CORE,
+    ),
+    Entry(
+        perf.LabelEvent,
+        am.LabelEvent,
+        Field("change", "event_type", same_names(perf.LabelChange, am.LabelEventType)),
+        Field("label", "entity", reference(Kind.DATA)),
+        _RUNNABLE,
+        _PROCESS,
+    ),
+    Entry(
+        perf.ModeLabelEvent,
+        am.ModeLabelEvent,
+        Field("change", "event_type", same_names(perf.ModeChange, am.ModeLabelEventType)),
+        Field("label", "entity", reference(Kind.MODE_LABEL)),
+        _RUNNABLE,
+        _PROCESS,
+    ),
+    Entry(
+        perf.ChannelEvent,
+        am.ChannelEvent,
+        Field("change", "event_type", same_names(perf.ChannelChange, am.ChannelEventType)),
+        Field("channel", "entity", reference(Kind.DATA)),
+        _RUNNABLE,
+        _PROCESS,
+    ),
+    Entry(
+        perf.SemaphoreEvent,
+        am.SemaphoreEvent,
+        Field("change", "event_type", same_names(perf.SemaphoreChange, am.SemaphoreEventType)),
+        Field("semaphore", "entity", reference(Kind.SEMAPHORE)),
+        _RUNNABLE,
+        _PROCESS,
+        _CORE,
+    ),
+    Entry(perf.StimulusEvent, am.StimulusEvent, Field("stimulus", "entity", reference(Kind.STIMULUS))),
+    Entry(perf.CustomEvent, am.CustomEvent, Field("kind", "event_type")),
+    Entry(perf.EventSet, am.EventSet, Field("events", "events", references(Kind.EVENT))),
+)
+
+# Chains. An item refers to a chain or contains one; the kind of the items is an attribute of the chain that has them.
+
+_EVENT, _CHAIN = reference(Kind.EVENT), reference(Kind.CHAIN)
+
+
+def _fill(element: Any, chain: perf.EventChain | perf.Segment, context: Building) -> Any:
+    element.stimulus = _EVENT.build(chain.stimulus, context)
+    element.response = _EVENT.build(chain.response, context)
+    if chain.items is not None:
+        is_parallel = isinstance(chain.items, perf.Parallel)
+        element.item_type = am.EventChainItemType.PARALLEL if is_parallel else am.EventChainItemType.SEQUENCE
+        element.items = [_build_item(item, context) for item in chain.items.items]
+        if isinstance(chain.items, perf.Parallel):
+            element.min_items_completed = chain.items.completed
+    return element
+
+
+def _build_item(item: perf.ChainItem, context: Building) -> am.EventChainItem:
+    if isinstance(item, perf.ChainReference):
+        return am.EventChainReference(event_chain=_CHAIN.build(item.chain, context))
+    return am.EventChainContainer(event_chain=_fill(am.SubEventChain(name=item.name or None), item, context))
+
+
+def _items(element: Any, context: Extracting) -> perf.Sequence | perf.Parallel | None:
+    items = tuple(found for item in element.items if (found := _extract_item(item, context)) is not None)
+    if element.item_type is am.EventChainItemType.PARALLEL:
+        completed = element.min_items_completed
+        return perf.Parallel(items=items, completed=1 if completed is None else completed)
+    return perf.Sequence(items) if items else None
+
+
+def _extract_item(item: Any, context: Extracting) -> perf.ChainItem | None:
+    inner = item.event_chain
+    if isinstance(item, am.EventChainReference):
+        name = _CHAIN.extract(inner, context, item)
+        return None if name is None else perf.ChainReference(chain=name)
+    if inner is None:
+        context.note("EXT004", "an EventChainContainer without a chain is left out", item)
+        return None
+    return perf.Segment(
+        name=inner.name or "",
+        stimulus=_EVENT.extract(inner.stimulus, context, inner),
+        response=_EVENT.extract(inner.response, context, inner),
+        items=_items(inner, context),
+    )
+
+
+class _Chains(Entry):
+    def fill(self, element: Element, item: Any, context: Building) -> Element:
+        context.at(item)
+        found: Element = _fill(element, item, context)
+        return found
+
+    def extract(self, element: Any, context: Extracting) -> perf.EventChain:
+        return perf.EventChain(
+            name=context.names[element],
+            origin=context.location(element),
+            stimulus=_EVENT.extract(element.stimulus, context, element),
+            response=_EVENT.extract(element.response, context, element),
+            items=_items(element, context),
+        )
+
+
+CHAINS = Table(_Chains(perf.EventChain, am.EventChain))
+
+#: For other files: the name of a chain, and those of several.
+CHAIN: Codec = _CHAIN

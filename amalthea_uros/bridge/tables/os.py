@@ -1,0 +1,184 @@
+"""The operating system model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from amalthea_uros.bridge.codecs import reference, same_names
+from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.bridge.entries import Entry, Field, Table
+from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.tables.parameters import Definitions, Given, extract_parameters, extract_policy
+from amalthea_uros.bridge.tables.software import ACTIVITIES, DEMAND, ITEMS
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.perf import os as perf
+
+SEMAPHORES = Table(
+    Entry(
+        perf.Semaphore,
+        am.Semaphore,
+        Field("kind", "semaphore_type", same_names(perf.SemaphoreKind, am.SemaphoreType, COUNTING="COUNTING_SEMAPHORE")),
+        Field("users", "max_value"),
+        Field("initial_users", "initial_value"),
+        Field("ceiling", "priority_ceiling_protocol"),
+        Field("ownership", "ownership"),
+    )
+)
+
+#: Services whose feature is not their name behind `api_`.
+_SERVICES = {service: f"api_{service.name.lower()}" for service in perf.Service} | {
+    perf.Service.SUSPEND_INTERRUPTS: "api_suspend_os_interrupts",
+    perf.Service.RESUME_INTERRUPTS: "api_resume_os_interrupts",
+    perf.Service.SERVER_CALL: "api_synchronous_server_call_point",
+}
+_OVERHEAD, _SCHEDULER = reference(Kind.OVERHEAD), reference(Kind.SCHEDULER)
+
+
+def build_overhead(overhead: perf.Overhead, element: Any, context: Building) -> None:
+    """Fill what an operating system costs."""
+    context.at(overhead)
+    if overhead.services:
+        element.api_overhead = am.OsAPIOverhead()
+        for service, demand in overhead.services:
+            setattr(element.api_overhead, _SERVICES[service], DEMAND.build(demand, context))
+    for stated, feature in ((overhead.category_1, "isr_category1_overhead"), (overhead.category_2, "isr_category2_overhead")):
+        if stated is not None:
+            parts = {"pre_execution_overhead": stated.before, "post_execution_overhead": stated.after}
+            found = {name: DEMAND.build(demand, context) for name, demand in parts.items() if demand is not None}
+            setattr(element, feature, am.OsISROverhead(**found))
+
+
+def extract_overhead(element: am.OsOverhead, context: Extracting) -> perf.Overhead:
+    """The way back."""
+    api = element.api_overhead
+    services = []
+    for service, feature in _SERVICES.items():
+        ticks = getattr(api, feature) if api is not None else None
+        demand = None if ticks is None else DEMAND.extract(ticks, context, element)
+        if demand is not None:
+            services.append((service, demand))
+    return perf.Overhead(
+        name=context.names[element],
+        origin=context.location(element),
+        services=tuple(services),
+        category_1=_isr_overhead(element.isr_category1_overhead, context),
+        category_2=_isr_overhead(element.isr_category2_overhead, context),
+    )
+
+
+def _isr_overhead(element: am.OsISROverhead | None, context: Extracting) -> perf.IsrOverhead | None:
+    if element is None:
+        return None
+    before, after = element.pre_execution_overhead, element.post_execution_overhead
+    return perf.IsrOverhead(
+        before=None if before is None else DEMAND.extract(before, context, element),
+        after=None if after is None else DEMAND.extract(after, context, element),
+    )
+
+
+# Schedulers
+
+
+def build_system(system: perf.OperatingSystem, context: Building) -> am.OperatingSystem:
+    """An operating system with schedulers that references will find; `fill_system` does the rest."""
+    element = am.OperatingSystem(name=system.name)
+    context.register(system, element)
+    for scheduler in system.schedulers:
+        element.task_schedulers.append(am.TaskScheduler(name=scheduler.name))
+        context.register(scheduler, element.task_schedulers[-1])
+    for controller in system.interrupt_controllers:
+        element.interrupt_controllers.append(am.InterruptController(name=controller.name))
+        context.register(controller, element.interrupt_controllers[-1])
+    return element
+
+
+def fill_system(system: perf.OperatingSystem, element: am.OperatingSystem, definitions: Definitions) -> None:
+    """Everything of an operating system that refers to something."""
+    context = definitions.context
+    context.at(system)
+    if system.overhead is not None:
+        element.overhead = _OVERHEAD.build(system.overhead, context)
+    policies = {scheduler.name: scheduler.policy for scheduler in system.schedulers}
+    for scheduler, task_scheduler in zip(system.schedulers, element.task_schedulers, strict=True):
+        _fill_scheduler(scheduler, task_scheduler, definitions)
+        if scheduler.parent is not None:
+            parent = scheduler.parent
+            association = am.SchedulerAssociation(parent=_SCHEDULER.build(parent.scheduler, context))
+            task_scheduler.parent_association = association
+            given = Given(parent.priority, parent.deadline, parent.parameters)
+            definitions.set_parameters(association, scheduler, given, policies.get(parent.scheduler), of_process=True)
+    for controller, interrupts in zip(system.interrupt_controllers, element.interrupt_controllers, strict=True):
+        _fill_scheduler(controller, interrupts, definitions)
+
+
+def _fill_scheduler(scheduler: perf.Scheduler | perf.InterruptController, element: Any, definitions: Definitions) -> None:
+    definitions.context.at(scheduler)
+    definitions.set_policy(element, scheduler, scheduler.policy)
+    given = Given(None, None, scheduler.parameters)
+    definitions.set_parameters(element, scheduler, given, scheduler.policy, of_process=False)
+    element.computation_items = ITEMS.build(scheduler.overhead, definitions.context)
+
+
+class Allocations:
+    """Which cores a scheduler decides for: in AMALTHEA a matter of the mapping model."""
+
+    def __init__(self, allocations: Iterable[am.SchedulerAllocation]) -> None:
+        self._by_scheduler: dict[Any, list[am.SchedulerAllocation]] = {}
+        for allocation in allocations:
+            self._by_scheduler.setdefault(allocation.scheduler, []).append(allocation)
+
+    def of(self, scheduler: am.Scheduler) -> list[am.SchedulerAllocation]:
+        """The allocations of a scheduler."""
+        return self._by_scheduler.get(scheduler, [])
+
+
+def extract_system(element: am.OperatingSystem, allocations: Allocations, context: Extracting) -> perf.OperatingSystem:
+    """An operating system with its schedulers."""
+    return perf.OperatingSystem(
+        name=context.names[element],
+        origin=context.location(element),
+        schedulers=tuple(_scheduler(scheduler, allocations, context) for scheduler in element.task_schedulers),
+        interrupt_controllers=tuple(
+            perf.InterruptController(**_common(controller, allocations, context))
+            for controller in element.interrupt_controllers
+        ),
+        overhead=_OVERHEAD.extract(element.overhead, context, element),
+    )
+
+
+def _scheduler(element: am.TaskScheduler, allocations: Allocations, context: Extracting) -> perf.Scheduler:
+    association = element.parent_association
+    parent = None
+    if association is not None:
+        name = _SCHEDULER.extract(association.parent, context, element)
+        given = extract_parameters(association, context)
+        if name is not None:
+            parent = perf.Parent(scheduler=name, priority=given.priority, deadline=given.deadline, parameters=given.parameters)
+    return perf.Scheduler(**_common(element, allocations, context), parent=parent)
+
+
+def _common(element: Any, allocations: Allocations, context: Extracting) -> dict[str, Any]:
+    """What task schedulers and interrupt controllers have."""
+    cores: dict[str, None] = {}
+    executing: str | None = None
+    for allocation in allocations.of(element):
+        for core in allocation.responsibility:
+            if core in context.names:
+                cores[context.names[core]] = None
+        executing = executing or context.names.get(allocation.executing_pu)  # type: ignore[arg-type]
+    given = extract_parameters(element, context)
+    stated = given.parameters
+    if given.priority is not None:
+        stated = (perf.Parameter("priority", (given.priority,)), *stated)
+    if given.deadline is not None:
+        stated = (*stated, perf.Parameter("deadline", (perf.Duration(given.deadline),)))
+    return {
+        "name": context.names[element],
+        "origin": context.location(element),
+        "policy": extract_policy(element),
+        "cores": tuple(cores),
+        "executing_core": executing,
+        "parameters": stated,
+        "overhead": ACTIVITIES.extract_all(element.computation_items, context),
+    }

@@ -1,0 +1,259 @@
+"""Scheduling policies and parameters.
+
+Since 2.0 a policy is a definition with a standard name, and parameters are keyed by definitions; until 1.2 a policy is a class, and
+the parameters are priority, budgets and replenishment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from amalthea_uros.bridge.codecs import build_time, extract_time
+from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.os import Duration, Parameter, ParameterValue, Policy
+
+PRIORITY, DEADLINE = "priority", "deadline"
+
+#: Parameters that standard policies have for each process, and for themselves.
+_OF_PROCESSES: dict[str, tuple[str, ...]] = {
+    Policy.FIXED_PRIORITY_PREEMPTIVE: (PRIORITY,),
+    Policy.OSEK: (PRIORITY, "taskGroup"),
+    Policy.FIXED_PRIORITY_WITH_BUDGETS: (PRIORITY, "minBudget", "maxBudget", "replenishment"),
+    Policy.DEADLINE_MONOTONIC: (DEADLINE,),
+    Policy.RATE_MONOTONIC: ("period",),
+    Policy.EARLIEST_DEADLINE_FIRST: (DEADLINE,),
+    Policy.PRIORITY_BASED_ROUND_ROBIN: (PRIORITY, "timeSliceLength"),
+}
+_SERVERS = (
+    Policy.DEFERRABLE_SERVER,
+    Policy.POLLING_SERVER,
+    Policy.SPORADIC_SERVER,
+    Policy.CONSTANT_BANDWIDTH_SERVER,
+    Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH,
+)
+_FAIR = (Policy.PFAIR, Policy.PARTLY_PFAIR, Policy.EARLY_RELEASE_FAIR, Policy.PARTLY_EARLY_RELEASE_FAIR)
+_OF_POLICIES: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(_SERVERS, ("capacity", "period")),
+    **dict.fromkeys(_FAIR, ("quantSize",)),
+}
+
+#: Parameters whose type the standard fixes; others have the type of their first value.
+_TYPES = {
+    PRIORITY: am.ParameterType.INTEGER,
+    "taskGroup": am.ParameterType.INTEGER,
+    **dict.fromkeys(
+        (DEADLINE, "period", "capacity", "minBudget", "maxBudget", "replenishment", "timeSliceLength", "quantSize"),
+        am.ParameterType.TIME,
+    ),
+}
+#: What schedulers may do without.
+_OPTIONAL = {"taskGroup", "minBudget"}
+
+
+class Given(NamedTuple):
+    """What one process or scheduler is given."""
+
+    priority: int | None
+    deadline: int | None
+    parameters: tuple[Parameter, ...]
+
+
+def _parameters(given: Given) -> Iterable[Parameter]:
+    if given.priority is not None:
+        yield Parameter(PRIORITY, (given.priority,))
+    if given.deadline is not None:
+        yield Parameter(DEADLINE, (Duration(given.deadline),))
+    yield from given.parameters
+
+
+def _build_value(value: ParameterValue) -> am.Value:
+    match value:
+        case bool():
+            return am.BooleanObject(value=value)
+        case int():
+            return am.IntegerObject(value=value) if -(2**31) <= value < 2**31 else am.LongObject(value=value)
+        case float():
+            return am.DoubleObject(value=value)
+        case Duration(time=time):
+            found = build_time(time)
+            assert found
+            return found
+    return am.StringObject(value=value)
+
+
+def _extract_values(value: Any) -> tuple[ParameterValue, ...]:
+    match value:
+        case am.Time():
+            time = extract_time(value)
+            return () if time is None else (Duration(time),)
+        case am.ListObject():
+            return tuple(inner for item in value.values for inner in _extract_values(item))
+        case (
+            am.IntegerObject()
+            | am.LongObject()
+            | am.BigIntegerObject()
+            | am.FloatObject()
+            | am.DoubleObject()
+            | am.BooleanObject()
+            | am.StringObject()
+        ):
+            return () if value.value is None else (value.value,)
+    return ()
+
+
+def _type_of(parameter: Parameter) -> am.ParameterType:
+    if parameter.name in _TYPES:
+        return _TYPES[parameter.name]
+    match parameter.values[0]:
+        case bool():
+            return am.ParameterType.BOOL
+        case int():
+            return am.ParameterType.INTEGER
+        case float():
+            return am.ParameterType.FLOAT
+        case Duration():
+            return am.ParameterType.TIME
+    return am.ParameterType.STRING
+
+
+class Definitions:
+    """Definitions of policies and parameters, as they are needed."""
+
+    def __init__(self, context: Building) -> None:
+        self.context = context
+        self.schedulers: dict[str, am.SchedulerDefinition] = {}
+        self.parameters: dict[str, am.SchedulingParameterDefinition] = {}
+
+    def set_policy(self, element: Any, item: Named, policy: str | None) -> None:
+        """Give a scheduler or interrupt controller its policy."""
+        if policy is None:
+            return
+        if self.context.is_at_least(2):
+            element.definition = self._scheduler(policy)
+            return
+        algorithm = getattr(am, policy, None)
+        wanted = am.InterruptSchedulingAlgorithm if isinstance(element, am.InterruptController) else am.TaskSchedulingAlgorithm
+        if algorithm is None or not issubclass(algorithm, wanted) or algorithm.is_abstract:
+            self.context.refuse(item, f"the policy {policy!r} does not exist in AMALTHEA {self.context.version}")
+        else:
+            element.scheduling_algorithm = algorithm()
+
+    def _scheduler(self, policy: str) -> am.SchedulerDefinition:
+        if policy not in self.schedulers:
+            self.schedulers[policy] = am.SchedulerDefinition(
+                name=policy,
+                algorithm_parameters=[self._parameter(name) for name in _OF_POLICIES.get(policy, ())],
+                process_parameters=[self._parameter(name) for name in _OF_PROCESSES.get(policy, ())],
+            )
+        return self.schedulers[policy]
+
+    def _parameter(self, name: str, kind: am.ParameterType | None = None) -> am.SchedulingParameterDefinition:
+        if name not in self.parameters:
+            self.parameters[name] = am.SchedulingParameterDefinition(
+                name=name, type=kind or _TYPES[name], mandatory=name not in _OPTIONAL
+            )
+        return self.parameters[name]
+
+    def set_parameters(self, element: Any, item: Named, given: Given, policy: str | None, of_process: bool) -> None:
+        """Give a process or scheduler its parameters.
+
+        Parameters
+        ----------
+        policy : of the scheduler that uses them; its definition lists them
+        of_process : whether they are those of a process, or of the policy itself
+        """
+        if not self.context.is_at_least(2):
+            self._set_old(element, item, given)
+            return
+        for parameter in _parameters(given):
+            key = self._parameter(parameter.name, _type_of(parameter))
+            if len(parameter.values) > 1:
+                key.many = True
+            values = [_build_value(value) for value in parameter.values]
+            value = values[0] if len(values) == 1 else am.ListObject(values=values)
+            element.scheduling_parameters.append(am.SchedulingParameter(key=key, value=value))
+            self._list(key, policy, of_process)
+
+    def _list(self, key: am.SchedulingParameterDefinition, policy: str | None, of_process: bool) -> None:
+        """Let the definition of the policy list a parameter that the standard does not have; others can do without it."""
+        if policy is None:
+            return
+        definition = self._scheduler(policy)
+        listed = definition.process_parameters if of_process else definition.algorithm_parameters
+        if key not in listed:
+            if key not in (*definition.process_parameters, *definition.algorithm_parameters):
+                key.mandatory = False
+            listed.append(key)
+
+    def _set_old(self, element: Any, item: Named, given: Given) -> None:
+        """The parameters of 1.2, as far as there are any."""
+        budgets = {"minBudget": "min_budget", "maxBudget": "max_budget", "replenishment": "replenishment"}
+        found = am.SchedulingParameters(priority=given.priority)
+        is_holder = not isinstance(element, am.Scheduler)
+        for parameter in given.parameters:
+            value = parameter.values[0] if len(parameter.values) == 1 else None
+            if is_holder and parameter.name in budgets and isinstance(value, Duration):
+                setattr(found, budgets[parameter.name], build_time(value.time))
+            else:
+                self._refuse_old(item, parameter.name)
+        if given.deadline is not None:
+            self._refuse_old(item, DEADLINE)
+        if given.priority is not None or given.parameters:
+            if is_holder:
+                element.scheduling_parameters = found
+            else:
+                self._refuse_old(item, PRIORITY)
+
+    def _refuse_old(self, item: Named, name: str) -> None:
+        self.context.refuse(item, f"the scheduling parameter {name!r} cannot be held by AMALTHEA {self.context.version}")
+
+
+def extract_policy(scheduler: Any) -> str | None:
+    """The policy of a scheduler, of any version."""
+    if scheduler.definition is not None:
+        name: str | None = scheduler.definition.name
+        return name or None
+    algorithm = getattr(scheduler, "scheduling_algorithm", None)
+    return None if algorithm is None else type(algorithm).__name__
+
+
+def extract_parameters(element: Any, context: Extracting) -> Given:
+    """The parameters of a process or scheduler, of any version."""
+    priority: int | None = None
+    deadline: int | None = None
+    others: list[Parameter] = []
+    for name, values in _stated(element, context):
+        value = values[0]
+        if name == PRIORITY and isinstance(value, int) and len(values) == 1:
+            priority = value
+        elif name == DEADLINE and isinstance(value, Duration) and len(values) == 1:
+            deadline = value.time
+        else:
+            others.append(Parameter(name, values))
+    return Given(priority, deadline, tuple(others))
+
+
+def _stated(element: Any, context: Extracting) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:
+    stated = element.scheduling_parameters
+    if isinstance(stated, am.SchedulingParameters):
+        if stated.priority is not None:
+            yield PRIORITY, (stated.priority,)
+        for name, value in (
+            ("minBudget", stated.min_budget),
+            ("maxBudget", stated.max_budget),
+            ("replenishment", stated.replenishment),
+        ):
+            time = extract_time(value)
+            if time is not None:
+                yield name, (Duration(time),)
+        return
+    for parameter in stated or ():
+        key = parameter.key.name if parameter.key is not None else None
+        values = _extract_values(parameter.value)
+        if key and values:
+            yield key, values
+        else:
+            context.note("EXT004", "a SchedulingParameter without key or value is left out", element)

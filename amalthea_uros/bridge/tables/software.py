@@ -1,0 +1,371 @@
+"""The software model: processes, runnables and what they do."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+from amalthea_uros.bridge.codecs import PLAIN, SIZE, Codec, enumeration, reference, references, same_names
+from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.bridge.entries import Entry, Field, Table
+from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.tables.conditions import CONDITION
+from amalthea_uros.bridge.tables.distributions import DISCRETE
+from amalthea_uros.bridge.tables.stimuli import COUNTER
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.perf import software as perf
+
+# Demand
+
+
+def _build_demand(demand: perf.Demand, context: Building) -> am.Ticks:
+    entries = []
+    for name, ticks in demand.by_core_type:
+        core_type: Any = context.find(Kind.CORE_TYPE, name)
+        entries.append(am.TicksEntry(key=core_type, value=DISCRETE.build(ticks, context)))
+    return am.Ticks(default=None if demand.ticks is None else DISCRETE.build(demand.ticks, context), extended=entries)
+
+
+def _extract_demand(ticks: Any, context: Extracting, _element: Element) -> perf.Demand | None:
+    default = None if ticks.default is None else DISCRETE.extract(ticks.default, context)
+    by_core_type = []
+    for entry in ticks.extended:
+        name = _CORE_TYPE.extract(entry.key, context, ticks)
+        value = None if entry.value is None else DISCRETE.extract(entry.value, context)
+        if name is not None and value is not None:
+            by_core_type.append((name, value))
+    if default is None and not by_core_type:
+        context.note("EXT004", "ticks without a value are left out", ticks)
+        return None
+    return perf.Demand(default, tuple(by_core_type))
+
+
+_CORE_TYPE = reference(Kind.CORE_TYPE)
+
+#: Demand as Ticks.
+DEMAND = Codec(_build_demand, _extract_demand)
+
+
+# Numbers that were measured
+
+
+def _build_count(count: perf.Count | float, _context: Building) -> am.NumericStatistic:
+    if isinstance(count, perf.Count):
+        return am.MinAvgMaxStatistic(min=count.least, avg=float(count.mean), max=count.most)
+    return am.SingleValueStatistic(value=float(count))
+
+
+def _extract_count(statistic: Any, _context: Extracting, _element: Element) -> perf.Count | float | None:
+    match statistic:
+        case am.MinAvgMaxStatistic(min=least, avg=mean, max=most):
+            return perf.Count(least=least or 0, mean=mean or 0.0, most=most or 0)
+        case am.SingleValueStatistic(value=value):
+            return value or 0.0
+    return None
+
+
+_ACCESSES = Codec(
+    lambda count, context: am.LabelAccessStatistic(value=_build_count(count, context)),
+    lambda value, context, element: _extract_count(value.value, context, element),
+)
+_CALLS = Codec(
+    lambda count, context: am.RunEntityCallStatistic(statistic=_build_count(count, context)),
+    lambda value, context, element: _extract_count(value.statistic, context, element),
+)
+
+# Activities
+
+
+class _Activities(Table):
+    """Everything that can stand in an activity graph; what is shaped differently in AMALTHEA has its own functions."""
+
+    def build(self, item: Any, context: Building) -> Any:
+        match item:
+            case perf.Execute(demand=demand):
+                return _build_demand(demand, context)
+            case perf.ExecutionNeed(needs=needs):
+                return am.ExecutionNeed(
+                    needs=[am.NeedEntry(key=key, value=DISCRETE.build(need, context)) for key, need in needs]
+                )
+            case perf.ProbabilitySwitch(branches=branches):
+                return am.ProbabilitySwitch(
+                    entries=[
+                        am.ProbabilitySwitchEntry(probability=branch.weight, items=ITEMS.build(branch.activities, context))
+                        for branch in branches
+                    ]
+                )
+            case perf.Switch():
+                return _build_switch(item, context)
+        return super().build(item, context)
+
+    def extract(self, element: Any, context: Extracting) -> Any:
+        match element:
+            case am.Ticks():
+                demand = _extract_demand(element, context, element)
+                return None if demand is None else perf.Execute(demand=demand)
+            case am.ExecutionNeed():
+                needs = tuple(
+                    (entry.key or "", need)
+                    for entry in element.needs
+                    if entry.value is not None and (need := DISCRETE.extract(entry.value, context)) is not None
+                )
+                return perf.ExecutionNeed(needs=needs)
+            case am.ProbabilitySwitch():
+                return perf.ProbabilitySwitch(
+                    branches=tuple(
+                        perf.Chance(weight=entry.probability or 0.0, activities=ITEMS.extract(entry.items, context, element))
+                        for entry in element.entries
+                    )
+                )
+            case am.Switch() | am.ModeSwitch():
+                return _extract_switch(element, context)
+        return super().extract(element, context)
+
+
+def _build_switch(switch: perf.Switch, context: Building) -> Element:
+    # Until 1.2 there is the switch on modes only.
+    classes = (
+        (am.Switch, am.SwitchEntry, am.SwitchDefault)
+        if context.is_at_least(2)
+        else (am.ModeSwitch, am.ModeSwitchEntry, am.ModeSwitchDefault)
+    )
+    switch_class: Any
+    entry_class: Any
+    default_class: Any
+    switch_class, entry_class, default_class = classes
+    found = switch_class(
+        entries=[
+            entry_class(
+                name=case.name or None,
+                condition=None if case.condition is None else CONDITION.build(case.condition, context),
+                items=ITEMS.build(case.activities, context),
+            )
+            for case in switch.cases
+        ]
+    )
+    if switch.default is not None:
+        found.default_entry = default_class(items=ITEMS.build(switch.default, context))
+    return cast(Element, found)
+
+
+def _extract_switch(element: Any, context: Extracting) -> perf.Switch:
+    cases = tuple(
+        perf.Case(
+            name=entry.name or "",
+            condition=None if entry.condition is None else CONDITION.extract(entry.condition, context, element),
+            activities=ITEMS.extract(entry.items, context, element),
+        )
+        for entry in element.entries
+    )
+    default = element.default_entry
+    return perf.Switch(cases=cases, default=None if default is None else ITEMS.extract(default.items, context, element))
+
+
+#: The items of a group, a branch or a graph.
+ITEMS = Codec(
+    lambda items, context: [ACTIVITIES.build(item, context) for item in items],
+    lambda values, context, _element: ACTIVITIES.extract_all(values, context),
+)
+
+
+def _extract_events(value: Any, context: Extracting, element: Element) -> tuple[str, ...]:
+    names: tuple[str, ...] = references(Kind.OS_EVENT).extract(value.events, context, element)
+    return names
+
+
+_EVENT_MASK = Codec(
+    lambda names, context: am.EventMask(events=references(Kind.OS_EVENT).build(names, context)), _extract_events
+)
+_PROTECTIONS = {
+    "NONE": "NO_PROTECTION",
+    "AUTOMATIC": "AUTOMATIC_PROTECTION",
+    "CUSTOM": "CUSTOM_PROTECTION",
+    "BY_MODEL": "HANDLED_BY_MODEL_ELEMENTS",
+}
+_WAITING = Field("waiting", "waiting_behaviour", same_names(perf.Waiting, am.WaitingBehaviour))
+_COUNTER = Field("counter", "counter", COUNTER)
+_MASK = Field("events", "event_mask", _EVENT_MASK)
+_ITEMS = Field("activities", "items", ITEMS)
+_CHANNEL = Field("channel", "data", reference(Kind.DATA))
+_MODE_LABEL = Field("label", "data", reference(Kind.MODE_LABEL))
+_ALL_OF_THEM = Codec(
+    lambda value, _: am.WaitEventType.AND if value else am.WaitEventType.OR,
+    lambda value, _context, _element: value is not am.WaitEventType.OR,
+)
+
+ACTIVITIES: Table = _Activities(
+    Entry(
+        perf.Call,
+        am.RunnableCall,
+        Field("runnable", "runnable", reference(Kind.RUNNABLE)),
+        _COUNTER,
+        Field("times", "statistic", _CALLS),
+    ),
+    Entry(
+        perf.LabelAccess,
+        am.LabelAccess,
+        Field("label", "data", reference(Kind.DATA)),
+        Field("kind", "access", same_names(perf.AccessKind, am.LabelAccessEnum)),
+        Field(
+            "communication",
+            "implementation",
+            enumeration(
+                {
+                    perf.Communication.EXPLICIT: am.LabelAccessImplementation.EXPLICIT,
+                    perf.Communication.IMPLICIT: am.LabelAccessImplementation.IMPLICIT,
+                    perf.Communication.LET: am.LabelAccessImplementation.TIMED,
+                }
+            ),
+        ),
+        Field("protection", "data_stability", same_names(perf.Protection, am.LabelAccessDataStability, **_PROTECTIONS)),
+        Field("times", "statistic", _ACCESSES),
+    ),
+    Entry(
+        perf.Group,
+        am.Group,
+        Field("name", "name"),
+        _ITEMS,
+        Field("ordered", "ordered"),
+        Field("interruptible", "interruptible"),
+    ),
+    Entry(perf.Loop, am.WhileLoop, _ITEMS, Field("condition", "condition", CONDITION)),
+    Entry(
+        perf.SemaphoreAccess,
+        am.SemaphoreAccess,
+        Field("semaphore", "semaphore", reference(Kind.SEMAPHORE)),
+        Field("operation", "access", same_names(perf.SemaphoreOperation, am.SemaphoreAccessEnum)),
+        _WAITING,
+    ),
+    Entry(perf.Trigger, am.InterProcessTrigger, Field("stimulus", "stimulus", reference(Kind.STIMULUS)), _COUNTER),
+    Entry(perf.RaiseEvent, am.CustomEventTrigger, Field("event", "event", reference(Kind.EVENT))),
+    Entry(perf.SetEvent, am.SetEvent, _MASK, Field("process", "process", reference(Kind.PROCESS)), _COUNTER),
+    Entry(perf.ClearEvent, am.ClearEvent, _MASK, _COUNTER),
+    Entry(perf.WaitEvent, am.WaitEvent, _MASK, Field("all_of_them", "mask_type", _ALL_OF_THEM), _WAITING, _COUNTER),
+    Entry(perf.Send, am.ChannelSend, _CHANNEL, Field("elements", "elements")),
+    Entry(
+        perf.Receive,
+        am.ChannelReceive,
+        _CHANNEL,
+        Field("elements", "elements"),
+        Field("operation", "receive_operation", same_names(perf.ReceiveOperation, am.ReceiveOperation)),
+        Field("must_be_new", "data_must_be_new"),
+        Field("index", "element_index"),
+        Field("at_least", "lower_bound"),
+    ),
+    Entry(
+        perf.ModeAccess,
+        am.ModeLabelAccess,
+        _MODE_LABEL,
+        Field("operation", "access", same_names(perf.ModeOperation, am.ModeLabelAccessEnum)),
+        Field("value", "value"),
+        Field("step", "step"),
+    ),
+    Entry(perf.SchedulePoint, am.SchedulePoint),
+    Entry(perf.Terminate, am.TerminateProcess, _COUNTER),
+    Entry(perf.Migrate, am.EnforcedMigration, Field("scheduler", "resource_owner", reference(Kind.SCHEDULER))),
+)
+
+# Objects with names
+
+#: Every process and runnable has a graph, also an empty one.
+_GRAPH = Codec(
+    lambda items, context: am.ActivityGraph(items=ITEMS.build(items, context)),
+    lambda value, context, element: ITEMS.extract(value.items, context, element),
+)
+_ACTIVITIES = Field("activities", "activity_graph", _GRAPH)
+_STIMULI = Field("stimuli", "stimuli", references(Kind.STIMULUS))
+_SIZE = Field("size", "size", SIZE)
+
+_LIMIT = Codec(
+    # 0 is what the metamodel gives where nothing is stated; a task has at least one job.
+    lambda value, _: value,
+    lambda value, _context, _element: max(1, value),
+)
+_PREEMPTION = same_names(perf.Preemption, am.Preemption)
+
+PROCESSES = Table(
+    Entry(
+        perf.Task,
+        am.Task,
+        _STIMULI,
+        _ACTIVITIES,
+        Field("preemption", "preemption", _PREEMPTION),
+        Field("activation_limit", "multiple_task_activation_limit", _LIMIT),
+    ),
+    Entry(perf.Isr, am.ISR, _STIMULI, _ACTIVITIES, Field("category", "category", same_names(perf.IsrCategory, am.ISRCategory))),
+)
+RUNNABLES = Table(
+    Entry(
+        perf.Runnable,
+        am.Runnable,
+        _ACTIVITIES,
+        Field("callback", "callback"),
+        Field("service", "service"),
+        Field("condition", "execution_condition", CONDITION),
+    )
+)
+LABELS = Table(
+    Entry(
+        perf.Label,
+        am.Label,
+        _SIZE,
+        Field("constant", "constant"),
+        Field("volatile", "b_volatile"),
+        Field(
+            "protection",
+            "data_stability",
+            enumeration({perf.Protection[ours]: am.LabelDataStability[theirs] for ours, theirs in _PROTECTIONS.items()}),
+        ),
+    )
+)
+
+
+def _build_element_type(size: int, context: Building) -> Element:
+    """A type of that size; a channel has the size of its elements by way of their type."""
+    definition = am.BaseTypeDefinition(name=f"bits_{size}", size=SIZE.build(size, context))
+    known: Any = context.types.setdefault(size, definition)
+    return known if context.is_at_least(3) else am.TypeRef(type_def=known)
+
+
+def _extract_element_type(value: Any, context: Extracting, element: Element) -> int | None:
+    definition = value.type_def if isinstance(value, am.TypeRef) else value
+    size: int | None = SIZE.extract(getattr(definition, "size", None), context, element)
+    return size
+
+
+CHANNELS = Table(
+    Entry(
+        perf.Channel,
+        am.Channel,
+        Field("element_size", "element_type", Codec(_build_element_type, _extract_element_type)),
+        Field("default_elements", "default_elements"),
+        Field("capacity", "max_elements"),
+    )
+)
+OS_EVENTS = Table(Entry(perf.OsEvent, am.OsEvent))
+MODE_LABELS = Table(
+    Entry(perf.ModeLabel, am.ModeLabel, Field("mode", "mode", reference(Kind.MODE)), Field("initial", "initial_value", PLAIN))
+)
+
+
+def build_modes(modes: tuple[perf.Mode, ...], context: Building) -> list[am.Mode]:
+    """Modes with literals, and those of numbers."""
+    found: list[am.Mode] = []
+    for mode in modes:
+        literals = [am.ModeLiteral(name=literal) for literal in mode.literals]
+        element = am.EnumMode(name=mode.name, literals=literals) if literals else am.NumericMode(name=mode.name)
+        context.register(mode, element)
+        found.append(element)
+    return found
+
+
+def extract_modes(elements: list[am.Mode], context: Extracting) -> tuple[perf.Mode, ...]:
+    """The way back."""
+    return tuple(
+        perf.Mode(
+            name=context.names[element],
+            literals=tuple(literal.name or "" for literal in getattr(element, "literals", ())),
+            origin=context.location(element),
+        )
+        for element in elements
+    )

@@ -1,0 +1,106 @@
+"""The stimuli model."""
+
+from __future__ import annotations
+
+from amalthea_uros.bridge.codecs import FREQUENCY, TIME, TIMES, reference, references, same_names
+from amalthea_uros.bridge.entries import Entry, Field, Table, part, parts
+from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.tables.conditions import ASSIGNMENTS, CONDITION
+from amalthea_uros.bridge.tables.distributions import NUMBER, TIME_SPAN
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.perf import stimuli as perf
+
+#: Numbers that are not given have these values in every version: prescaler 1, offset 0.
+COUNTER = part(Table(Entry(perf.Counter, am.Counter, Field("prescaler", "prescaler"), Field("offset", "offset"))))
+
+_COMMON = (
+    Field("condition", "execution_condition", CONDITION),
+    Field("assignments", "set_mode_value_list", ASSIGNMENTS),
+)
+_PERIOD = (Field("period", "recurrence", TIME), Field("offset", "offset", TIME))
+_COUNTER = Field("counter", "counter", COUNTER)
+
+_SCENARIO = Table(
+    Entry(
+        perf.Scenario,
+        am.Scenario,
+        Field("clock", "clock", reference(Kind.STIMULUS_CLOCK)),
+        Field("offset", "sampling_offset"),
+        Field("recurrence", "sampling_recurrence"),
+    )
+)
+_POINTS = Table(
+    Entry(
+        perf.ArrivalCurvePoint,
+        am.ArrivalCurveEntry,
+        Field("occurrences", "number_of_occurrences"),
+        Field("lower", "lower_time_border", TIME),
+        Field("upper", "upper_time_border", TIME),
+    )
+)
+
+STIMULI = Table(
+    Entry(
+        perf.Periodic,
+        am.PeriodicStimulus,
+        *_PERIOD,
+        Field("jitter", "jitter", TIME_SPAN),
+        Field("min_distance", "min_distance", TIME),
+        *_COMMON,
+    ),
+    Entry(
+        perf.RelativePeriodic,
+        am.RelativePeriodicStimulus,
+        Field("offset", "offset", TIME),
+        Field("distance", "next_occurrence", TIME_SPAN),
+        *_COMMON,
+    ),
+    Entry(perf.Synthetic, am.PeriodicSyntheticStimulus, *_PERIOD, Field("times", "occurrence_times", TIMES), *_COMMON),
+    Entry(
+        perf.Burst,
+        am.PeriodicBurstStimulus,
+        *_PERIOD,
+        Field("length", "burst_length", TIME),
+        Field("distance", "occurrence_min_distance", TIME),
+        Field("count", "occurrence_count"),
+        *_COMMON,
+    ),
+    Entry(perf.Single, am.SingleStimulus, Field("time", "occurrence", TIME), *_COMMON),
+    Entry(
+        perf.VariableRate,
+        am.VariableRateStimulus,
+        Field("step", "step", TIME),
+        Field("rate", "occurrences_per_step", NUMBER),
+        Field("max_increase", "max_increase_per_step"),
+        Field("max_decrease", "max_decrease_per_step"),
+        Field("scenario", "scenario", part(_SCENARIO)),
+        *_COMMON,
+    ),
+    Entry(perf.ArrivalCurve, am.ArrivalCurveStimulus, Field("points", "entries", parts(_POINTS)), *_COMMON),
+    Entry(perf.InterProcess, am.InterProcessStimulus, _COUNTER, *_COMMON),
+    Entry(
+        perf.EventTriggered,
+        am.EventStimulus,
+        Field("events", "triggering_events", references(Kind.EVENT)),
+        _COUNTER,
+        *_COMMON,
+    ),
+    Entry(perf.Custom, am.CustomStimulus, Field("description", "description"), *_COMMON),
+)
+
+_STEPS = Table(
+    Entry(perf.ClockStep, am.ClockStep, Field("time", "time", TIME), Field("frequency", "frequency", FREQUENCY)),
+)
+
+CLOCKS = Table(
+    Entry(
+        perf.ClockFunction,
+        am.ClockFunction,
+        Field("curve", "curve_type", same_names(perf.Curve, am.CurveType)),
+        Field("period", "period", TIME),
+        Field("lowest", "y_offset", FREQUENCY),
+        Field("swing", "peak_to_peak", FREQUENCY),
+        Field("shift", "x_offset", TIME),
+    ),
+    Entry(perf.ClockSteps, am.ClockStepList, Field("steps", "entries", parts(_STEPS)), Field("period", "period", TIME)),
+)
