@@ -33,9 +33,15 @@ PLAIN = Codec(lambda value, _: value, lambda value, _context, _element: value)
 
 
 def enumeration(pairs: Mapping[StrEnum, StrEnum]) -> Codec:
-    """Literals by a table; what the table does not have is not given."""
+    """Literals by a table; literals of AMALTHEA that the table does not have are not given."""
     back = {theirs: ours for ours, theirs in pairs.items()}
-    return Codec(lambda value, _: pairs.get(value), lambda value, _context, _element: back.get(value))
+
+    def build(value: StrEnum, context: Building) -> StrEnum | None:
+        if value not in pairs:
+            context.refuse_literal(value)
+        return pairs.get(value)
+
+    return Codec(build, lambda value, _context, _element: back.get(value))
 
 
 def same_names(ours: type[StrEnum], theirs: type[StrEnum], **others: str) -> Codec:
@@ -170,7 +176,9 @@ def _name_of(value: Element | None, context: Extracting, element: Element) -> st
     if value is None:
         return None
     name = context.names.get(value)
-    if name is None:
+    if name is None or value in context.dropped:
         what = getattr(value, "name", None) or value
-        context.note("EXT003", f"{type(value).__name__} {what!r} is referred to, but not part of the model", element)
+        why = "not part of the model" if name is None else "left out"
+        context.note("EXT003", f"{type(value).__name__} {what!r} is referred to, but {why}", element)
+        return None
     return name

@@ -64,6 +64,10 @@ class Building:
         text = f"{name}: {message}" if name else message
         self.findings.append(Finding("BLD001", Severity.ERROR, text, item.origin if item else None, object=name))
 
+    def refuse_literal(self, literal: object) -> None:
+        """Note that the object in hand says something for which there is no literal."""
+        self.refuse(self._home, f"AMALTHEA has no literal for {str(literal)!r} here")
+
     def finish(self) -> None:
         """Raise what was noted.
 
@@ -81,12 +85,14 @@ class Extracting:
     Attributes
     ----------
     names : unique within each kind
+    dropped : objects with names for which there is none in perf
     findings : what could not be taken over
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Model, dropped: frozenset[Element] = frozenset()) -> None:
         self.model = model
         self.names: dict[Element, str] = {}
+        self.dropped = set(dropped)
         self.findings: list[Finding] = []
         self._left_out: dict[str, tuple[int, Element]] = {}
 
@@ -109,6 +115,11 @@ class Extracting:
                 self.note("EXT002", message, element)
             taken.add((kind, found))
             self.names[element] = found
+
+    def drop(self, element: Element) -> None:
+        """Note that nothing of perf stands for an object, so that nothing may refer to it."""
+        if element in self.names:
+            self.dropped.add(element)
 
     def location(self, element: Element) -> Location | None:
         """Where an object stands."""

@@ -80,6 +80,7 @@ class Entry:
                 if value is MISSING:
                     what = self._xml_names[column.feature]
                     context.note("EXT004", f"a {type(element).__name__} without {what} is left out", element)
+                    context.drop(element)
                     return None
             values[column.name] = value
         if self.is_named:
@@ -117,6 +118,7 @@ class Table:
         entry = self.by_theirs.get(type(element))
         if entry is None:
             context.leave_out(element)
+            context.drop(element)
             return None
         return entry.extract(element, context)
 

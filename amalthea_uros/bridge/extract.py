@@ -56,10 +56,15 @@ class Extraction:
 
 def extract(model: Model) -> Extraction:
     """The system that a model describes."""
-    context = Extracting(model)
-    context.name(element for element in model.walk() if not element.unresolved)
-    system = _Extract(model, context).system()
-    return Extraction(system=system, findings=context.finish())
+    dropped: frozenset[Element] = frozenset()
+    while True:
+        context = Extracting(model, dropped)
+        context.name(element for element in model.walk() if not element.unresolved)
+        system = _Extract(model, context).system()
+        if context.dropped == dropped:
+            return Extraction(system=system, findings=context.finish())
+        # What refers to something that was left out has to be extracted without it.
+        dropped = frozenset(context.dropped)
 
 
 class _Extract:

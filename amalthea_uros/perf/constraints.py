@@ -86,7 +86,12 @@ class ChainSynchronization(Named):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DataAgeConstraint(Named):
-    """How long what a runnable writes to a label is valid: as time after the write, or in activations of the writer."""
+    """How long what a runnable writes to a label is valid: as time after the write, or in activations of the writer.
+
+    Attributes
+    ----------
+    earliest_cycle, latest_cycle : both are given, or none
+    """
 
     runnable: str
     label: str

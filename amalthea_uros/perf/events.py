@@ -24,7 +24,6 @@ class ProcessChange(StrEnum):
     RELEASE_PARKING = "release parking"
     RELEASE = "release"
     TERMINATE = "terminate"
-    DEADLINE = "deadline"
 
 
 class RunnableChange(StrEnum):

@@ -42,12 +42,12 @@ class Placement:
 
     Attributes
     ----------
-    address : in bytes, in the sense of `Mapping.addresses`
+    address : in bytes
     """
 
     element: str
     memory: str
-    address: int | None = None
+    address: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
 
 from amalthea_uros.perf.named import Named
-from amalthea_uros.perf.software import Activity, Demand
+from amalthea_uros.perf.software import Demand, Execute, LabelAccess
 from amalthea_uros.units import Time
 
 
@@ -84,7 +84,7 @@ class Scheduler(Named):
     executing_core: str | None = None
     parameters: tuple[Parameter, ...] = ()
     parent: Parent | None = None
-    overhead: tuple[Activity, ...] = ()
+    overhead: tuple[Execute | LabelAccess, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,7 +95,7 @@ class InterruptController(Named):
     cores: tuple[str, ...] = ()
     executing_core: str | None = None
     parameters: tuple[Parameter, ...] = ()
-    overhead: tuple[Activity, ...] = ()
+    overhead: tuple[Execute | LabelAccess, ...] = ()
 
 
 class Service(StrEnum):
@@ -187,4 +187,4 @@ class Os:
 
     systems: tuple[OperatingSystem, ...] = ()
     overheads: tuple[Overhead, ...] = ()
-    semaphores: tuple[Semaphore, ...] = field(default=())
+    semaphores: tuple[Semaphore, ...] = ()

@@ -328,6 +328,7 @@ class HardwareExtractor:
         source, target = (self.context.names.get(end) if isinstance(end, am.HwModule) else None for end in ends)
         if source is None or target is None:
             self.context.leave_out(element)
+            self.context.drop(element)
             return None
         return perf.Connection(
             name=self.context.names[element],

@@ -49,6 +49,9 @@ _TYPES = {
         am.ParameterType.TIME,
     ),
 }
+#: The features that budgets have until 1.2.
+_BUDGETS = {"minBudget": "min_budget", "maxBudget": "max_budget", "replenishment": "replenishment"}
+
 #: What schedulers may do without.
 _OPTIONAL = {"taskGroup", "minBudget"}
 
@@ -190,20 +193,19 @@ class Definitions:
 
     def _set_old(self, element: Any, item: Named, given: Given) -> None:
         """The parameters of 1.2, as far as there are any."""
-        budgets = {"minBudget": "min_budget", "maxBudget": "max_budget", "replenishment": "replenishment"}
         found = am.SchedulingParameters(priority=given.priority)
         is_holder = not isinstance(element, am.Scheduler)
         for parameter in given.parameters:
             value = parameter.values[0] if len(parameter.values) == 1 else None
-            if is_holder and parameter.name in budgets and isinstance(value, Duration):
-                setattr(found, budgets[parameter.name], build_time(value.time))
+            if is_holder and parameter.name in _BUDGETS and isinstance(value, Duration):
+                setattr(found, _BUDGETS[parameter.name], build_time(value.time))
             else:
                 self._refuse_old(item, parameter.name)
         if given.deadline is not None:
             self._refuse_old(item, DEADLINE)
         if given.priority is not None or given.parameters:
             if is_holder:
-                element.scheduling_parameters = found
+                element.scheduling_parameters.append(found)
             else:
                 self._refuse_old(item, PRIORITY)
 
@@ -237,23 +239,23 @@ def extract_parameters(element: Any, context: Extracting) -> Given:
 
 
 def _stated(element: Any, context: Extracting) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:
-    stated = element.scheduling_parameters
-    if isinstance(stated, am.SchedulingParameters):
-        if stated.priority is not None:
-            yield PRIORITY, (stated.priority,)
-        for name, value in (
-            ("minBudget", stated.min_budget),
-            ("maxBudget", stated.max_budget),
-            ("replenishment", stated.replenishment),
-        ):
-            time = extract_time(value)
-            if time is not None:
-                yield name, (Duration(time),)
-        return
-    for parameter in stated or ():
+    for parameter in element.scheduling_parameters:
+        if isinstance(parameter, am.SchedulingParameters):
+            yield from _stated_before(parameter)
+            continue
         key = parameter.key.name if parameter.key is not None else None
         values = _extract_values(parameter.value)
         if key and values:
             yield key, values
         else:
             context.note("EXT004", "a SchedulingParameter without key or value is left out", element)
+
+
+def _stated_before(stated: am.SchedulingParameters) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:
+    """The parameters of 1.2 and older."""
+    if stated.priority is not None:
+        yield PRIORITY, (stated.priority,)
+    for name, feature in _BUDGETS.items():
+        time = extract_time(getattr(stated, feature))
+        if time is not None:
+            yield name, (Duration(time),)

@@ -1,0 +1,83 @@
+"""perf -> amxmi -> perf is the identity."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support import ROOT, corpus, hand_written
+from system_strategies import systems
+
+from amalthea_uros import pipeline
+from amalthea_uros.bridge.build import build
+from amalthea_uros.bridge.extract import extract
+from amalthea_uros.cli.build import VERSIONS
+from amalthea_uros.errors import WriteError
+from amalthea_uros.xmi.load import load
+from amalthea_uros.xmi.save import save
+from amalthea_uros.xmi.schema import validate
+
+SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
+
+
+def there_and_back(system, path, version=None):
+    save(build(system, version), path)
+    extraction = extract(load(path))
+    assert extraction.findings == ()
+    return extraction.system
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    return tmp_path_factory.mktemp("identity") / "system.amxmi"
+
+
+@given(system=systems())
+@settings(max_examples=100)
+def test_every_system_comes_back(file, system):
+    assert there_and_back(system, file) == system
+    assert validate(file.read_bytes(), "3.3.0") == []
+
+
+@given(system=systems(most=1), version=st.sampled_from(VERSIONS))
+@settings(max_examples=100)
+def test_a_system_comes_back_from_an_older_version_or_is_refused_by_name(file, system, version):
+    file.unlink(missing_ok=True)
+    try:
+        found = there_and_back(system, file, version)
+    except WriteError as error:
+        findings = error.findings
+    else:
+        assert found == system
+        return
+    assert version not in ("3.0.0", "3.1.0", "3.2.0", "3.3.0")
+    assert all(finding.object for finding in findings)
+    assert not file.exists()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda path: path.stem)
+def test_a_sample_comes_back_from_every_version(sample, version, file):
+    system = pipeline.describe(sample).system
+    if sample.stem == "drive-and-lift" and version == "1.2.0":
+        with pytest.raises(WriteError, match="Task_Log: the scheduling parameter 'deadline' cannot"):
+            build(system, version)
+        return
+    assert there_and_back(system, file, version) == system
+    assert validate(file.read_bytes(), version) == []
+
+
+@pytest.mark.parametrize("path", corpus())
+def test_what_is_extracted_from_a_published_model_comes_back(path, file):
+    system = extract(load(path)).system
+    assert there_and_back(system, file) == system
+
+
+@pytest.mark.parametrize("path", hand_written())
+def test_what_is_extracted_from_a_defective_model_comes_back(path, file):
+    from amalthea_uros.errors import ReadError
+
+    try:
+        model = load(path)
+    except ReadError:
+        return
+    system = extract(model).system
+    assert there_and_back(system, file) == system
