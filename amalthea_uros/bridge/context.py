@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterator
 
 from amalthea_uros.bridge.kinds import Kind, kind_of
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -11,6 +11,10 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import facts, version_key
 from amalthea_uros.perf.named import Named
+
+
+#: Kinds of objects that contain others with names; the rest, such as activity graphs, need not be searched.
+_HOLDERS = {Kind.STRUCTURE, Kind.MODULE, Kind.OPERATING_SYSTEM}
 
 
 class Building:
@@ -96,13 +100,10 @@ class Extracting:
         self.findings: list[Finding] = []
         self._left_out: dict[str, tuple[int, Element]] = {}
 
-    def name(self, elements: Iterable[Element]) -> None:
+    def name(self) -> None:
         """Give all objects that others refer to a name that is unique in their kind."""
         taken: set[tuple[Kind, str]] = set()
-        for element in elements:
-            kind = kind_of(type(element))
-            if kind is None:
-                continue
+        for kind, element in self._named():
             own = getattr(element, "name", None) or f"unnamed_{type(element).__name__}"
             found = own
             if (kind, found) in taken:
@@ -115,6 +116,17 @@ class Extracting:
                 self.note("EXT002", message, element)
             taken.add((kind, found))
             self.names[element] = found
+
+    def _named(self) -> Iterator[tuple[Kind, Element]]:
+        """All objects that others refer to by name, in the order of the files."""
+        stack: list[Element] = [document.root for document in reversed(self.model.documents)]
+        while stack:
+            element = stack.pop()
+            kind = kind_of(type(element))
+            if kind is not None:
+                yield kind, element
+            if kind is None or kind in _HOLDERS:
+                stack.extend(reversed(tuple(element.contents())))
 
     def drop(self, element: Element) -> None:
         """Note that nothing of perf stands for an object, so that nothing may refer to it."""

@@ -59,7 +59,7 @@ def extract(model: Model) -> Extraction:
     dropped: frozenset[Element] = frozenset()
     while True:
         context = Extracting(model, dropped)
-        context.name(element for element in model.walk() if not element.unresolved)
+        context.name()
         system = _Extract(model, context).system()
         if context.dropped == dropped:
             return Extraction(system=system, findings=context.finish())
@@ -72,10 +72,14 @@ class _Extract:
         self.model = model
         self.context = context
 
+    def sub_models(self, cls: type[E]) -> list[E]:
+        """The sub-models of a class, of all files."""
+        parts = (part for document in self.model.documents for part in document.root.contents())
+        return [part for part in parts if isinstance(part, cls)]
+
     def parts(self, cls: type[E], feature: str) -> list[Any]:
         """What a feature holds in the sub-models of a class, of all files."""
-        sub_models = (part for document in self.model.documents for part in document.root.contents())
-        return [item for part in sub_models if isinstance(part, cls) for item in getattr(part, feature)]
+        return [item for part in self.sub_models(cls) for item in getattr(part, feature)]
 
     def system(self) -> System:
         """The whole."""
@@ -98,7 +102,7 @@ class _Extract:
 
     def hardware(self) -> Hardware:
         """The hardware of all files."""
-        found = [HardwareExtractor(self.context).extract(model) for model in self.model.all(am.HWModel)]
+        found = [HardwareExtractor(self.context).extract(model) for model in self.sub_models(am.HWModel)]
         return Hardware(
             clocks=tuple(clock for hardware in found for clock in hardware.clocks),
             core_types=tuple(core_type for hardware in found for core_type in hardware.core_types),
@@ -136,7 +140,7 @@ class _Extract:
 
     def mapping(self) -> Mapping:
         """The mapping of all files."""
-        found = [extract_mapping(mapping, self.context) for mapping in self.model.all(am.MappingModel)]
+        found = [extract_mapping(mapping, self.context) for mapping in self.sub_models(am.MappingModel)]
         return Mapping(
             tasks=tuple(item for mapping in found for item in mapping.tasks),
             isrs=tuple(item for mapping in found for item in mapping.isrs),
