@@ -8,11 +8,12 @@ READY := $(VENV)/.ready
 .PHONY: demo test check gen bench docs clean
 
 demo: $(READY)
-	$(BIN)/amuros info --schema samples/executor.amxmi
-	$(BIN)/amuros fmt --check samples/executor.amxmi
 	@mkdir -p build
-	sed 's/value="20" unit="ms"/value="10" unit="ms"/' samples/executor.amxmi > build/faster.amxmi
-	$(BIN)/amuros diff samples/executor.amxmi build/faster.amxmi || true
+	$(BIN)/amuros build samples/bodas-test-advanced.yaml -o build/app.amxmi
+	$(BIN)/amuros info --schema build/app.amxmi
+	sed 's/rate: 50 Hz/rate: 100 Hz/' samples/bodas-test-advanced.yaml > build/faster.yaml
+	$(BIN)/amuros build build/faster.yaml -o build/faster.amxmi
+	$(BIN)/amuros diff build/app.amxmi build/faster.amxmi || true
 
 test: $(READY)
 	$(BIN)/python -m pytest
@@ -26,7 +27,9 @@ check: $(READY)
 gen: $(READY)
 	$(BIN)/python tools/generate_metamodel.py
 	$(BIN)/python tools/generate_schemas.py
+	$(BIN)/python tools/generate_app_schema.py
 	$(BIN)/python samples/executor.py samples/executor.amxmi
+	for sample in samples/*.yaml; do $(BIN)/amuros build $$sample --output json=/dev/null; done
 	$(BIN)/python tools/draw_terminal.py docs/images/info.svg info executor.amxmi
 
 bench: $(READY)

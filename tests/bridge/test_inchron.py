@@ -1,0 +1,53 @@
+"""Built models are what INCHRON's importer can take: nothing that it crashes on, and nothing lost but what the author asked for."""
+
+import pytest
+from inchron import problems
+from support import ROOT, SHARED
+
+from amalthea_uros import load, pipeline
+from amalthea_uros.cli.build import VERSIONS
+
+SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
+
+
+def wishes(assembly):
+    """The rules that the author is told about."""
+    return {finding.rule for finding in assembly.findings if finding.rule.startswith("INC-")}
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda path: path.stem)
+def test_a_sample(sample, version):
+    if sample.stem == "drive-and-lift" and version == "1.2.0":
+        pytest.skip("1.2.0 has no deadlines")
+    built = pipeline.build(sample, version)
+    found = problems(built.model)
+    assert [problem for problem in found if problem[1] == "E"] == []
+    assert {rule for rule, _, _ in found} == wishes(built.assembly)
+
+
+@pytest.mark.parametrize(
+    ("model", "rule"),
+    [
+        ("50_pu_nofreq", "INC-HW-PU-CLOCK"),
+        ("40_osoverhead", "INC-OS-OVERHEAD"),
+        ("40_prio_string", "INC-OS-PRIO-TYPE"),
+        ("40_sched_param_nokey", "INC-OS-PARAM-KEY"),
+        ("40_alloc_notask", "INC-MAP-TASK"),
+        ("40_task_twice", "INC-MAP-TASK-ONCE"),
+        ("31_relper_bounds", "INC-ST-RELPER"),
+        ("31_relper_mixunit", "INC-ST-RELPER-UNIT"),
+        ("20_ticks_beta", "INC-SW-TICKS-BETA"),
+        ("20_ticks_bounds_default", "INC-SW-TICKS-BOUNDS"),
+        ("22_label_nosize", "INC-SW-LABELSIZE"),
+        ("23_call_norunnable", "INC-SW-REF"),
+        ("10_chain_gap", "INC-EC-SEQ"),
+        ("10_chain_par_badresp", "INC-EC-PAR"),
+        ("10_lat_nobounds", "INC-LC-MAX"),
+    ],
+)
+def test_the_checks_themselves_find_known_defects(model, rule):
+    path = SHARED / "vectors" / "am2inc" / f"{model}.amxmi"
+    if not path.exists():
+        pytest.skip("the defective models are not at hand")
+    assert rule in {found for found, _, _ in problems(load(path))}
