@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
+from amalthea_uros.garbage import paused_garbage_collection
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.uros.assemble import Assembly, assemble
 
@@ -59,5 +60,6 @@ def build(path: StrPath, version: str | None = None, platform: str | None = None
     """
     from amalthea_uros.bridge.build import build as build_model
 
-    assembly = describe(path, platform)
-    return Built(model=build_model(assembly.system, version), assembly=assembly)
+    with paused_garbage_collection():
+        assembly = describe(path, platform)
+        return Built(model=build_model(assembly.system, version), assembly=assembly)

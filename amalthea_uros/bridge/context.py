@@ -12,7 +12,6 @@ from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import facts, version_key
 from amalthea_uros.perf.named import Named
 
-
 #: Kinds of objects that contain others with names; the rest, such as activity graphs, need not be searched.
 _HOLDERS = {Kind.STRUCTURE, Kind.MODULE, Kind.OPERATING_SYSTEM}
 
@@ -33,8 +32,16 @@ class Building:
         self.origins: dict[Element, Location] = {}
         self.types: dict[int, Element] = {}
         self.findings: list[Finding] = []
+        self._known: dict[type[Element], frozenset[str]] = {}
         self._elements: dict[tuple[Kind, str], Element] = {}
         self._home: Named | None = None
+
+    def known_features(self, cls: type[Element]) -> frozenset[str]:
+        """The features that a class has in the version, by their names in files; none if the version has no such class."""
+        if cls not in self._known:
+            is_known = cls.__name__ in self.facts.classes
+            self._known[cls] = frozenset(f.name for f in self.facts.features(cls.__name__)) if is_known else frozenset()
+        return self._known[cls]
 
     def is_at_least(self, *version: int) -> bool:
         """Whether the version is that one or a later one."""

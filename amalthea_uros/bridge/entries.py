@@ -54,13 +54,13 @@ class Entry:
         """Set all features."""
         if self.is_named:
             context.at(item)
+        known = context.known_features(self.theirs)
         for column in self.columns:
             value = getattr(item, column.name)
             if value is None or value == () or value == "":
                 continue
             # What a version does not know is left out where it says nothing but the default; the rest the writer refuses.
-            is_known = context.facts.feature(self.theirs.__name__, self._xml_names[column.feature]) is not None
-            if is_known or value != self._defaults[column.name]:
+            if self._xml_names[column.feature] in known or value != self._defaults[column.name]:
                 setattr(element, column.feature, column.codec.build(value, context))
         return element
 

@@ -77,8 +77,13 @@ class Element:
     def __init__(self, **features: Any) -> None:
         if self.is_abstract:
             raise TypeError(f"{type(self).__name__} is abstract, create one of its subclasses")
+        known, own = features_of(type(self)), self.__dict__
         for name, value in features.items():
-            setattr(self, name, value)
+            feature = known.get(name)
+            if feature is not None and feature.kind == "attribute":
+                own[name] = value  # nobody has to be told: the object is new
+            else:
+                setattr(self, name, value)
 
     if not TYPE_CHECKING:  # else mypy would allow the assignment of any name
 

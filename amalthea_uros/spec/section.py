@@ -17,22 +17,23 @@ class Section(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True, protected_namespaces=())
 
-    _node: Mapping | None = PrivateAttr(None)
-    _source: Source | None = PrivateAttr(None)
+    _where: tuple[Mapping, Source] | None = PrivateAttr(None)
 
     def location(self, key: str | None = None, index: int | None = None) -> Location | None:
         """Where the section begins, or the value of a key, or an item of that value; None if it was not read from a file.
 
         A key that is not stated stands where the section stands.
         """
-        if self._node is None or self._source is None:
+        where = self._where
+        if where is None:
             return None
-        node: Node = self._node
-        if key is not None and key in self._node.items:
-            node = self._node.items[key]
+        own, source = where
+        node: Node = own
+        if key is not None and key in own.items:
+            node = own.items[key]
             if index is not None and isinstance(node, Sequence):
                 node = node.items[index]
-        return self._source.location(node.place)
+        return source.location(node.place)
 
     def states(self, key: str) -> bool:
         """Whether the author wrote the key."""
@@ -81,7 +82,7 @@ class Shorthand(Section):
 def settle(value: Any, node: Node, source: Source) -> None:
     """Tell a section and all within it where they stand."""
     if isinstance(value, Section) and isinstance(node, Mapping):
-        value._node, value._source = node, source
+        value._where = node, source
         for name, field in type(value).model_fields.items():
             # A section that is not stated, or for which a shorthand stands, is where the outer one is.
             inner = node.items.get(field.alias or name, node)

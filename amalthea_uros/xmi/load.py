@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import gc
 import os
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.garbage import paused_garbage_collection
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.xmi.files import MAX_SIZE, is_folder, not_readable, read_text
 from amalthea_uros.xmi.reader import ReadResult, read
@@ -39,7 +38,7 @@ def load(*paths: StrPath | Iterable[StrPath], max_size: int = MAX_SIZE) -> Model
     """
     results: list[ReadResult] = []
     refused: list[Finding] = []
-    with _paused_garbage_collection():
+    with paused_garbage_collection():
         for path in model_files(_flat(paths)):
             try:
                 results.append(read(path, read_text(path, max_size)))
@@ -50,22 +49,6 @@ def load(*paths: StrPath | Iterable[StrPath], max_size: int = MAX_SIZE) -> Model
         model = Model(result.document for result in results)
         model.findings = tuple(resolve(results))
     return model
-
-
-@contextmanager
-def _paused_garbage_collection() -> Iterator[None]:
-    """Reading makes many objects and no garbage: scanning them again and again would take half of the time."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-        if was_enabled and not gc.get_freeze_count():
-            # Moves the new objects to the oldest generation, unscanned; else the first collection would go through them all.
-            gc.freeze()
-            gc.unfreeze()
-    finally:
-        if was_enabled:
-            gc.enable()
 
 
 def _flat(paths: Iterable[StrPath | Iterable[StrPath]]) -> Iterator[StrPath]:
