@@ -28,9 +28,11 @@ gen: $(READY)
 	$(BIN)/python tools/generate_metamodel.py
 	$(BIN)/python tools/generate_schemas.py
 	$(BIN)/python tools/generate_app_schema.py
+	$(BIN)/python tools/generate_app_reference.py
 	$(BIN)/python samples/executor.py samples/executor.amxmi
 	for sample in samples/*.yaml; do $(BIN)/amuros build $$sample --output json=/dev/null; done
 	$(BIN)/python tools/draw_terminal.py docs/images/info.svg info executor.amxmi
+	$(BIN)/python tools/draw_terminal.py docs/images/build.svg build bodas-test-advanced.yaml
 
 bench: $(READY)
 	$(BIN)/python -m pip install --quiet --editable '.[bench]'

@@ -5,8 +5,9 @@
 >>> model[amuros.Task, "Executor_Task"].multiple_task_activation_limit = 2  # doctest: +SKIP
 >>> amuros.save(model, "app.amxmi")                                         # doctest: +SKIP
 
-The names of this module are the public interface: `load` and `save`, the model and its documents, findings and errors, and every
-AMALTHEA class and enumeration.
+The names of this module are the public interface: `load` and `save`, the model and its documents, findings and errors, every
+AMALTHEA class and enumeration; `build` and `describe` for an `app.yaml`, `extract` and `build_model` between AMALTHEA models and
+systems of the generic performance model.
 """
 
 from __future__ import annotations
@@ -15,6 +16,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from amalthea_uros.bridge.build import build_model as build_model
+    from amalthea_uros.bridge.extract import Extraction as Extraction
+    from amalthea_uros.bridge.extract import extract as extract
     from amalthea_uros.diagnostics import Finding as Finding
     from amalthea_uros.diagnostics import Location as Location
     from amalthea_uros.errors import AmurosError as AmurosError
@@ -25,6 +29,10 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Document as Document
     from amalthea_uros.metamodel.model import Model as Model
     from amalthea_uros.metamodel.model import Reference as Reference
+    from amalthea_uros.pipeline import Built as Built
+    from amalthea_uros.pipeline import build as build
+    from amalthea_uros.pipeline import describe as describe
+    from amalthea_uros.uros.assemble import Assembly as Assembly
     from amalthea_uros.xmi.load import load as load
     from amalthea_uros.xmi.save import save as save
 
@@ -42,6 +50,13 @@ _HOMES = {
     "Reference": "metamodel.model",
     "load": "xmi.load",
     "save": "xmi.save",
+    "Assembly": "uros.assemble",
+    "Built": "pipeline",
+    "Extraction": "bridge.extract",
+    "build": "pipeline",
+    "build_model": "bridge.build",
+    "describe": "pipeline",
+    "extract": "bridge.extract",
 }
 
 

@@ -58,7 +58,7 @@ def build(path: StrPath, version: str | None = None, platform: str | None = None
     ------
     ReadError : the file cannot be read, or something in it is wrong; carries a finding for each mistake.
     """
-    from amalthea_uros.bridge.build import build as build_model
+    from amalthea_uros.bridge.build import build_model
 
     with paused_garbage_collection():
         assembly = describe(path, platform)

@@ -31,7 +31,7 @@ from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.system import System
 
 
-def build(system: System, version: str | None = None) -> Model:
+def build_model(system: System, version: str | None = None) -> Model:
     """The AMALTHEA model of a system.
 
     Parameters

@@ -136,7 +136,7 @@ class Initialisation(Section):
     """How long the agent takes for an answer; left out: only the least number of cycles is known."""
 
 
-class Limits(Section):
+class PoolSizes(Section):
     """Static pools of rmw_microxrcedds, by the names of its build options."""
 
     RMW_UXRCE_MAX_SESSIONS: Count | None = None
@@ -174,5 +174,5 @@ class Middleware(Section):
     """The way to the agent."""
     initialisation: Initialisation = Field(default_factory=Initialisation)
     """Creation of the entities."""
-    limits: Limits = Field(default_factory=Limits)
+    limits: PoolSizes = Field(default_factory=PoolSizes)
     """Static pools."""

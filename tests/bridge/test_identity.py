@@ -7,7 +7,7 @@ from support import ROOT, corpus, hand_written
 from system_strategies import systems
 
 from amalthea_uros import pipeline
-from amalthea_uros.bridge.build import build
+from amalthea_uros.bridge.build import build_model
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.cli.build import VERSIONS
 from amalthea_uros.errors import WriteError
@@ -19,7 +19,7 @@ SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 
 
 def there_and_back(system, path, version=None):
-    save(build(system, version), path)
+    save(build_model(system, version), path)
     extraction = extract(load(path))
     assert extraction.findings == ()
     return extraction.system
@@ -59,7 +59,7 @@ def test_a_sample_comes_back_from_every_version(sample, version, file):
     system = pipeline.describe(sample).system
     if sample.stem == "drive-and-lift" and version == "1.2.0":
         with pytest.raises(WriteError, match="Task_Log: the scheduling parameter 'deadline' cannot"):
-            build(system, version)
+            build_model(system, version)
         return
     assert there_and_back(system, file, version) == system
     assert validate(file.read_bytes(), version) == []

@@ -1,0 +1,95 @@
+"""Generate `docs/app-yaml-reference.md` from the sections of the package.
+
+Usage: python tools/generate_app_reference.py [TARGET]
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from templating import ROOT
+
+from amalthea_uros.spec.schema import json_schema
+
+HEAD = """# All keys of app.yaml
+
+Generated from the JSON Schema that `amuros schema` prints. A key in **bold** has to be stated. Times, sizes, rates and frequencies
+carry their unit: `10 ms`, `4 B`, `250 kbit/s`, `50 Hz`.
+"""
+
+#: Patterns tell the quantity by its smallest unit.
+QUANTITIES = {"ps": "time", "Hz": "frequency", "B/s": "bit rate", "B": "size"}
+
+
+def main(target: Path) -> None:
+    schema = json_schema()
+    named = (line for name in order(schema) for line in of_definition(name, schema))
+    parts = [HEAD, *section("The file", schema, schema), *named]
+    (target / "app-yaml-reference.md").write_text("\n".join(parts).rstrip() + "\n", encoding="utf-8")
+
+
+def order(schema: dict[str, Any]) -> Iterator[str]:
+    """Sections as they are met from the top."""
+    waiting, seen = references(schema["properties"]), set()
+    while waiting:
+        name = waiting.pop(0)
+        if name not in seen:
+            seen.add(name)
+            yield name
+            waiting += references(schema["definitions"][name])
+
+
+def references(schema: Any) -> list[str]:
+    """The names of the sections that a schema refers to."""
+    return [part.partition('"')[0] for part in json.dumps(schema).split("#/definitions/")[1:]]
+
+
+def of_definition(name: str, schema: dict[str, Any]) -> Iterator[str]:
+    """A section by its name."""
+    found = schema["definitions"][name]
+    whole = found["anyOf"][-1] if "anyOf" in found else found
+    yield from section(name, whole | {"description": found.get("description", "")}, schema)
+
+
+def section(title: str, schema: dict[str, Any], whole: dict[str, Any]) -> Iterator[str]:
+    """A heading, what it is about, and a table of its keys; a key without a description has that of its section."""
+    yield f"## {title}\n"
+    yield f"{schema.get('description', '')}\n"
+    yield "| key | value | meaning |"
+    yield "|---|---|---|"
+    for key, value in schema["properties"].items():
+        shown = f"**`{key}`**" if key in schema.get("required", ()) else f"`{key}`"
+        behind = next((whole["definitions"][name].get("description", "") for name in references(value)), "")
+        yield f"| {shown} | {kind(value)} | {value.get('description') or behind} |"
+    yield ""
+
+
+def kind(schema: dict[str, Any]) -> str:
+    """What kind of value it is, in a word or two."""
+    if "allOf" in schema:
+        return kind(schema["allOf"][0])
+    if "$ref" in schema:
+        name = schema["$ref"].rpartition("/")[2]
+        return f"[{name}](#{name.lower()})"
+    if "anyOf" in schema:
+        return " or ".join(kind(item) for item in schema["anyOf"])
+    if "enum" in schema:
+        return ", ".join(f"`{item}`" for item in schema["enum"])
+    if "const" in schema:
+        return f"`{schema['const']}`"
+    if "pattern" in schema:
+        units = schema["pattern"].rpartition("(")[2].partition(")")[0].split("|")
+        return QUANTITIES[units[0]]
+    if schema.get("type") == "array":
+        return f"list of {kind(schema['items'])}"
+    if schema.get("type") == "object":
+        return f"{kind(schema['additionalProperties'])} by name"
+    return {"string": "text", "integer": "number", "number": "number", "boolean": "true, false"}[schema["type"]]
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs")
