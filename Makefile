@@ -37,6 +37,7 @@ gen: $(READY)
 bench: $(READY)
 	$(BIN)/python -m pip install --quiet --editable '.[bench]'
 	$(BIN)/python benchmarks/load_save.py
+	$(BIN)/python benchmarks/build.py
 
 # The pages are Markdown; their examples are executed and their output is compared.
 docs: $(READY)

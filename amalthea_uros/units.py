@@ -146,13 +146,9 @@ _RATE_STEPS = (("Gbit/s", 10**9), ("Mbit/s", 10**6), ("kbit/s", 10**3), ("bit/s"
 
 def _steps_text(value: Fraction | int, steps: tuple[tuple[str, int], ...]) -> str:
     """The value in the biggest unit in which it is at least 1, with as many decimals as it has."""
-    exact = Fraction(value)
-    unit, size = next((step for step in steps if abs(exact) >= step[1]), steps[-1])
-    number = exact / size
-    if number.denominator == 1:
-        return f"{number.numerator} {unit}"
-    text = f"{float(number):.12g}"
-    return f"{text} {unit}"
+    unit, size = next((step for step in steps if value >= step[1] or -value >= step[1]), steps[-1])
+    whole, rest = divmod(value, size)
+    return f"{float(Fraction(value) / size):.12g} {unit}" if rest else f"{whole} {unit}"
 
 
 def time_text(value: Time) -> str:
