@@ -1,0 +1,221 @@
+"""Event models: how many arrivals there can be in a window (eta+), and how close they can be (delta-).
+
+After K. Richter, "Compositional Scheduling Analysis Using Standard Event Models", TU Braunschweig, 2005. A window is half open: an
+arrival at its end does not count.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from amalthea_uros.units import Time
+
+#: Longer than anything: the distance of arrivals that never come.
+NEVER: Time = 2**62
+
+
+class Arrivals:
+    """Arrivals of which the density is bounded; subclasses give `span` and `rate`."""
+
+    def span(self, count: int) -> Time:
+        """Delta-: the least time from the first to the last of so many consecutive arrivals."""
+        raise NotImplementedError
+
+    @property
+    def rate(self) -> Fraction:
+        """The most arrivals per time in the long run."""
+        raise NotImplementedError
+
+    def most(self, window: Time) -> int:
+        """Eta+: the most arrivals in a window of that length."""
+        if window <= 0:
+            return 0
+        above = 2
+        while self.span(above) < window:
+            above *= 2
+        below = above // 2
+        # span(below) < window <= span(above), where a single arrival always fits.
+        while above - below > 1:
+            middle = (below + above) // 2
+            below, above = (middle, above) if self.span(middle) < window else (below, middle)
+        return below
+
+
+@dataclass(frozen=True)
+class Periodic(Arrivals):
+    """Periodic with jitter and least distance.
+
+    Attributes
+    ----------
+    sporadic : whether arrivals may also stay away; the period is then the least time between two of them
+    """
+
+    period: Time
+    jitter: Time = 0
+    distance: Time = 0
+    sporadic: bool = False
+
+    def span(self, count: int) -> Time:
+        """See `Arrivals`."""
+        return max(0, (count - 1) * self.distance, (count - 1) * self.period - self.jitter) if count > 1 else 0
+
+    def most(self, window: Time) -> int:
+        """See `Arrivals`."""
+        if window <= 0:
+            return 0
+        count = -(-(window + self.jitter) // self.period)
+        return min(count, -(-window // self.distance)) if self.distance else count
+
+    @property
+    def rate(self) -> Fraction:
+        """See `Arrivals`."""
+        return Fraction(1, self.period)
+
+
+@dataclass(frozen=True)
+class Pattern(Arrivals):
+    """A list of arrivals that repeats: bursts and synthetic stimuli.
+
+    Attributes
+    ----------
+    times : rising, within the period
+    """
+
+    period: Time
+    times: tuple[Time, ...]
+
+    def span(self, count: int) -> Time:
+        """See `Arrivals`."""
+        rounds, steps = divmod(count - 1, len(self.times))
+        twice = (*self.times, *(time + self.period for time in self.times))
+        return rounds * self.period + min(twice[i + steps] - twice[i] for i in range(len(self.times)))
+
+    @property
+    def rate(self) -> Fraction:
+        """See `Arrivals`."""
+        return Fraction(len(self.times), self.period)
+
+
+@dataclass(frozen=True)
+class Curve(Arrivals):
+    """Arrivals of which only least distances are given, for some counts.
+
+    Attributes
+    ----------
+    distances : (count, least time that so many consecutive arrivals span)
+    """
+
+    distances: tuple[tuple[int, Time], ...]
+
+    @cached_property
+    def _best(self) -> tuple[int, Time]:
+        """The entry that is densest in the long run, as (steps, time)."""
+        return max(((count - 1, time) for count, time in self.distances), key=lambda entry: Fraction(entry[1], entry[0]))
+
+    def span(self, count: int) -> Time:
+        """See `Arrivals`; distances add up over consecutive groups of arrivals."""
+        steps_at_once, time = self._best
+        rounds, rest = divmod(max(0, count - 1), steps_at_once)
+        # Beyond the first rounds the densest entry is repeated; the rest is put together in the best way.
+        return rounds * time + self._put_together(rest) if rounds else self._put_together(rest)
+
+    def _put_together(self, steps: int) -> Time:
+        best = [0] * (steps + 1)
+        for reached in range(1, steps + 1):
+            usable = [(count - 1, time) for count, time in self.distances if count - 1 <= reached]
+            best[reached] = max((best[reached - step] + time for step, time in usable), default=best[reached - 1])
+        return best[steps]
+
+    @property
+    def rate(self) -> Fraction:
+        """See `Arrivals`."""
+        steps, time = self._best
+        return Fraction(steps, time) if time else Fraction(NEVER)
+
+
+@dataclass(frozen=True)
+class Once(Arrivals):
+    """A single arrival."""
+
+    def span(self, count: int) -> Time:
+        """See `Arrivals`."""
+        return 0 if count < 2 else NEVER
+
+    @property
+    def rate(self) -> Fraction:
+        """See `Arrivals`."""
+        return Fraction(0)
+
+
+@dataclass(frozen=True)
+class Every(Arrivals):
+    """Only every n-th of other arrivals."""
+
+    arrivals: Arrivals
+    prescaler: int
+
+    def span(self, count: int) -> Time:
+        """See `Arrivals`."""
+        return self.arrivals.span((count - 1) * self.prescaler + 1) if count > 1 else 0
+
+    @property
+    def rate(self) -> Fraction:
+        """See `Arrivals`."""
+        return self.arrivals.rate / self.prescaler
+
+
+@dataclass(frozen=True)
+class Delayed(Arrivals):
+    """Arrivals behind something that takes a varying time.
+
+    Attributes
+    ----------
+    variation : greatest minus least delay
+    distance : least time between two of them
+    """
+
+    arrivals: Arrivals
+    variation: Time
+    distance: Time = 0
+
+    def span(self, count: int) -> Time:
+        """See `Arrivals`."""
+        return max(0, (count - 1) * self.distance, self.arrivals.span(count) - self.variation) if count > 1 else 0
+
+    @property
+    def rate(self) -> Fraction:
+        """See `Arrivals`."""
+        return self.arrivals.rate
+
+
+@dataclass(frozen=True)
+class Together(Arrivals):
+    """Arrivals from several sources that do not know of each other."""
+
+    sources: tuple[Arrivals, ...]
+
+    def most(self, window: Time) -> int:
+        """See `Arrivals`."""
+        return sum(source.most(window) for source in self.sources)
+
+    def span(self, count: int) -> Time:
+        """See `Arrivals`."""
+        if count <= 1 or self.most(1) >= count:
+            return 0
+        above = 1
+        while self.most(above + 1) < count:
+            above *= 2
+            if above >= NEVER:
+                return NEVER
+        below = above // 2
+        while above - below > 1:
+            middle = (below + above) // 2
+            below, above = (below, middle) if self.most(middle + 1) >= count else (middle, above)
+        return above
+
+    @property
+    def rate(self) -> Fraction:
+        """See `Arrivals`."""
+        return sum((source.rate for source in self.sources), Fraction(0))

@@ -1,0 +1,100 @@
+"""Response times under fixed priorities with preemption, for arbitrary deadlines.
+
+The level-i busy window of J. P. Lehoczky, "Fixed priority scheduling of periodic task sets with arbitrary deadlines", RTSS 1990, with
+jitter and blocking after K. Tindell, A. Burns and A. J. Wellings, "An extendible approach for analysing fixed priority hard real-time
+tasks", Real-Time Systems 6, 1994: the q-th job of the window ends at the least w with
+
+    w = B + C(q) + sum over higher priorities of C_j(eta_j(w))
+
+and its response time is w minus the least time at which it can arrive. Jobs are looked at until one ends before the next can arrive.
+For tasks that cannot be interrupted see `non_preemptive`.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from amalthea_uros.analyze.best_case import best_response
+from amalthea_uros.analyze.busy_window import Interference
+from amalthea_uros.analyze.task import Claim, Response, Task
+from amalthea_uros.units import Time
+
+METHOD = "busy window, fixed priorities, preemptive"
+SOURCE = "Lehoczky 1990; Tindell, Burns, Wellings 1994"
+#: Busy windows with more jobs are given up; the load is then so near to 1 that the result would mean nothing.
+MOST_JOBS = 200_000
+
+
+def response_times(tasks: Sequence[Task], blocking: Sequence[Time]) -> list[Response]:
+    """The response times of all tasks of a processor, in the order given.
+
+    Parameters
+    ----------
+    blocking : the longest that each task can wait for a task of lower priority
+    """
+    order = sorted(range(len(tasks)), key=lambda index: -tasks[index].priority)
+    ordered = [tasks[index] for index in order]
+    interference = Interference.of_first(ordered)
+    sharers = Counter(task.priority for task in tasks)
+    found: dict[int, Response] = {}
+    start: Time = 0
+    for position, index in enumerate(order):
+        task = tasks[index]
+        if sharers[task.priority] == 1:
+            claim = Claim.BOUND if blocking[index] else Claim.EXACT
+            found[index], start = response_time(task, interference[position], blocking[index], start, claim)
+        else:
+            # Tasks of the same priority are served in the order of their arrival; that all others come first is a safe bound.
+            others = [other for other in ordered if other.priority >= task.priority and other is not task]
+            found[index], start = response_time(task, Interference.of(others), blocking[index])[0], 0
+    return [found[index] for index in range(len(tasks))]
+
+
+def response_time(
+    task: Task, higher: Interference, blocking: Time = 0, start: Time = 0, claim: Claim = Claim.BOUND
+) -> tuple[Response, Time]:
+    """The response time of a task, and a lower bound for the windows of tasks below it.
+
+    Parameters
+    ----------
+    start : a lower bound of the first window, such as that of the next higher task
+    """
+    best = best_response(task, higher)
+    if higher.overloads_with(task):
+        rate = higher.rate + float(task.cost.mean_worst * task.arrivals.rate)
+        return _unbounded(best, f"the demand up to this priority is {rate:.1%} of the processor"), start
+    worst, worst_window, worst_job = -1, 0, 0
+    window = first_window = 0
+    for job in range(1, MOST_JOBS):
+        found = higher.window(blocking + task.cost.most(job), window if job > 1 else start)
+        if found is None:
+            break
+        window = found
+        first_window = first_window or window
+        if window - task.arrivals.span(job) > worst:
+            worst, worst_window, worst_job = window - task.arrivals.span(job), window, job
+        if window <= task.arrivals.span(job + 1):
+            own = task.cost.most(worst_job)
+            response = Response(
+                worst=worst,
+                best=best,
+                method=METHOD,
+                source=SOURCE,
+                claim=claim,
+                jobs=job,
+                window=worst_window,
+                # The least fixed point is equal to the demand in it, so that the terms add up.
+                terms={
+                    "own": own,
+                    "interference": worst_window - own - blocking,
+                    "blocking": blocking,
+                    "earlier arrival": -task.arrivals.span(worst_job),
+                },
+            )
+            return response, first_window
+    return _unbounded(best, "the busy window does not end: the demand up to this priority fills the processor"), start
+
+
+def _unbounded(best: Time, reason: str) -> Response:
+    return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)

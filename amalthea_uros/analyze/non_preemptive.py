@@ -1,0 +1,79 @@
+"""Response times of tasks that cannot be interrupted, and of CAN frames.
+
+After R. I. Davis, A. Burns, R. J. Bril and J. J. Lukkien, "Controller Area Network (CAN) schedulability analysis: Refuted, revisited
+and revised", Real-Time Systems 35, 2007, section 3: all jobs of the busy period are looked at, since a later one may wait longer than
+the first, because its predecessor pushes higher priorities into it. The q-th job starts at the least w with
+
+    w = B + C(q - 1) + sum over higher priorities of C_j(eta_j(w + step))
+
+where step is the shortest time after which an arrival is too late: one bit on CAN, one unit of time on a processor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from amalthea_uros.analyze.busy_window import Interference
+from amalthea_uros.analyze.fixed_priority import MOST_JOBS
+from amalthea_uros.analyze.task import Claim, Response, Task
+from amalthea_uros.units import Time
+
+METHOD = "busy period, fixed priorities, non-preemptive"
+SOURCE = "Davis, Burns, Bril, Lukkien 2007"
+
+
+def response_times(tasks: Sequence[Task], step: Time = 1) -> list[Response]:
+    """The response times of tasks of which none interrupts another one, in the order given."""
+    found = []
+    for task in tasks:
+        higher = [other for other in tasks if other is not task and other.priority >= task.priority]
+        lower = [other for other in tasks if other.priority < task.priority]
+        found.append(response_time(task, higher, max((other.cost.worst for other in lower), default=0), step))
+    return found
+
+
+def response_time(task: Task, higher: Sequence[Task], blocking: Time, step: Time = 1) -> Response:
+    """The response time of a task that cannot be interrupted, among others that may interrupt each other or not."""
+    others = Interference.of(higher)
+    if others.overloads_with(task):
+        rate = others.rate + float(task.cost.mean_worst * task.arrivals.rate)
+        return _unbounded(task, f"the demand up to this priority is {rate:.1%} of the capacity")
+    period = Interference.of([*higher, task]).window(blocking, 0)
+    if period is None or (jobs := task.arrivals.most(period)) > MOST_JOBS:
+        return _unbounded(task, "the busy period does not end: the demand up to this priority fills the capacity")
+    worst, worst_start, worst_job, start = -1, 0, 1, 0
+    for job in range(1, jobs + 1):
+        start = _start(others, blocking + task.cost.most(job) - task.cost.worst, start, step)
+        response = start + task.cost.worst - task.arrivals.span(job)
+        if response > worst:
+            worst, worst_start, worst_job = response, start, job
+    own = task.cost.most(worst_job)
+    return Response(
+        worst=worst,
+        best=task.cost.best,
+        method=METHOD,
+        source=SOURCE,
+        claim=Claim.EXACT,
+        jobs=jobs,
+        window=worst_start + task.cost.worst,
+        terms={
+            "own": own,
+            "interference": worst_start + task.cost.worst - own - blocking,
+            "blocking": blocking,
+            "earlier arrival": -task.arrivals.span(worst_job),
+        },
+    )
+
+
+def _unbounded(task: Task, reason: str) -> Response:
+    return Response(worst=None, best=task.cost.best, method=METHOD, source=SOURCE, reason=reason)
+
+
+def _start(others: Interference, before: Time, lower: Time, step: Time) -> Time:
+    """The least time at which everything before is done and nothing of higher priority has arrived."""
+    start = max(before, lower)
+    while True:
+        reached = before + others.in_window(start + step)
+        if reached <= start:
+            return start
+        start = reached

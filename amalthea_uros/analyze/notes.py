@@ -1,0 +1,25 @@
+"""What an analysis has to say about a system: assumptions, and what it could not take into account."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.perf.named import Named
+
+
+@dataclass(slots=True)
+class Notes:
+    """Collects findings and assumptions, each of them once."""
+
+    found: dict[Finding, None] = field(default_factory=dict)
+    assumptions: dict[str, None] = field(default_factory=dict)
+
+    def warning(self, rule: str, message: str, item: Named | None) -> None:
+        """Something that the analysis cannot take into account as it is."""
+        name = item.name if item else ""
+        self.found[Finding(rule, Severity.WARNING, message, item.origin if item else None, object=name)] = None
+
+    def assume(self, sentence: str) -> None:
+        """An assumption on which the results rest."""
+        self.assumptions[sentence] = None

@@ -1,0 +1,63 @@
+"""What the response-time analyses know of a process, and what they tell of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from amalthea_uros.analyze.arrivals import Arrivals
+from amalthea_uros.analyze.cost import Cost
+from amalthea_uros.units import Time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """A process on one processor.
+
+    Attributes
+    ----------
+    priority : higher numbers are served first
+    region : the longest stretch that tasks of higher priority cannot interrupt; its whole cost if it is not preemptive
+    deadline : relative to the arrival
+    """
+
+    name: str
+    arrivals: Arrivals
+    cost: Cost
+    priority: int = 0
+    region: Time = 0
+    preemptive: bool = True
+    deadline: Time | None = None
+
+
+class Claim(StrEnum):
+    """What a number claims."""
+
+    EXACT = "exact"
+    BOUND = "bound"
+    OBSERVED = "observed"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Response:
+    """The response time of a task, from its arrival to its end.
+
+    Attributes
+    ----------
+    worst : None if there is no finite bound, and then `reason` says why
+    best : least response time that is possible
+    jobs : how many jobs of the busy window were looked at
+    window : length of the busy window up to the end of the worst job
+    terms : what the worst case is made of: own, interference, blocking; it is their sum
+    """
+
+    worst: Time | None
+    best: Time
+    method: str
+    source: str
+    claim: Claim = Claim.EXACT
+    jobs: int = 1
+    window: Time = 0
+    terms: Mapping[str, Time] = field(default_factory=dict)
+    reason: str = ""
