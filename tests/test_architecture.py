@@ -22,6 +22,7 @@ PACKAGE = "amalthea_uros"
         ("metamodel", ("diagnostics",)),
         ("difference", ("metamodel",)),
         ("xmi", ("diagnostics", "errors", "garbage", "resources", "metamodel")),
+        ("analyze", ("perf", "units", "diagnostics")),
         ("pipeline", ("bridge", "garbage", "metamodel", "spec", "uros")),
         ("report", ("diagnostics", "metamodel", "difference", "perf", "units", "uros", "pipeline")),
     ],

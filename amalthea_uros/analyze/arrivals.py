@@ -88,6 +88,8 @@ class Pattern(Arrivals):
 
     def span(self, count: int) -> Time:
         """See `Arrivals`."""
+        if count < 2:
+            return 0
         rounds, steps = divmod(count - 1, len(self.times))
         twice = (*self.times, *(time + self.period for time in self.times))
         return rounds * self.period + min(twice[i + steps] - twice[i] for i in range(len(self.times)))
@@ -173,16 +175,45 @@ class Delayed(Arrivals):
     Attributes
     ----------
     variation : greatest minus least delay
-    distance : least time between two of them
     """
 
     arrivals: Arrivals
     variation: Time
-    distance: Time = 0
 
     def span(self, count: int) -> Time:
         """See `Arrivals`."""
-        return max(0, (count - 1) * self.distance, self.arrivals.span(count) - self.variation) if count > 1 else 0
+        return max(0, self.arrivals.span(count) - self.variation) if count > 1 else 0
+
+    @property
+    def rate(self) -> Fraction:
+        """See `Arrivals`."""
+        return self.arrivals.rate
+
+
+@dataclass(frozen=True)
+class Behind(Arrivals):
+    """The ends of the jobs of a task.
+
+    The q-th job of a busy window ends at its completion at the latest, and the one `count` - 1 later arrives at its span at the
+    earliest and takes the best response time: so close two ends can be (S. Schliecker, J. Rox, M. Ivers, R. Ernst, "Providing accurate
+    event models for the analysis of heterogeneous multiprocessor systems", CODES+ISSS 2008).
+
+    Attributes
+    ----------
+    completions : when the jobs of the longest busy window end at the latest, from its start
+    best : best-case response time
+    """
+
+    arrivals: Arrivals
+    completions: tuple[Time, ...]
+    best: Time
+
+    def span(self, count: int) -> Time:
+        """See `Arrivals`."""
+        if count < 2:
+            return 0
+        ends = enumerate(self.completions, start=1)
+        return max(0, min(self.arrivals.span(job + count - 1) - end for job, end in ends) + self.best)
 
     @property
     def rate(self) -> Fraction:

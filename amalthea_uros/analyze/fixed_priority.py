@@ -65,13 +65,14 @@ def response_time(
         rate = higher.rate + float(task.cost.mean_worst * task.arrivals.rate)
         return _unbounded(best, f"the demand up to this priority is {rate:.1%} of the processor"), start
     worst, worst_window, worst_job = -1, 0, 0
-    window = first_window = 0
+    window = 0
+    completions: list[Time] = []
     for job in range(1, MOST_JOBS):
         found = higher.window(blocking + task.cost.most(job), window if job > 1 else start)
         if found is None:
             break
         window = found
-        first_window = first_window or window
+        completions.append(window)
         if window - task.arrivals.span(job) > worst:
             worst, worst_window, worst_job = window - task.arrivals.span(job), window, job
         if window <= task.arrivals.span(job + 1):
@@ -84,6 +85,7 @@ def response_time(
                 claim=claim,
                 jobs=job,
                 window=worst_window,
+                completions=tuple(completions),
                 # The least fixed point is equal to the demand in it, so that the terms add up.
                 terms={
                     "own": own,
@@ -92,7 +94,7 @@ def response_time(
                     "earlier arrival": -task.arrivals.span(worst_job),
                 },
             )
-            return response, first_window
+            return response, completions[0]
     return _unbounded(best, "the busy window does not end: the demand up to this priority fills the processor"), start
 
 

@@ -42,8 +42,10 @@ def response_time(task: Task, higher: Sequence[Task], blocking: Time, step: Time
     if period is None or (jobs := task.arrivals.most(period)) > MOST_JOBS:
         return _unbounded(task, "the busy period does not end: the demand up to this priority fills the capacity")
     worst, worst_start, worst_job, start = -1, 0, 1, 0
+    completions: list[Time] = []
     for job in range(1, jobs + 1):
         start = _start(others, blocking + task.cost.most(job) - task.cost.worst, start, step)
+        completions.append(start + task.cost.worst)
         response = start + task.cost.worst - task.arrivals.span(job)
         if response > worst:
             worst, worst_start, worst_job = response, start, job
@@ -56,6 +58,7 @@ def response_time(task: Task, higher: Sequence[Task], blocking: Time, step: Time
         claim=Claim.EXACT,
         jobs=jobs,
         window=worst_start + task.cost.worst,
+        completions=tuple(completions),
         terms={
             "own": own,
             "interference": worst_start + task.cost.worst - own - blocking,

@@ -49,6 +49,7 @@ class Response:
     best : least response time that is possible
     jobs : how many jobs of the busy window were looked at
     window : length of the busy window up to the end of the worst job
+    completions : when its jobs end at the latest, from its start; empty if that is not known
     terms : what the worst case is made of: own, interference, blocking; it is their sum
     """
 
@@ -59,5 +60,6 @@ class Response:
     claim: Claim = Claim.EXACT
     jobs: int = 1
     window: Time = 0
+    completions: tuple[Time, ...] = ()
     terms: Mapping[str, Time] = field(default_factory=dict)
     reason: str = ""

@@ -1,0 +1,119 @@
+"""Event models: both directions belong together, and no arrivals beat them."""
+
+import json
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from support import SHARED
+
+from amalthea_uros.analyze import fixed_priority, non_preemptive
+from amalthea_uros.analyze.activation import arrivals_of
+from amalthea_uros.analyze.arrivals import Behind, Curve, Delayed, Every, Once, Pattern, Periodic, Together
+from amalthea_uros.analyze.cost import Cost
+from amalthea_uros.analyze.propagation import behind
+from amalthea_uros.analyze.task import Task
+from amalthea_uros.perf import stimuli as perf
+from amalthea_uros.perf.distributions import Uniform
+
+PERIODIC = st.builds(Periodic, st.integers(1, 30), st.integers(0, 80), st.integers(0, 5)).filter(
+    lambda p: p.distance <= p.period
+)
+PATTERN = st.lists(st.integers(0, 19), min_size=1, max_size=4).map(lambda times: Pattern(20, tuple(sorted(times))))
+SIMPLE = st.one_of(PERIODIC, PATTERN, st.just(Once()), st.just(Curve(((2, 3), (4, 20)))))
+MODELS = st.one_of(
+    SIMPLE,
+    st.builds(Every, SIMPLE, st.integers(1, 4)),
+    st.builds(Delayed, SIMPLE, st.integers(0, 30)),
+    st.builds(Behind, SIMPLE, st.just((3, 7)), st.integers(0, 3)),
+    st.lists(SIMPLE, min_size=1, max_size=3).map(lambda models: Together(tuple(models))),
+)
+
+
+@given(MODELS, st.integers(1, 200))
+def test_as_many_arrivals_as_fit(model, window):
+    count = model.most(window)
+    # They span less than the window, and one more would not.
+    assert model.span(count) < window <= model.span(count + 1)
+
+
+@given(MODELS)
+def test_more_arrivals_never_span_less(model):
+    spans = [model.span(count) for count in range(12)]
+    assert spans == sorted(spans)
+    assert spans[:2] == [0, 0]
+
+
+@given(st.integers(1, 10), st.integers(0, 25), st.lists(st.integers(0, 25), min_size=12, max_size=12))
+def test_no_jittering_arrivals_are_denser_than_their_model(period, jitter, delays):
+    times = sorted(index * period + min(delay, jitter) for index, delay in enumerate(delays))
+    model = Periodic(period, jitter)
+    for first in range(12):
+        for last in range(first, 12):
+            assert times[last] - times[first] >= model.span(last - first + 1)
+
+
+@given(PATTERN)
+def test_a_pattern_is_as_dense_as_its_densest_place(pattern):
+    times = [time + 20 * k for k in range(6) for time in pattern.times]
+    for count in range(2, 2 * len(pattern.times) + 2):
+        densest = min(times[i + count - 1] - times[i] for i in range(len(pattern.times)))
+        assert pattern.span(count) == densest
+
+
+@pytest.mark.parametrize(
+    ("stimulus", "model"),
+    [
+        (perf.Periodic(name="s", period=10, offset=3), Periodic(10)),
+        (perf.Periodic(name="s", period=10, jitter=Uniform(lower=-1, upper=3), min_distance=2), Periodic(10, 4, 2)),
+        (perf.RelativePeriodic(name="s", distance=Uniform(lower=5, upper=9)), Periodic(5, sporadic=True)),
+        # Offset 5, period 10, length 5, distance 2, count 3: 5, 7, 9, 15, 17, 19 ...
+        (perf.Burst(name="s", offset=5, period=10, length=5, distance=2, count=3), Pattern(10, (0, 2, 4))),
+        # The third occurrence would lie behind the burst.
+        (perf.Burst(name="s", period=10, length=4, distance=2, count=3), Pattern(10, (0, 2))),
+        (perf.Synthetic(name="s", period=10, times=(7, 1)), Pattern(10, (1, 7))),
+        (perf.Single(name="s", time=4), Once()),
+        (
+            perf.ArrivalCurve(
+                name="s", points=(perf.ArrivalCurvePoint(occurrences=2, lower=3), perf.ArrivalCurvePoint(occurrences=3))
+            ),
+            Curve(((2, 3),)),
+        ),
+        (perf.RelativePeriodic(name="s", distance=Uniform(lower=0, upper=9)), None),
+        (perf.InterProcess(name="s"), None),
+        (perf.Custom(name="s"), None),
+    ],
+)
+def test_stimuli(stimulus, model):
+    assert arrivals_of(stimulus) == model
+
+
+def test_the_tutorial_of_compositional_analysis():
+    """Two tasks trigger two messages on a bus, which trigger two tasks (pyCPA's tutorial)."""
+    path = SHARED / "vectors" / "compositional.json"
+    if not path.exists():
+        pytest.skip("the vectors are not at hand")
+    case = json.loads(path.read_text())
+    arrivals = {name: Periodic(source["P"], source["J"]) for name, source in case["sources"].items()}
+    worst = {}
+    for resource, analysis in (
+        ("CPU1", lambda tasks: fixed_priority.response_times(tasks, [0] * len(tasks))),
+        ("BUS", non_preemptive.response_times),
+        ("CPU2", lambda tasks: fixed_priority.response_times(tasks, [0] * len(tasks))),
+    ):
+        tasks = [
+            # Lower numbers are more important there.
+            Task(
+                name=t["name"], arrivals=arrivals[t["name"]], cost=Cost.constant(t["wcet"], t["bcet"]), priority=-t["priority"]
+            )
+            for t in case["tasks"]
+            if t["resource"] == resource
+        ]
+        for task, response in zip(tasks, analysis(tasks), strict=True):
+            worst[task.name] = response.worst
+            for chain in case["precedence"]:
+                if task.name in chain[:-1]:
+                    follower = chain[chain.index(task.name) + 1]
+                    arrivals[follower] = behind(task.arrivals, replace(response, best=task.cost.best))
+    assert worst == case["expected_wcrt"]

@@ -1,0 +1,220 @@
+"""Response times against published examples, independent tools, and brute force."""
+
+import json
+from fractions import Fraction
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from support import SHARED
+
+from amalthea_uros.analyze import fixed_priority, non_preemptive, schedule
+from amalthea_uros.analyze.arrivals import Periodic
+from amalthea_uros.analyze.cost import Cost, Part
+from amalthea_uros.analyze.schedule import Released
+from amalthea_uros.analyze.task import Task
+
+
+def vectors(name, accept=lambda case: True):
+    path = SHARED / "vectors" / f"{name}.json"
+    if not path.exists():
+        return [pytest.param(None, marks=pytest.mark.skip("the vectors are not at hand"))]
+    return [pytest.param(case, id=case["id"]) for case in json.loads(path.read_text())["cases"] if accept(case)]
+
+
+def tasks_of(case):
+    return [
+        Task(
+            name=task["name"],
+            arrivals=Periodic(task["period"], task.get("jitter", 0)),
+            cost=Cost.constant(task["wcet"]),
+            priority=-task["priority"],
+        )
+        for task in case["tasks"]
+    ]
+
+
+@pytest.mark.parametrize("case", [*vectors("textbook", lambda case: "tasks" in case), *vectors("rta_random")])
+def test_published_and_independent_figures(case):
+    tasks = tasks_of(case)
+    if "non_preemptive" in case["scheduling"]:
+        found = non_preemptive.response_times(tasks, case["bit_time"])
+    else:
+        found = fixed_priority.response_times(tasks, [task.get("blocking", 0) for task in case["tasks"]])
+    worst = [response.worst for response in found]
+    if case.get("wcrt_measured_from") == "arrival_before_jitter":
+        worst = [response + task["jitter"] for response, task in zip(worst, case["tasks"], strict=True)]
+    assert worst == case["expected_wcrt"]
+    assert [sum(response.terms.values()) for response in found] == [response.worst for response in found]
+
+
+def test_lehoczky_1990_has_its_worst_response_at_the_fifth_job():
+    t1 = Task(name="t1", arrivals=Periodic(70), cost=Cost.constant(26), priority=2)
+    t2 = Task(name="t2", arrivals=Periodic(100), cost=Cost.constant(62), priority=1)
+    _, response = fixed_priority.response_times([t1, t2], [0, 0])
+    assert (response.worst, response.jobs) == (118, 7)
+    assert response.terms["earlier arrival"] == -4 * 100
+
+
+def test_davis_2007_a_later_frame_waits_longest():
+    # The example by which the older analysis is refuted, in bits of 1/125 of a millisecond: 1, 1, 1 ms every 2.5, 3.5, 3.5 ms.
+    frames = [
+        Task(name=name, arrivals=Periodic(period), cost=Cost.constant(1000), priority=priority)
+        for name, period, priority in (("A", 2500, 3), ("B", 3500, 2), ("C", 3500, 1))
+    ]
+    assert [response.worst for response in non_preemptive.response_times(frames)] == [2000, 3000, 3500]
+
+
+@pytest.mark.parametrize("case", vectors("schedules"))
+def test_schedules_job_by_job(case):
+    tasks = [
+        Released(name=t["name"], period=t["period"], offset=t["offset"], cost=Cost.constant(t["wcet"]), priority=-t["priority"])
+        for t in case["tasks"]
+    ]
+    found = schedule.schedule(tasks, case["simulated_until"], Cost.worst_of)
+    jobs = {task.name: [[j.release, j.start, j.finish] for j in js] for task, js in zip(tasks, found, strict=True)}
+    assert jobs == case["jobs"]
+
+
+def test_overload_is_a_result_with_a_reason():
+    high = Task(name="high", arrivals=Periodic(10), cost=Cost.constant(6), priority=2)
+    low = Task(name="low", arrivals=Periodic(10), cost=Cost.constant(5), priority=1)
+    first, second = fixed_priority.response_times([high, low], [0, 0])
+    assert first.worst == 6
+    assert second.worst is None
+    assert "110.0%" in second.reason
+    assert all(response.worst is None for response in non_preemptive.response_times([high, low])[1:])
+
+
+def test_a_processor_that_is_exactly_full():
+    high = Task(name="high", arrivals=Periodic(4), cost=Cost.constant(2), priority=2)
+    low = Task(name="low", arrivals=Periodic(8), cost=Cost.constant(4), priority=1)
+    assert [response.worst for response in fixed_priority.response_times([high, low], [0, 0])] == [2, 8]
+
+
+TASKS = st.lists(st.tuples(st.sampled_from([4, 5, 6, 8, 10, 12]), st.integers(1, 4), st.integers(0, 3)), min_size=1, max_size=4)
+
+
+def drawn(rows, jitter=False):
+    return [
+        Task(
+            name=str(index),
+            arrivals=Periodic(period, jittered if jitter else 0),
+            cost=Cost.constant(cost, max(1, cost - 1)),
+            priority=-index,
+        )
+        for index, (period, cost, jittered) in enumerate(rows)
+    ]
+
+
+def load(tasks):
+    return sum((task.cost.mean_worst * task.arrivals.rate for task in tasks), Fraction(0))
+
+
+@given(TASKS)
+def test_the_busy_window_is_the_schedule_of_the_critical_instant(rows):
+    tasks = drawn(rows)
+    assume(load(tasks) <= 1)
+    released = [Released(name=t.name, period=t.arrivals.period, offset=0, cost=t.cost, priority=t.priority) for t in tasks]
+    exact = schedule.response_times(released)
+    bounds = fixed_priority.response_times(tasks, [0] * len(tasks))
+    # Released together, the worst moment is the first one (Liu and Layland 1973).
+    assert [response.worst for response in bounds] == [response.worst for response in exact]
+
+
+@given(TASKS, st.lists(st.integers(0, 12), min_size=4, max_size=4))
+def test_offsets_never_make_it_worse_than_the_bound(rows, offsets):
+    tasks = drawn(rows)
+    assume(load(tasks) <= 1)
+    released = [
+        Released(name=t.name, period=t.arrivals.period, offset=offset, cost=t.cost, priority=t.priority)
+        for t, offset in zip(tasks, offsets, strict=False)
+    ]
+    exact = schedule.response_times(released)
+    for one, bound in zip(exact, fixed_priority.response_times(tasks, [0] * len(tasks)), strict=True):
+        assert bound.best <= one.best <= one.worst <= bound.worst
+
+
+@given(TASKS)
+def test_more_load_never_shortens_a_response_time(rows):
+    tasks = drawn(rows, jitter=True)
+    more = [Task(name=t.name, arrivals=t.arrivals, cost=Cost.constant(t.cost.worst + 1), priority=t.priority) for t in tasks]
+    for less, greater in zip(
+        fixed_priority.response_times(tasks, [0] * len(tasks)),
+        fixed_priority.response_times(more, [0] * len(more)),
+        strict=True,
+    ):
+        assert greater.worst is None or (less.worst is not None and less.worst <= greater.worst)
+
+
+@given(TASKS, st.randoms())
+def test_the_order_of_tasks_does_not_matter(rows, random):
+    tasks = drawn(rows, jitter=True)
+    shuffled = random.sample(tasks, len(tasks))
+    for analysis in (lambda ts: fixed_priority.response_times(ts, [0] * len(ts)), non_preemptive.response_times):
+        by_name = {task.name: response for task, response in zip(tasks, analysis(tasks), strict=True)}
+        assert {task.name: response for task, response in zip(shuffled, analysis(shuffled), strict=True)} == by_name
+
+
+def interrupted_never(tasks, until):
+    """Brute force: jobs served whole, highest priority first, whichever arrived; integer time."""
+    arrivals = sorted(
+        (k * t.arrivals.period, -t.priority, i) for i, t in enumerate(tasks) for k in range(until // t.arrivals.period + 1)
+    )
+    now, waiting, worst = 0, [], [0] * len(tasks)
+    while arrivals or waiting:
+        if not waiting:
+            now = max(now, arrivals[0][0])
+        while arrivals and arrivals[0][0] <= now:
+            waiting.append(arrivals.pop(0))
+        job = min(waiting, key=lambda job: (job[1], job[0]))
+        waiting.remove(job)
+        now += tasks[job[2]].cost.worst
+        worst[job[2]] = max(worst[job[2]], now - job[0])
+    return worst
+
+
+@given(TASKS)
+def test_no_schedule_without_interruption_is_worse_than_its_bound(rows):
+    tasks = drawn(rows)
+    assume(load(tasks) < 1)
+    seen = interrupted_never(tasks, 240)
+    for observed, bound in zip(seen, non_preemptive.response_times(tasks), strict=True):
+        assert observed <= bound.worst
+
+
+class TestDemandThatIsNotTheSameInEachJob:
+    """The executor that takes 12 us, and every 20th time 13 more."""
+
+    EXECUTOR = Cost((Part(worst=12, best=12), Part(worst=13, best=13, prescaler=20)))
+
+    def test_consecutive_jobs(self):
+        assert [self.EXECUTOR.most(count) for count in (1, 2, 20, 21)] == [25, 37, 12 * 20 + 13, 12 * 21 + 26]
+        assert [self.EXECUTOR.least(count) for count in (1, 19, 20)] == [12, 12 * 19, 12 * 20 + 13]
+
+    def test_the_control_function_of_the_thesis(self):
+        # Figures 6.5 and 6.6: 16 us with the simple model; 16 to 29 us with the advanced one.
+        def respond(executor):
+            tasks = [
+                Released(name="executor", period=1000, offset=0, cost=executor, priority=2),
+                Released(name="control", period=1000, offset=0, cost=Cost.constant(4), priority=1),
+            ]
+            return schedule.response_times(tasks)[1]
+
+        simple, advanced = respond(Cost.constant(12)), respond(self.EXECUTOR)
+        assert (simple.best, simple.worst) == (16, 16)
+        assert (advanced.best, advanced.worst) == (16, 29)
+
+    def test_it_is_not_a_25_us_task(self):
+        low = Task(name="low", arrivals=Periodic(10_000), cost=Cost.constant(1000), priority=1)
+        executor = Task(name="executor", arrivals=Periodic(1000), cost=self.EXECUTOR, priority=2)
+        _, response = fixed_priority.response_times([executor, low], [0, 0])
+        # Two activations in the window of 1,037 us, of which one takes a message.
+        assert response.worst == 1000 + 2 * 12 + 13
+
+    @given(st.integers(1, 6), st.integers(1, 5), st.integers(1, 60))
+    def test_no_sequence_of_jobs_costs_more(self, prescaler, extra, count):
+        cost = Cost((Part(worst=3, best=2), Part(worst=extra, best=extra, prescaler=prescaler)))
+        windows = [range(first, first + count) for first in range(1, 2 * prescaler + 1)]
+        assert max(sum(map(cost.worst_of, jobs)) for jobs in windows) == cost.most(count)
+        assert min(sum(map(cost.best_of, jobs)) for jobs in windows) == cost.least(count)
