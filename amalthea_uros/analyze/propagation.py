@@ -16,6 +16,7 @@ from amalthea_uros.analyze.task import Response
 from amalthea_uros.perf.software import Activity, Call, Process, Trigger, walk
 from amalthea_uros.perf.stimuli import Counter, InterProcess
 from amalthea_uros.perf.system import System
+from amalthea_uros.units import Time
 
 
 class UnknownArrivalsError(Exception):
@@ -24,9 +25,16 @@ class UnknownArrivalsError(Exception):
 
 @dataclass(slots=True)
 class Propagation:
-    """The arrivals of all processes, given their response times so far."""
+    """The arrivals of all processes, given their response times so far.
+
+    Attributes
+    ----------
+    least_costs : best-case execution times, as far as they are known
+    triggers : who triggers a stimulus
+    """
 
     system: System
+    least_costs: Mapping[str, Time]
     triggers: dict[str, list[tuple[Process, Counter | None]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -82,13 +90,13 @@ class Propagation:
             return _counted(before, counter)
         if response.worst is None:
             raise UnknownArrivalsError(f"{process.name!r}, which triggers it, has no bounded response time")
-        return _counted(behind(before, response), counter)
+        return _counted(behind(before, response, self.least_costs.get(process.name, 0)), counter)
 
 
-def behind(arrivals: Arrivals, response: Response) -> Arrivals:
-    """The ends of the jobs of a task as arrivals."""
+def behind(arrivals: Arrivals, response: Response, least_cost: Time) -> Arrivals:
+    """The ends of the jobs of a task as arrivals; each of them costs something at least."""
     if response.completions:
-        return Behind(arrivals, response.completions, response.best)
+        return Behind(arrivals, response.completions, response.best, least_cost)
     return Delayed(arrivals, (response.worst or 0) - response.best)
 
 

@@ -92,7 +92,7 @@ class _Analysis:
 
     def respond(self) -> None:
         """Compute all response times, as often as they change the arrivals of others."""
-        propagation = Propagation(self.system)
+        propagation = Propagation(self.system, {name: cost.best for name, cost in self.costs.items()})
         for _ in range(MOST_ROUNDS):
             before = dict(self.responses)
             self._find_arrivals(propagation)
