@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
+from amalthea_uros.diagnostics import Finding
 from amalthea_uros.garbage import paused_garbage_collection
 from amalthea_uros.metamodel.model import Model
+from amalthea_uros.perf.system import System
 from amalthea_uros.uros.assemble import Assembly, assemble
 
 StrPath = str | PathLike[str]
@@ -44,6 +47,24 @@ def describe(path: StrPath, platform: str | None = None) -> Assembly:
     description = read_description(file)
     hardware, name = whole_hardware(description.hardware, file.parent, platform)
     return assemble(description, hardware, name)
+
+
+def system_of(paths: Sequence[StrPath]) -> tuple[System, tuple[Finding, ...]]:
+    """The system of an `app.yaml`, or of AMALTHEA models, and what there was to say about the files.
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    """
+    if len(paths) == 1 and Path(paths[0]).suffix in (".yaml", ".yml"):
+        assembly = describe(paths[0])
+        return assembly.system, assembly.findings
+    from amalthea_uros.bridge.extract import extract
+    from amalthea_uros.xmi.load import load
+
+    model = load(*paths)
+    extraction = extract(model)
+    return extraction.system, (*model.findings, *extraction.findings)
 
 
 def build(path: StrPath, version: str | None = None, platform: str | None = None) -> Built:

@@ -23,8 +23,8 @@ PACKAGE = "amalthea_uros"
         ("difference", ("metamodel",)),
         ("xmi", ("diagnostics", "errors", "garbage", "resources", "metamodel")),
         ("analyze", ("perf", "units", "diagnostics")),
-        ("pipeline", ("bridge", "garbage", "metamodel", "spec", "uros")),
-        ("report", ("diagnostics", "metamodel", "difference", "perf", "units", "uros", "pipeline")),
+        ("pipeline", ("bridge", "diagnostics", "garbage", "metamodel", "perf", "spec", "uros", "xmi")),
+        ("report", ("diagnostics", "metamodel", "difference", "perf", "units", "uros", "pipeline", "analyze")),
     ],
 )
 def test_a_room_imports_only_what_it_may(room, allowed):

@@ -194,9 +194,10 @@ class Delayed(Arrivals):
 class Behind(Arrivals):
     """The ends of the jobs of a task.
 
-    Jobs of one task end at least their least cost apart. The q-th job of a busy window ends at its completion at the latest, and the one `count` - 1 later arrives at its span at the
-    earliest and takes the best response time: so close two ends can be (S. Schliecker, J. Rox, M. Ivers, R. Ernst, "Providing accurate
-    event models for the analysis of heterogeneous multiprocessor systems", CODES+ISSS 2008).
+    Jobs of one task end at least their least cost apart. The q-th job of a busy window ends at its completion at the latest, and the
+    one `count` - 1 later arrives at its span at the earliest and takes the best response time: so close two ends can be (S. Schliecker,
+    J. Rox, M. Ivers, R. Ernst, "Providing accurate event models for the analysis of heterogeneous multiprocessor systems", CODES+ISSS
+    2008).
 
     Attributes
     ----------

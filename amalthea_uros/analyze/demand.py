@@ -44,11 +44,13 @@ class Demands:
     Attributes
     ----------
     frequencies : of cores, instead of what the system says
+    scale : factor on all execution times
     """
 
     system: System
     notes: Notes
     frequencies: dict[str, Frequency] = field(default_factory=dict)
+    scale: Fraction = Fraction(1)
     _known: dict[tuple[str, str], tuple[Part, ...]] = field(default_factory=dict)
 
     def frequency(self, core: str) -> Frequency | None:
@@ -78,9 +80,9 @@ class Demands:
                 ticks = by_type.get(self.system.cores[core].type or "", demand.ticks)
                 if ticks is None:
                     raise UnknownDemandError(f"there are ticks without a value for {core}")
-                return [self._time(ticks, Fraction(1), core)]
+                return [self._time(ticks, self.scale, core)]
             case ExecutionNeed(needs=needs):
-                return [self._time(need, self._ticks_per_unit(name, core), core) for name, need in needs]
+                return [self._time(need, self._ticks_per_unit(name, core) * self.scale, core) for name, need in needs]
             case Call():
                 return self._call(activity, core, above)
             case Group(activities=inner):

@@ -27,14 +27,17 @@ from amalthea_uros.units import Frequency, Time
 MOST_ROUNDS = 100
 
 
-def analyze(system: System, frequencies: Mapping[str, Frequency] | None = None) -> Analysis:
+def analyze(system: System, frequencies: Mapping[str, Frequency] | None = None, scale: Fraction = Fraction(1)) -> Analysis:
     """The analysis of a system.
 
     Parameters
     ----------
     frequencies : of cores, instead of what the system says
+    scale : factor on all execution times, as if clocks were slower by it
     """
-    work = _Analysis(system, dict(frequencies or {}))
+    work = _Analysis(system, dict(frequencies or {}), scale)
+    if scale != 1:
+        work.notes.assume(f"all execution times are multiplied by {float(scale):g}")
     work.place()
     work.respond()
     return work.result()
@@ -44,6 +47,7 @@ def analyze(system: System, frequencies: Mapping[str, Frequency] | None = None) 
 class _Analysis:
     system: System
     frequencies: dict[str, Frequency]
+    scale: Fraction
     notes: Notes = field(default_factory=Notes)
     placed: dict[str, Placed] = field(default_factory=dict)
     costs: dict[str, Cost] = field(default_factory=dict)
@@ -54,7 +58,7 @@ class _Analysis:
     @property
     def demands(self) -> Demands:
         """The demand of processes."""
-        return Demands(self.system, self.notes, self.frequencies)
+        return Demands(self.system, self.notes, self.frequencies, self.scale)
 
     def give_up(self, name: str, reason: str) -> None:
         """Note that the response time of a process is not known."""

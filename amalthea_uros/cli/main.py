@@ -12,6 +12,7 @@ from amalthea_uros import __version__
 
 #: Command -> what `amuros --help` says of it; the module of the same name holds the rest.
 COMMANDS = {
+    "analyze": "Compute response times, loads and verdicts.",
     "build": "Build a model from an app.yaml.",
     "diff": "Compare two models by meaning.",
     "fmt": "Rewrite models in canonical form.",

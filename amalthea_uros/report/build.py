@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from amalthea_uros import __version__
-from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Single, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.pipeline import Built
+from amalthea_uros.report.findings import finding_json
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import time_text
 from amalthea_uros.uros.assemble import Assembly
@@ -141,21 +141,7 @@ def write_json(built: Built, path: Path, description: Path, stream: IO[str]) -> 
         "pools": [
             {"option": p.option, "needed": p.needed, "available": p.available, "stated": p.stated} for p in assembly.pools
         ],
-        "findings": [_finding(finding) for finding in assembly.findings],
+        "findings": [finding_json(finding) for finding in assembly.findings],
     }
     json.dump(result, stream, indent=2, ensure_ascii=False)
     stream.write("\n")
-
-
-def _finding(finding: Finding) -> dict[str, Any]:
-    place = finding.location
-    return {
-        "rule": finding.rule,
-        "severity": finding.severity,
-        "message": finding.message,
-        "help": finding.help,
-        "file": str(place.path) if place else None,
-        "line": place.line if place else None,
-        "column": place.column if place else None,
-        "object": finding.object,
-    }

@@ -1,0 +1,209 @@
+"""An analysis for people and for programs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from fractions import Fraction
+from math import ceil
+from pathlib import Path
+from typing import IO, Any
+
+from amalthea_uros import __version__
+from amalthea_uros.analyze.result import Analysis, ProcessorResult, ProcessResult, RequirementResult, Verdict
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.report.findings import finding_json
+from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.units import Time, frequency_text, time_text
+
+BAR = 20
+_COLOURS = {Verdict.MET: "32", Verdict.MISSED: "31", Verdict.UNBOUNDED: "31", Verdict.UNKNOWN: "33"}
+_BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET)
+
+
+def write_text(analysis: Analysis, stream: IO[str]) -> None:
+    """Tables that a person reads at a glance, worst first."""
+    terminal = Terminal(stream)
+    _processors(terminal, analysis)
+    _processes(terminal, analysis)
+    _requirements(terminal, analysis)
+    _methods(terminal, analysis)
+    if analysis.assumptions:
+        terminal.heading("Assumptions")
+        for sentence in analysis.assumptions:
+            terminal.line(f"  {sentence}")
+
+
+def _processors(terminal: Terminal, analysis: Analysis) -> None:
+    used = [processor for processor in analysis.processors if processor.worst != 0]
+    if not used:
+        return
+    terminal.line(terminal.style("Load", "1"))
+    rows = []
+    for processor in used:
+        clock = frequency_text(processor.frequency) if processor.frequency else "?"
+        loads = [_percent(load) for load in (processor.best, processor.mean, processor.worst)]
+        rows.append((processor.name, clock, *loads, _bar(processor)))
+    terminal.table(("core", "clock", "best", "mean", "worst", ""), rows, right=(1, 2, 3, 4))
+
+
+def _percent(load: Fraction | None) -> str:
+    return "?" if load is None else f"{float(load):.3%}"
+
+
+def _bar(processor: ProcessorResult) -> str:
+    """The worst load as a bar; what is above 100 % stands out of it."""
+    if processor.worst is None:
+        return ""
+    filled = ceil(processor.worst * BAR)
+    return "#" * min(filled, BAR) + "." * (BAR - filled) + ("!" if processor.worst > 1 else "")
+
+
+def _processes(terminal: Terminal, analysis: Analysis) -> None:
+    terminal.heading("Response times")
+    ordered = sorted(analysis.processes, key=_urgency)
+    rows = []
+    for process in ordered:
+        response = process.response
+        rows.append(
+            (
+                process.name,
+                process.processor or "?",
+                "?" if process.priority is None else f"{'ISR ' if process.is_isr else ''}{process.priority}",
+                _time(process.wcet),
+                _time(response.best if response else None),
+                _time(response.worst if response else None),
+                _time(process.deadline, "-"),
+                process.verdict if process.verdict is not Verdict.UNKNOWN or response is None else "-",
+                process.reason or (str(response.claim) if response else ""),
+            )
+        )
+    headings = ("process", "core", "priority", "WCET", "best", "worst", "deadline", "verdict", "")
+    terminal.table(headings, rows, right=(2, 3, 4, 5, 6))
+
+
+def _urgency(process: ProcessResult) -> tuple[int, float]:
+    """Bad verdicts first, then those that use up most of their deadline."""
+    response = process.response
+    use = 0.0
+    if response is not None and response.worst is not None and process.deadline:
+        use = response.worst / process.deadline
+    return (_BADNESS.index(process.verdict), -use)
+
+
+def _time(value: Time | None, missing: str = "?") -> str:
+    return missing if value is None else time_text(value)
+
+
+def _requirements(terminal: Terminal, analysis: Analysis) -> None:
+    if not analysis.requirements:
+        return
+    terminal.heading("Requirements")
+    ordered = sorted(analysis.requirements, key=lambda r: _BADNESS.index(r.verdict))
+    rows = [
+        (
+            requirement.name,
+            f"{requirement.quantity} of {requirement.object}",
+            ("at most " if requirement.is_upper else "at least ") + time_text(requirement.limit),
+            _time(requirement.value),
+            requirement.verdict,
+            _margin(requirement),
+        )
+        for requirement in ordered
+    ]
+    terminal.table(("requirement", "what", "limit", "value", "verdict", "margin"), rows, right=(3, 5))
+
+
+def _margin(requirement: RequirementResult) -> str:
+    return "" if requirement.margin is None else time_text(requirement.margin)
+
+
+def _methods(terminal: Terminal, analysis: Analysis) -> None:
+    methods = dict.fromkeys(
+        f"{process.response.method} ({process.response.source})" for process in analysis.processes if process.response
+    )
+    if methods:
+        terminal.heading("Methods")
+        for method in methods:
+            terminal.line(f"  {method}")
+
+
+def write_explanation(analysis: Analysis, name: str, stream: IO[str]) -> None:
+    """What the response time of a process is made of."""
+    terminal = Terminal(stream)
+    process = next(process for process in analysis.processes if process.name == name)
+    response = process.response
+    if response is None:
+        terminal.line(f"{terminal.style(name, '1')}: its response time is not known: {process.reason}")
+        return
+    if response.worst is None:
+        terminal.line(f"{terminal.style(name, '1')}: its response time has no bound: {response.reason}")
+        return
+    terminal.line(f"{terminal.style(name, '1')}: worst-case response time {time_text(response.worst)} ({response.claim})")
+    terms = [(term, time_text(value)) for term, value in response.terms.items() if value]
+    terminal.table(("made of", ""), [*terms, ("sum", time_text(response.worst))], right=(1,))
+    terminal.line(f"  {response.method} ({response.source}), {response.jobs} jobs looked at")
+
+
+def write_json(analysis: Analysis, paths: Sequence[Path], findings: Sequence[Finding], stream: IO[str]) -> None:
+    """The same for programs; times are picoseconds under names that end in `_ps`."""
+    result = {
+        "amuros": __version__,
+        "model": " ".join(map(str, paths)),
+        "assumptions": list(analysis.assumptions),
+        "findings": [finding_json(finding) for finding in (*findings, *analysis.findings)],
+        "processors": [
+            {
+                "name": processor.name,
+                "utilisation": {
+                    "bcet": _number(processor.best),
+                    "acet": _number(processor.mean),
+                    "wcet": _number(processor.worst),
+                },
+            }
+            for processor in analysis.processors
+        ],
+        "processes": [_process_json(process) for process in analysis.processes],
+        "chains": [],
+        "requirements": [
+            {
+                "name": requirement.name,
+                "object": requirement.object,
+                "quantity": requirement.quantity,
+                "limit_ps": requirement.limit,
+                "value_ps": requirement.value,
+                "margin_ps": requirement.margin,
+                "verdict": requirement.verdict,
+            }
+            for requirement in analysis.requirements
+        ],
+    }
+    json.dump(result, stream, indent=2, ensure_ascii=False)
+    stream.write("\n")
+
+
+def _number(value: Fraction | None) -> float | None:
+    return None if value is None else float(value)
+
+
+def _process_json(process: ProcessResult) -> dict[str, Any]:
+    response = process.response
+    return {
+        "name": process.name,
+        "kind": "isr" if process.is_isr else "task",
+        "processor": process.processor,
+        "priority": process.priority,
+        "preemption": process.preemption,
+        "bcet_ps": process.bcet,
+        "acet_ps": None if process.acet is None else round(process.acet),
+        "wcet_ps": process.wcet,
+        "bcrt_ps": response.best if response else None,
+        "wcrt_ps": response.worst if response else None,
+        "deadline_ps": process.deadline,
+        "verdict": process.verdict,
+        "reason": process.reason,
+        "method": response.method if response else None,
+        "source": response.source if response else None,
+        "claim": response.claim if response else None,
+        "terms": {f"{term.replace(' ', '_')}_ps": value for term, value in response.terms.items()} if response else {},
+    }
