@@ -226,6 +226,31 @@ class Behind(Arrivals):
 
 
 @dataclass(frozen=True)
+class Finer(Arrivals):
+    """The same arrivals in a unit of time that is smaller by a factor."""
+
+    arrivals: Arrivals
+    factor: int
+
+    def span(self, count: int) -> Time:
+        """See `Arrivals`."""
+        return self.arrivals.span(count) * self.factor
+
+    @property
+    def rate(self) -> Fraction:
+        """See `Arrivals`."""
+        return self.arrivals.rate / self.factor
+
+
+def finer(arrivals: Arrivals, factor: int) -> Arrivals:
+    """Arrivals in a unit of time that is smaller by a factor."""
+    match arrivals:
+        case Periodic(period, jitter, distance, sporadic):
+            return Periodic(period * factor, jitter * factor, distance * factor, sporadic)
+    return Finer(arrivals, factor)
+
+
+@dataclass(frozen=True)
 class Together(Arrivals):
     """Arrivals from several sources that do not know of each other."""
 

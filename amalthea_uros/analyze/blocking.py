@@ -16,21 +16,39 @@ from amalthea_uros.perf.software import Activity, Call, Preemption, SemaphoreAcc
 from amalthea_uros.units import Time
 
 
-def region(placed: Placed, demands: Demands) -> Time:
-    """The longest stretch of a task that no other task interrupts; interrupts always do."""
-    process = placed.process
-    if not isinstance(process, Task) or process.preemption is Preemption.PREEMPTIVE:
-        return 0
-    if process.preemption is Preemption.NON_PREEMPTIVE:
-        return demands.cost(process, placed.core).worst
-    # A cooperative task is interrupted between runnables, and at schedule points.
-    pieces = (demands.cost(Task(name=process.name, activities=(a,)), placed.core) for a in process.activities)
-    return max((piece.worst for piece in pieces), default=0)
+def preemption(placed: Placed) -> Preemption:
+    """Who can interrupt a process; interrupts always can, and nobody but them an interrupt service routine."""
+    return placed.process.preemption if isinstance(placed.process, Task) else Preemption.PREEMPTIVE
+
+
+def regions(placed: Placed, demands: Demands) -> list[Time]:
+    """The stretches of a task that cooperative tasks cannot interrupt: all of it, or its runnables one by one."""
+    match preemption(placed):
+        case Preemption.NON_PREEMPTIVE:
+            return [demands.cost(placed.process, placed.core).worst]
+        case Preemption.COOPERATIVE:
+            pieces = (Task(name=placed.process.name, activities=(a,)) for a in placed.process.activities)
+            return [length for piece in pieces if (length := demands.cost(piece, placed.core).worst)]
+    return []
+
+
+def last_region(placed: Placed, demands: Demands) -> Time:
+    """The shortest region with which a job can end: behind the last one that is executed each time others may not be."""
+    found: list[Time] = []
+    for activity in reversed(placed.process.activities):
+        piece = demands.cost(Task(name=placed.process.name, activities=(activity,)), placed.core)
+        if piece.worst:
+            found.append(piece.worst)
+        if any(part.prescaler == 1 and part.worst for part in piece.parts):
+            break
+    if preemption(placed) is Preemption.NON_PREEMPTIVE:
+        return demands.cost(placed.process, placed.core).worst
+    return min(found, default=0)
 
 
 def blocking_times(placed: Sequence[Placed], demands: Demands, notes: Notes) -> Mapping[str, Time]:
     """The longest that each process of a core can wait for one of lower priority."""
-    regions = {item.process.name: region(item, demands) for item in placed}
+    stretches = {item.process.name: max(regions(item, demands), default=0) for item in placed}
     sections = {item.process.name: list(_sections(item, demands)) for item in placed}
     ceilings: dict[str, tuple[bool, int]] = {}
     for item in placed:
@@ -42,11 +60,18 @@ def blocking_times(placed: Sequence[Placed], demands: Demands, notes: Notes) -> 
         lower = [other for other in placed if other.rank < item.rank]
         waits = [0]
         for other in lower:
-            if not item.is_isr:
-                waits.append(regions[other.process.name])
+            if _waits_for(item, other):
+                waits.append(stretches[other.process.name])
             waits += [length for name, length in sections[other.process.name] if ceilings[name] >= item.rank]
         found[item.process.name] = max(waits)
     return found
+
+
+def _waits_for(item: Placed, other: Placed) -> bool:
+    """Whether a task waits for the region of a lower one; preemptive tasks interrupt cooperative ones at once."""
+    if item.is_isr:
+        return False
+    return preemption(other) is Preemption.NON_PREEMPTIVE or preemption(item) is not Preemption.PREEMPTIVE
 
 
 def _note_protocols(ceilings: Mapping[str, tuple[bool, int]], demands: Demands, notes: Notes) -> None:

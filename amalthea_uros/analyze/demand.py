@@ -1,7 +1,9 @@
 """The execution demand of processes: their activity graphs walked, ticks turned into time on a core.
 
-Worst cases are rounded up, best cases down. Of branches the worst one counts in the worst case and the best one in the best case; a
-call that is executed every n-th time only stays a part of its own, so that a job without it does not pay for it.
+A tick is often no whole number of picoseconds. So that nothing is rounded before the end, the demand on a core is counted in grains:
+the greatest parts of a picosecond of which a tick is a whole number (a third of one at 300 MHz). Of branches the worst one counts in the
+worst case and the best one in the best case; a call that is executed every n-th time only stays a part of its own, so that a job without
+it does not pay for it.
 """
 
 from __future__ import annotations
@@ -32,6 +34,9 @@ from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Frequency, time_of_ticks
 
+#: Finer grains would bring times near to the limits of whole numbers of 64 bits.
+MOST_GRAINS = 1000
+
 
 class UnknownDemandError(Exception):
     """The demand of a process is not known; the text says why."""
@@ -53,6 +58,14 @@ class Demands:
     scale: Fraction = Fraction(1)
     _known: dict[tuple[str, str], tuple[Part, ...]] = field(default_factory=dict)
 
+    def grains(self, core: str) -> int:
+        """How many grains a picosecond has on a core; 1 where they would be too small, and then demand is rounded outwards."""
+        frequency = self.frequency(core)
+        if frequency is None:
+            return 1
+        fineness = (time_of_ticks(1, frequency) * self.scale).denominator
+        return fineness if fineness <= MOST_GRAINS else 1
+
     def frequency(self, core: str) -> Frequency | None:
         """The clock of a core, None if it is not known."""
         if core in self.frequencies:
@@ -61,7 +74,7 @@ class Demands:
         return clock.frequency if clock is not None and clock.frequency else None
 
     def cost(self, process: Process, core: str) -> Cost:
-        """What the jobs of a process cost on a core.
+        """What the jobs of a process cost on a core, in its grains.
 
         Raises
         ------
@@ -117,18 +130,15 @@ class Demands:
         return self._known[key]
 
     def _time(self, ticks: Distribution[int], factor: Fraction, core: str) -> Part:
-        """The time that ticks take, or units of something that takes `factor` ticks each."""
+        """The grains that ticks take, or units of something that takes `factor` ticks each."""
         frequency = self.frequency(core)
         if frequency is None:
             raise UnknownDemandError(f"the clock of the core {core!r} is not known")
         worst, best = highest(ticks), lowest(ticks)
         if worst is None or best is None:
             raise UnknownDemandError("there is a distribution of ticks without bounds")
-        return Part(
-            worst=ceil(time_of_ticks(worst * factor, frequency)),
-            best=floor(time_of_ticks(best * factor, frequency)),
-            average=time_of_ticks(mean(ticks) * factor, frequency),
-        )
+        tick = time_of_ticks(1, frequency) * factor * self.grains(core)
+        return Part(worst=ceil(worst * tick), best=floor(best * tick), average=mean(ticks) * tick)
 
     def _ticks_per_unit(self, need: str, core: str) -> Fraction:
         """What a unit of an execution need takes: the value of the feature, or its inverse for instructions per cycle."""

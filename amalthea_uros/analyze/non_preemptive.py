@@ -6,7 +6,9 @@ the first, because its predecessor pushes higher priorities into it. The q-th jo
 
     w = B + C(q - 1) + sum over higher priorities of C_j(eta_j(w + step))
 
-where step is the shortest time after which an arrival is too late: one bit on CAN, one unit of time on a processor.
+where step is the shortest time after which an arrival is too late: one bit on CAN, one unit of time on a processor. A task that can be
+interrupted at some points only starts its last region in the same way, with C(q) less that region before it; while it runs, those
+interrupt it that always may.
 """
 
 from __future__ import annotations
@@ -32,36 +34,48 @@ def response_times(tasks: Sequence[Task], step: Time = 1) -> list[Response]:
     return found
 
 
-def response_time(task: Task, higher: Sequence[Task], blocking: Time, step: Time = 1) -> Response:
-    """The response time of a task that cannot be interrupted, among others that may interrupt each other or not."""
-    others = Interference.of(higher)
+def response_time(
+    task: Task,
+    higher: Sequence[Task],
+    blocking: Time,
+    step: Time = 1,
+    last: Time | None = None,
+    always: Sequence[Task] = (),
+) -> Response:
+    """The response time of a task that cannot be interrupted, among others that may interrupt each other or not.
+
+    Parameters
+    ----------
+    last : its last region without interruption; None: the whole task
+    always : those among the higher ones that interrupt it nevertheless
+    """
+    last = task.cost.worst if last is None else last
+    others, interrupting = Interference.of(higher), Interference.of(always)
     if others.overloads_with(task):
         rate = others.rate + float(task.cost.mean_worst * task.arrivals.rate)
         return _unbounded(task, f"the demand up to this priority is {rate:.1%} of the capacity")
     period = Interference.of([*higher, task]).window(blocking, 0)
     if period is None or (jobs := task.arrivals.most(period)) > MOST_JOBS:
         return _unbounded(task, "the busy period does not end: the demand up to this priority fills the capacity")
-    worst, worst_start, worst_job, start = -1, 0, 1, 0
     completions: list[Time] = []
+    start = 0
     for job in range(1, jobs + 1):
-        start = _start(others, blocking + task.cost.most(job) - task.cost.worst, start, step)
-        completions.append(start + task.cost.worst)
-        response = start + task.cost.worst - task.arrivals.span(job)
-        if response > worst:
-            worst, worst_start, worst_job = response, start, job
-    own = task.cost.most(worst_job)
+        start = _start(others, blocking + task.cost.most(job) - last, start, step)
+        completions.append(_end(interrupting, start, last, step))
+    worst_job = max(range(1, jobs + 1), key=lambda job: completions[job - 1] - task.arrivals.span(job))
+    window, own = completions[worst_job - 1], task.cost.most(worst_job)
     return Response(
-        worst=worst,
+        worst=window - task.arrivals.span(worst_job),
         best=task.cost.best,
         method=METHOD,
         source=SOURCE,
         claim=Claim.EXACT,
         jobs=jobs,
-        window=worst_start + task.cost.worst,
+        window=window,
         completions=tuple(completions),
         terms={
             "own": own,
-            "interference": worst_start + task.cost.worst - own - blocking,
+            "interference": window - own - blocking,
             "blocking": blocking,
             "earlier arrival": -task.arrivals.span(worst_job),
         },
@@ -80,3 +94,14 @@ def _start(others: Interference, before: Time, lower: Time, step: Time) -> Time:
         if reached <= start:
             return start
         start = reached
+
+
+def _end(interrupting: Interference, start: Time, last: Time, step: Time) -> Time:
+    """The end of the last region, with those that arrive behind its start and interrupt it."""
+    before = interrupting.in_window(start + step)
+    end = start + last
+    while True:
+        reached = start + last + max(0, interrupting.in_window(end) - before)
+        if reached <= end:
+            return end
+        end = reached

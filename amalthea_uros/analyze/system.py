@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from amalthea_uros.analyze import fixed_priority, non_preemptive, schedule
-from amalthea_uros.analyze.arrivals import Arrivals
-from amalthea_uros.analyze.blocking import blocking_times, has_sections
+from amalthea_uros.analyze.arrivals import Arrivals, finer
+from amalthea_uros.analyze.blocking import blocking_times, has_sections, last_region, preemption
 from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.demand import Demands, UnknownDemandError
 from amalthea_uros.analyze.notes import Notes
@@ -96,7 +96,8 @@ class _Analysis:
 
     def respond(self) -> None:
         """Compute all response times, as often as they change the arrivals of others."""
-        propagation = Propagation(self.system, {name: cost.best for name, cost in self.costs.items()})
+        least = {name: cost.best // self.demands.grains(self.placed[name].core) for name, cost in self.costs.items()}
+        propagation = Propagation(self.system, least)
         for _ in range(MOST_ROUNDS):
             before = dict(self.responses)
             self._find_arrivals(propagation)
@@ -130,8 +131,9 @@ class _Analysis:
             usable.append(placed)
         exact = self._exactly(usable) if len(usable) == len(here) else None
         found = exact or self._bounded(usable, here)
+        grains = self.demands.grains(core)
         for placed, response in zip(usable, found, strict=True):
-            self.responses[placed.process.name] = response
+            self.responses[placed.process.name] = in_picoseconds(response, grains)
 
     def _exactly(self, here: Sequence[Placed]) -> list[Response] | None:
         """By the schedule, where all releases are known and nobody waits for lower priorities."""
@@ -153,8 +155,13 @@ class _Analysis:
             case [perf.Periodic(jitter=None, condition=None, period=period, offset=offset)] if period > 0 <= offset:
                 if has_sections(placed, self.demands):
                     return None
+                grains = self.demands.grains(placed.core)
                 return schedule.Released(
-                    name=process.name, period=period, offset=offset, cost=self.costs[process.name], priority=rank
+                    name=process.name,
+                    period=period * grains,
+                    offset=offset * grains,
+                    cost=self.costs[process.name],
+                    priority=rank,
                 )
         return None
 
@@ -164,7 +171,7 @@ class _Analysis:
         tasks = [
             Task(
                 name=placed.process.name,
-                arrivals=self.arrivals[placed.process.name],
+                arrivals=finer(self.arrivals[placed.process.name], self.demands.grains(placed.core)),
                 cost=self.costs[placed.process.name],
                 priority=ranks.index(placed.rank),
             )
@@ -173,18 +180,30 @@ class _Analysis:
         known = [placed for placed in here if placed.process.name in self.costs]
         blocking = blocking_times(known, self.demands, self.notes)
         self.notes.assume("where not all releases on a core are known, all of them may come together at the worst moment")
-        if self._never_interrupt(usable):
-            found = non_preemptive.response_times(tasks)
-        else:
-            found = fixed_priority.response_times(tasks, [blocking[task.name] for task in tasks])
+        found = fixed_priority.response_times(tasks, [blocking[task.name] for task in tasks])
+        for index, placed in enumerate(usable):
+            if preemption(placed) is not Preemption.PREEMPTIVE:
+                found[index] = self._to_the_last_region(index, usable, tasks, blocking)
         # The methods are exact for arrivals that do not know of each other; offsets may keep the worst moment from coming.
         return [replace(response, claim=Claim.BOUND) for response in found]
 
-    def _never_interrupt(self, here: Sequence[Placed]) -> bool:
-        """Whether no process of a core interrupts another one."""
-        return bool(here) and all(
-            isinstance(p.process, TaskProcess) and p.process.preemption is Preemption.NON_PREEMPTIVE for p in here
-        )
+    def _to_the_last_region(
+        self, index: int, here: Sequence[Placed], tasks: Sequence[Task], blocking: Mapping[str, Time]
+    ) -> Response:
+        """The response time of a task that is not interrupted in its last region, or only by some."""
+        placed, task = here[index], tasks[index]
+        is_cooperative = preemption(placed) is Preemption.COOPERATIVE
+        if is_cooperative:
+            self.notes.assume("cooperative tasks are interrupted by preemptive ones at once, by others between runnables")
+        higher = [other for other in tasks if other is not task and other.priority >= task.priority]
+        always = [
+            tasks[number]
+            for number, other in enumerate(here)
+            if tasks[number].priority > task.priority
+            and (other.is_isr or (is_cooperative and preemption(other) is not Preemption.COOPERATIVE))
+        ]
+        last = last_region(placed, self.demands)
+        return non_preemptive.response_time(task, higher, blocking[task.name], 1, last, always)
 
     # Results
 
@@ -207,15 +226,16 @@ class _Analysis:
         response = self.responses.get(name)
         deadline = placed.deadline if placed is not None and placed.deadline is not None else limits.get(name)
         process = self.system.processes[name]
+        grains = self.demands.grains(placed.core) if placed else 1
         return ProcessResult(
             name=name,
             is_isr=not isinstance(process, TaskProcess),
             processor=placed.core if placed else None,
             priority=placed.priority if placed else None,
             preemption=str(process.preemption) if isinstance(process, TaskProcess) else str(Preemption.PREEMPTIVE),
-            bcet=cost.best if cost else None,
-            acet=cost.mean if cost else None,
-            wcet=cost.worst if cost else None,
+            bcet=cost.best // grains if cost else None,
+            acet=cost.mean / grains if cost else None,
+            wcet=-(-cost.worst // grains) if cost else None,
             response=response,
             deadline=deadline,
             verdict=_verdict(response, deadline),
@@ -226,7 +246,7 @@ class _Analysis:
         for core in self.system.cores:
             here = [name for name, placed in self.placed.items() if placed.core == core]
             known = [name for name in here if name in self.costs and name in self.arrivals]
-            rates = {name: self.arrivals[name].rate for name in known}
+            rates = {name: self.arrivals[name].rate / self.demands.grains(core) for name in known}
             is_known = len(known) == len(here)
             yield ProcessorResult(
                 name=core,
@@ -249,3 +269,22 @@ def _verdict(response: Response | None, deadline: Time | None) -> Verdict:
     if deadline is None:
         return Verdict.UNKNOWN
     return Verdict.MET if response.worst <= deadline else Verdict.MISSED
+
+
+def in_picoseconds(response: Response, grains: int) -> Response:
+    """A response time that was computed in grains; the greatest values rounded up, the least ones down."""
+    if grains == 1:
+        return response
+    worst = None if response.worst is None else -(-response.worst // grains)
+    terms = {name: -(-value // grains) for name, value in response.terms.items()}
+    if worst is not None and "interference" in terms:
+        # What rounding adds to the terms is taken from the greatest kind of them, so that they still add up.
+        terms["interference"] += worst - sum(terms.values())
+    return replace(
+        response,
+        worst=worst,
+        best=response.best // grains,
+        window=-(-response.window // grains),
+        completions=tuple(-(-end // grains) for end in response.completions),
+        terms=terms,
+    )

@@ -18,17 +18,12 @@ class Task:
     Attributes
     ----------
     priority : higher numbers are served first
-    region : the longest stretch that tasks of higher priority cannot interrupt; its whole cost if it is not preemptive
-    deadline : relative to the arrival
     """
 
     name: str
     arrivals: Arrivals
     cost: Cost
     priority: int = 0
-    region: Time = 0
-    preemptive: bool = True
-    deadline: Time | None = None
 
 
 class Claim(StrEnum):
