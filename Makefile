@@ -11,6 +11,7 @@ demo: $(READY)
 	@mkdir -p build
 	$(BIN)/amuros build samples/bodas-test-advanced.yaml -o build/app.amxmi
 	$(BIN)/amuros info --schema build/app.amxmi
+	$(BIN)/amuros analyze build/app.amxmi
 	sed 's/rate: 50 Hz/rate: 100 Hz/' samples/bodas-test-advanced.yaml > build/faster.yaml
 	$(BIN)/amuros build build/faster.yaml -o build/faster.amxmi
 	$(BIN)/amuros diff build/app.amxmi build/faster.amxmi || true

@@ -195,29 +195,27 @@ class Behind(Arrivals):
     """The ends of the jobs of a task.
 
     Jobs of one task end at least their least cost apart. The q-th job of a busy window ends at its completion at the latest, and the
-    one `count` - 1 later arrives at its span at the earliest and takes the best response time: so close two ends can be (S. Schliecker,
+    one `count` - 1 later arrives at its span at the earliest and takes its least cost: so close two ends can be (S. Schliecker,
     J. Rox, M. Ivers, R. Ernst, "Providing accurate event models for the analysis of heterogeneous multiprocessor systems", CODES+ISSS
     2008).
 
     Attributes
     ----------
     completions : when the jobs of the longest busy window end at the latest, from its start
-    best : best-case response time
-    distance : least cost of a job
+    least : least cost of a job, which no response time is below, also not that of the first job of a system
     """
 
     arrivals: Arrivals
     completions: tuple[Time, ...]
-    best: Time
-    distance: Time = 0
+    least: Time
 
     def span(self, count: int) -> Time:
         """See `Arrivals`."""
         if count < 2:
             return 0
         ends = enumerate(self.completions, start=1)
-        earliest = min(self.arrivals.span(job + count - 1) - end for job, end in ends) + self.best
-        return max((count - 1) * self.distance, earliest)
+        earliest = min(self.arrivals.span(job + count - 1) - end for job, end in ends) + self.least
+        return max((count - 1) * self.least, earliest)
 
     @property
     def rate(self) -> Fraction:

@@ -2,7 +2,8 @@
 
 After O. Redell and M. Sanfridson, "Exact best-case response time analysis of fixed priority scheduled tasks", ECRTS 2002: from above,
 the greatest fixed point of R = C + sum over higher priorities of C_j * (ceil(R / T_j) - 1), the arrivals that cannot be avoided in R.
-Arrivals that may stay away, or that jitter, are left out; then the value is a lower bound.
+Arrivals that may stay away, or that jitter, are left out; then the value is a lower bound. It holds once all tasks have been released:
+the first jobs of a system may run before others have started.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from amalthea_uros.units import Time
 
 
 def best_response(task: Task, higher: Interference) -> Time:
-    """A lower bound of the response time; exact for periodic tasks whose offsets are not known."""
+    """A lower bound of the response time behind the start; exact for periodic tasks whose offsets are not known."""
     own, rows = task.cost.best, higher.rows
     rate = float((rows.best / rows.periods).sum())
     if rate >= 1:

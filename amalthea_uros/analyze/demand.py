@@ -1,9 +1,9 @@
 """The execution demand of processes: their activity graphs walked, ticks turned into time on a core.
 
 A tick is often no whole number of picoseconds. So that nothing is rounded before the end, the demand on a core is counted in grains:
-the greatest parts of a picosecond of which a tick is a whole number (a third of one at 300 MHz). Of branches the worst one counts in the
-worst case and the best one in the best case; a call that is executed every n-th time only stays a part of its own, so that a job without
-it does not pay for it.
+the greatest parts of a picosecond of which a tick is a whole number (a third of one at 300 MHz). Of branches the worst one counts in
+the worst case and the best one in the best case; a call that is executed every n-th time only stays a part of its own, so that a job
+without it does not pay for it.
 """
 
 from __future__ import annotations

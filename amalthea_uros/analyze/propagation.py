@@ -96,8 +96,8 @@ class Propagation:
 def behind(arrivals: Arrivals, response: Response, least_cost: Time) -> Arrivals:
     """The ends of the jobs of a task as arrivals; each of them costs something at least."""
     if response.completions:
-        return Behind(arrivals, response.completions, response.best, least_cost)
-    return Delayed(arrivals, (response.worst or 0) - response.best)
+        return Behind(arrivals, response.completions, least_cost)
+    return Delayed(arrivals, (response.worst or 0) - least_cost)
 
 
 def _counted(arrivals: Arrivals, counter: Counter | None) -> Arrivals:

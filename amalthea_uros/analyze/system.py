@@ -40,6 +40,7 @@ def analyze(system: System, frequencies: Mapping[str, Frequency] | None = None, 
         work.notes.assume(f"all execution times are multiplied by {float(scale):g}")
     work.place()
     work.respond()
+    work.note_left_out()
     return work.result()
 
 
@@ -180,6 +181,7 @@ class _Analysis:
         known = [placed for placed in here if placed.process.name in self.costs]
         blocking = blocking_times(known, self.demands, self.notes)
         self.notes.assume("where not all releases on a core are known, all of them may come together at the worst moment")
+        self.notes.assume("best cases there hold once all tasks have been released")
         found = fixed_priority.response_times(tasks, [blocking[task.name] for task in tasks])
         for index, placed in enumerate(usable):
             if preemption(placed) is not Preemption.PREEMPTIVE:
@@ -204,6 +206,29 @@ class _Analysis:
         ]
         last = last_region(placed, self.demands)
         return non_preemptive.response_time(task, higher, blocking[task.name], 1, last, always)
+
+    # What is left out
+
+    def note_left_out(self) -> None:
+        """Note what the system has and the analysis does not take into account."""
+        costs = {overhead.name: overhead for overhead in self.system.os.overheads}
+        for operating_system in self.system.os.systems:
+            if operating_system.overhead in costs:
+                message = f"the overheads of {operating_system.name!r} are not taken into account"
+                self.notes.warning("ANA006", message, costs[operating_system.overhead])
+        for scheduler in self.system.schedulers.values():
+            if scheduler.overhead:
+                message = f"the cost of scheduling decisions of {scheduler.name!r} is not taken into account"
+                self.notes.warning("ANA006", message, scheduler)
+        for name, response in self.responses.items():
+            process = self.placed[name].process
+            if not isinstance(process, TaskProcess) or response.worst is None:
+                continue
+            jobs = self.arrivals[name].most(response.worst)
+            if jobs > process.activation_limit:
+                limit = process.activation_limit
+                message = f"{name!r} can be activated {jobs} times before it ends; more than {limit} at a time are lost"
+                self.notes.warning("ANA007", message, process)
 
     # Results
 

@@ -27,7 +27,7 @@ def brake(tmp_path):
 def test_help_names_every_command():
     run = amuros("--help")
     assert run.returncode == 0
-    for command in ("diff", "fmt", "info"):
+    for command in ("analyze", "build", "diff", "fmt", "info", "schema"):
         assert command in run.stdout
         assert amuros(command, "--help").returncode == 0
 

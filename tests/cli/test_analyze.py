@@ -1,0 +1,87 @@
+"""`amuros analyze` as its user sees it."""
+
+import json
+import shutil
+
+import pytest
+from support import ROOT
+from test_cli import amuros
+
+ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
+
+
+@pytest.mark.parametrize("path", [ADVANCED, ADVANCED.with_suffix(".amxmi")], ids=["yaml", "amxmi"])
+def test_the_machine_readable_result(path, tmp_path):
+    run = amuros("analyze", path, "--output", f"json={tmp_path / 'r.json'}")
+    assert (run.returncode, run.stdout) == (0, "")
+    result = json.loads((tmp_path / "r.json").read_text())
+    assert result["model"] == str(path)
+    assert result["assumptions"]
+    (processor,) = result["processors"]
+    assert processor["utilisation"]["acet"] == pytest.approx(0.01265 + 0.004 + 0.0001)
+    control = next(process for process in result["processes"] if process["name"] == "Control_Function")
+    assert (control["kind"], control["processor"], control["preemption"]) == ("task", "Core_0", "preemptive")
+    assert (control["bcet_ps"], control["acet_ps"], control["wcet_ps"]) == (4_000_000, 4_000_000, 4_000_000)
+    assert (control["bcrt_ps"], control["wcrt_ps"], control["deadline_ps"]) == (16_000_000, 29_000_000, 10**9)
+    assert (control["verdict"], control["claim"]) == ("met", "exact")
+    assert control["terms"] == {"own_ps": 4_000_000, "interference_ps": 25_000_000, "blocking_ps": 0}
+    assert result["requirements"] == [
+        {
+            "name": "Control_Function_response_time",
+            "object": "Control_Function",
+            "quantity": "response time",
+            "limit_ps": 10**9,
+            "value_ps": 29_000_000,
+            "margin_ps": 971_000_000,
+            "verdict": "met",
+        }
+    ]
+
+
+def test_a_missed_requirement(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text(ADVANCED.read_text().replace("response_time: 1 ms", "response_time: 20 us"))
+    run = amuros("analyze", path)
+    assert run.returncode == 1
+    assert "at most 20 us  29 us  missed    -9 us" in run.stdout
+    # What is missed comes first.
+    assert run.stdout.index("Control_Function  Core_0") < run.stdout.index("Executor_Task")
+
+
+def test_overload(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text(ADVANCED.read_text())
+    run = amuros("analyze", path, "--scale", "80")
+    assert run.returncode == 1
+    assert "unbounded" in run.stdout
+    assert "of the processor" in run.stdout
+    assert "####################!" in run.stdout
+
+
+def test_another_clock(tmp_path):
+    run = amuros("analyze", ADVANCED, "--frequency", "Core_0=2MHz", "--explain", "Control_Function")
+    assert run.stdout.startswith("Control_Function: worst-case response time 14.5 us (exact)")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--frequency", "Core_9=2MHz"], "there is no core 'Core_9'"),
+        (["--frequency", "Core_0=2"], "has no unit"),
+        (["--frequency", "Core_0=0MHz"], "greater than zero"),
+        (["--explain", "Nothing"], "there is no process 'Nothing'"),
+        (["--scale", "0"], "0"),
+    ],
+)
+def test_wrong_use(arguments, message):
+    run = amuros("analyze", ADVANCED, *arguments)
+    assert run.returncode == 2
+    assert message in run.stderr
+    assert "Traceback" not in run.stderr
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    assert amuros("analyze", tmp_path / "none.yaml").returncode == 2
+    assert amuros("analyze", tmp_path / "none.amxmi").returncode == 2
+    broken = shutil.copy(ADVANCED, tmp_path / "broken.amxmi")
+    assert amuros("analyze", broken).returncode == 2
