@@ -39,6 +39,7 @@ bench: $(READY)
 	$(BIN)/python -m pip install --quiet --editable '.[bench]'
 	$(BIN)/python benchmarks/load_save.py
 	$(BIN)/python benchmarks/build.py
+	$(BIN)/python benchmarks/response_times.py
 
 # The pages are Markdown; their examples are executed and their output is compared.
 docs: $(READY)

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.section import Section
-from amalthea_uros.spec.values import Duration, Name, Priority, Rate, Size
+from amalthea_uros.spec.values import Duration, Name, Offset, Priority, Rate, Size
 
 Reliability = Literal["reliable", "best-effort"]
 
@@ -32,8 +32,8 @@ class Callback(Section):
     """Where it runs; default: what the executor states."""
     task_period: Duration | None = None
     """Period of its task; default: the longest one on offer that the rules allow."""
-    offset: Duration | None = None
-    """Time of the first activation of its task; default: 0."""
+    offset: Offset = 0
+    """Time of the first activation of its task."""
     priority: Priority | None = None
     """Priority of its task; default: rate monotonic."""
     core: Name | None = None

@@ -53,8 +53,13 @@ class Memory(Section):
     """Cycles of a core that a write takes."""
 
 
-class Hardware(Section):
-    """The controller that the application runs on; what is stated beside `platform` replaces what the platform says."""
+class Hardware(Shorthand):
+    """The controller that the application runs on: a platform, or a mapping in which more is stated.
+
+    What stands beside `platform` replaces what the platform says.
+    """
+
+    shorthand = ("platform",)
 
     platform: Name | None = None
     """A platform that amuros knows (`bodas-rc18-12-40`, `generic`, `single-core`), or a file such as `./my-controller.yaml`."""

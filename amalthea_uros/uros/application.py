@@ -112,7 +112,7 @@ def _add_own_task(work: Work, callback: Callback, period: Time, body: Runnable) 
         PlannedTask(
             name=callback.name,
             core=_core(work, callback, work.controller.first_core),
-            stimuli=(work.pool.periodic(period, section.offset or 0, callback.origin),),
+            stimuli=(work.pool.periodic(period, section.offset, callback.origin),),
             activities=(Call(runnable=body.name, counter=occurrences(callback.interval, period)),),
             period=period,
             priority=section.priority,

@@ -191,6 +191,15 @@ def test_words_that_older_yaml_took_for_something_else(tmp_path):
     assert description.application.nodes[0].timers[0].name == "1:30"
 
 
+def test_a_platform_alone_and_an_offset_of_nothing(tmp_path):
+    path = tmp_path / "app.yaml"
+    text = changed("{platform: single-core}", "single-core")
+    path.write_text(text.replace("execution_time: 4 us", "execution_time: 4 us, offset: 0 ms"))
+    hardware = read_description(path).hardware
+    assert hardware.platform == "single-core"
+    assert hardware.location().line == 3
+
+
 def test_places_of_values(tmp_path):
     path = tmp_path / "app.yaml"
     path.write_text(GOOD)
