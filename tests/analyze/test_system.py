@@ -288,6 +288,29 @@ class TestWhatIsNotKnown:
         assert found["behind"].response is None
         assert "too little is known of 'loop'" in found["behind"].reason
 
+    def test_a_task_that_may_run_on_several_cores_makes_the_others_there_unknown(self):
+        tasks = [Task(name=name, stimuli=("s",), activities=(ticks(1),)) for name in ("fixed", "free", "elsewhere")]
+        built = system(
+            ["one", "two", "three"],
+            [Periodic(name="s", period=MS)],
+            tasks,
+            [
+                TaskAllocation(task="fixed", scheduler="global", priority=3, cores=("one",)),
+                TaskAllocation(task="free", scheduler="global", priority=2),
+                TaskAllocation(task="elsewhere", scheduler="three", priority=1),
+            ],
+        )
+        schedulers = (
+            Scheduler(name="global", policy=Policy.OSEK, cores=("one", "two")),
+            Scheduler(name="three", policy=Policy.OSEK, cores=("three",)),
+        )
+        analysis = analyze(replace(built, os=Os(systems=(OperatingSystem(name="OS", schedulers=schedulers),))))
+        found = by_name(analysis)
+        assert found["free"].reason == "several cores serve it"
+        assert found["fixed"].reason == "too little is known of 'free', which may come before it"
+        assert found["elsewhere"].response.worst is not None
+        assert [processor.worst is None for processor in analysis.processors] == [True, True, False]
+
     @pytest.mark.parametrize("path", sorted((SHARED / "vectors" / "am2inc").glob("*.amxmi")), ids=lambda path: path.name)
     def test_no_model_is_too_defective(self, path):
         from amalthea_uros.errors import ReadError
