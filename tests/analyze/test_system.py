@@ -217,6 +217,36 @@ class TestDemand:
         assert cost_of(Call(runnable="nothing"))[2] == "the runnable 'nothing' is not part of the model"
 
 
+class TestTasksThatCannotAlwaysBeInterrupted:
+    """A preemptive task, and below it two of runnables of 5 + 5 and 8 + 3 us; all values worked out by hand."""
+
+    def respond(self, preemption):
+        runnables = [Runnable(name=name, activities=(ticks(us),)) for name, us in (("b1", 5), ("b2", 5), ("c1", 8), ("c2", 3))]
+        built = one_core(
+            ("A", 20, [ticks(2)]),
+            ("B", 100, [Call(runnable="b1"), Call(runnable="b2")]),
+            ("C", 200, [Call(runnable="c1"), Call(runnable="c2")]),
+            runnables=runnables,
+        )
+        first, *others = built.software.tasks
+        tasks = (first, *(replace(task, preemption=preemption) for task in others))
+        built = replace(built, software=replace(built.software, tasks=tasks))
+        return [process.response.worst // US for process in analyze(built).processes]
+
+    def test_preemptive(self):
+        # C: 11 of its own, 10 of B, 2 of A at 0 and at 20.
+        assert self.respond(Preemption.PREEMPTIVE) == [2, 12, 25]
+
+    def test_cooperative(self):
+        # A interrupts at once. B waits for c1 (8), starts b2 behind b1 (5) and A (2) at 15, ends at 20.
+        # C starts c2 behind c1 (8), B (10) and two jobs of A (4) at 22, ends at 25.
+        assert self.respond(Preemption.COOPERATIVE) == [2, 20, 25]
+
+    def test_non_preemptive(self):
+        # A waits for all of C (11). B starts behind C (11) and A (2) at 13, ends at 23. C starts behind B and A at 12, ends at 23.
+        assert self.respond(Preemption.NON_PREEMPTIVE) == [13, 23, 23]
+
+
 class TestTriggers:
     def test_a_triggered_task_arrives_as_irregularly_as_its_trigger_ends(self):
         built = one_core(
