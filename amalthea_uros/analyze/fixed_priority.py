@@ -23,7 +23,7 @@ from amalthea_uros.units import Time
 METHOD = "busy window, fixed priorities, preemptive"
 SOURCE = "Lehoczky 1990; Tindell, Burns, Wellings 1994"
 #: Busy windows with more jobs are given up; the load is then so near to 1 that the result would mean nothing.
-MOST_JOBS = 200_000
+MOST_JOBS = 20_000
 
 
 def response_times(tasks: Sequence[Task], blocking: Sequence[Time]) -> list[Response]:
@@ -95,7 +95,9 @@ def response_time(
                 },
             )
             return response, completions[0]
-    return _unbounded(best, "the busy window does not end: the demand up to this priority fills the processor"), start
+    return _unbounded(
+        best, f"its busy window has more than {MOST_JOBS:,} jobs: the demand up to this priority fills the processor"
+    ), start
 
 
 def _unbounded(best: Time, reason: str) -> Response:

@@ -56,7 +56,9 @@ def response_time(
         return _unbounded(task, f"the demand up to this priority is {rate:.1%} of the capacity")
     period = Interference.of([*higher, task]).window(blocking, 0)
     if period is None or (jobs := task.arrivals.most(period)) > MOST_JOBS:
-        return _unbounded(task, "the busy period does not end: the demand up to this priority fills the capacity")
+        return _unbounded(
+            task, f"its busy period has more than {MOST_JOBS:,} jobs: the demand up to this priority fills the capacity"
+        )
     completions: list[Time] = []
     start = 0
     for job in range(1, jobs + 1):
