@@ -11,7 +11,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from random import Random
 
-from amalthea_uros.analyze import fixed_priority
+from amalthea_uros.analyze import levels
 from amalthea_uros.analyze.arrivals import Periodic
 from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.system import analyze
@@ -90,7 +90,7 @@ def main() -> None:
     random = Random(1)
     for cores in (1, 2, 4):
         sets = [task_set(1000, 0.7, random) for _ in range(cores)]
-        took = least_time(lambda sets=sets: [fixed_priority.response_times(s, [0] * len(s)) for s in sets], options.repeat)
+        took = least_time(lambda sets=sets: [levels.response_times(s) for s in sets], options.repeat)
         print(f"{cores} x 1,000 tasks at 70 % load: {took:.0f} ms")
     system = challenge_system(random)
     took = least_time(lambda: analyze(system), options.repeat)

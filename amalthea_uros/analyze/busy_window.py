@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.analyze.arrivals import NEVER, Periodic
+from amalthea_uros.analyze.supply import FULL, Supply
 from amalthea_uros.analyze.task import Task
 from amalthea_uros.units import Time
 
@@ -105,21 +106,23 @@ class Interference:
     ----------
     others : tasks whose arrivals are not periodic
     rate : about the demand per time in the long run
+    supply : what serves them
     """
 
     tasks: Sequence[Task]
     rows: Rows
     others: Sequence[Task]
     rate: float
+    supply: Supply = FULL
 
     @classmethod
-    def of(cls, tasks: Sequence[Task]) -> Interference:
+    def of(cls, tasks: Sequence[Task], supply: Supply = FULL) -> Interference:
         """That of tasks."""
-        *_, last = cls.of_first(tasks)
+        *_, last = cls.of_first(tasks, supply)
         return last
 
     @classmethod
-    def of_first(cls, tasks: Sequence[Task]) -> list[Interference]:
+    def of_first(cls, tasks: Sequence[Task], supply: Supply = FULL) -> list[Interference]:
         """That of no task, of the first one, of the first two, and so on; all of them share their rows."""
         rows = [_rows(task) for task in tasks]
         columns = np.array([row for part in rows for row in part], dtype=np.int64).reshape(-1, 5)
@@ -129,7 +132,7 @@ class Interference:
         others = [task for task in tasks if not isinstance(task.arrivals, Periodic)]
         counts = list(accumulate((not isinstance(task.arrivals, Periodic) for task in tasks), initial=0))
         return [
-            cls(tasks[:index], whole.first(ends[index]), others[: counts[index]], rates[index])
+            cls(tasks[:index], whole.first(ends[index]), others[: counts[index]], rates[index], supply)
             for index in range(len(tasks) + 1)
         ]
 
@@ -151,6 +154,8 @@ class Interference:
         ----------
         start : a lower bound of the window
         """
+        if self.supply is not FULL:
+            return self._supplied_window(fixed, start)
         rows = self.rows
         window = max(1, fixed, start)
         for _ in range(MOST_STEPS):
@@ -162,12 +167,23 @@ class Interference:
                 return window
         return None
 
+    def _supplied_window(self, fixed: Time, start: Time) -> Time | None:
+        window = max(1, start)
+        for _ in range(MOST_STEPS):
+            reached = self.supply.time_for(fixed + self.in_window(window))
+            if reached <= window:
+                return window
+            if reached > LIMIT:
+                return None
+            window = reached
+        return None
+
     def overloads_with(self, task: Task) -> bool:
         """Whether these tasks and another one demand more than there is, exactly."""
-        about = self.rate + float(demand_rate(task))
-        if abs(about - 1) > 1e-6:
-            return about > 1
-        return sum((demand_rate(other) for other in self.tasks), demand_rate(task)) > 1
+        about, supplied = self.rate + float(demand_rate(task)), self.supply.rate
+        if abs(about - float(supplied)) > 1e-6:
+            return about > supplied
+        return sum((demand_rate(other) for other in self.tasks), demand_rate(task)) > supplied
 
 
 def demand_rate(task: Task) -> Fraction:

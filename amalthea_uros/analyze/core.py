@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from amalthea_uros.analyze import fixed_priority, non_preemptive, schedule
-from amalthea_uros.analyze.arrivals import finer
-from amalthea_uros.analyze.blocking import blocking_times, has_sections, last_region, preemption
+from amalthea_uros.analyze import levels, non_preemptive, schedule
+from amalthea_uros.analyze.arrivals import Arrivals, finer
+from amalthea_uros.analyze.arrivals import Periodic as PeriodicArrivals
+from amalthea_uros.analyze.blocking import Blocking, is_interruptible, preemption
+from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.known import Known
-from amalthea_uros.analyze.placement import Placed
-from amalthea_uros.analyze.task import Claim, Response, Task
+from amalthea_uros.analyze.placement import Placed, Rank, Server
+from amalthea_uros.analyze.supply import FULL, Budget, Supply
+from amalthea_uros.analyze.task import Claim, Response, Sharing, Task
+from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.units import Time
@@ -18,14 +22,8 @@ from amalthea_uros.units import Time
 
 def responses_on(core: str, known: Known) -> dict[str, Response]:
     """The response times on a core, in picoseconds, as far as they can be known."""
-    here = known.on_core(core)
-    usable = known.usable(here, core)
-    analysis = _Core(known, core)
-    found = analysis.exact(usable) if len(usable) == len(here) else None
-    if found is None:
-        found = analysis.bounds(usable, here)
-    responses = (in_picoseconds(response, known.demands.grains(core)) for response in found)
-    return {placed.process.name: response for placed, response in zip(usable, responses, strict=True)}
+    found = _Core(known, core).responses(None, FULL)
+    return {name: in_picoseconds(response, known.demands.grains(core)) for name, response in found.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,11 +36,40 @@ class _Core:
         """Parts of a picosecond in which everything here is counted."""
         return self.known.demands.grains(self.core)
 
+    def responses(self, server: str | None, supply: Supply) -> dict[str, Response]:
+        """Of those on the core itself, or on the budget of a server, and of all below them."""
+        here = self.known.served(self.core, server)
+        usable = self.known.usable(here, self.core)
+        placed = [item for item in usable if isinstance(item, Placed)]
+        is_all = len(placed) == len(here) and supply is FULL
+        found = self.exact(placed) if is_all else None
+        if found is None:
+            found = self.bounds(usable, [item for item in here if isinstance(item, Placed)], supply)
+        by_name = {item.name: response for item, response in zip(usable, found, strict=True)}
+        for item in usable:
+            if isinstance(item, Server):
+                by_name |= self._inside(item, by_name.pop(item.name))
+        return by_name
+
+    def _inside(self, server: Server, response: Response) -> dict[str, Response]:
+        """The response times of those on the budget of a server, given when it gets its budget at the latest."""
+        budget, period = server.budget * self.grains, server.period * self.grains
+        if response.worst is None or response.worst > period:
+            self.known.give_up_on(server, f"the server {server.name!r} is not sure to get its budget in each period")
+            return {}
+        # A job may come when the budget has just been used up as early as it can be, or when polling has just found nothing.
+        used = 0 if server.scheduler.policy == Policy.POLLING_SERVER else budget
+        supply = Budget(budget=budget, period=period, wait=period - used + response.worst - budget)
+        self.known.notes.assume("of servers no more is known than that they get their budget somewhere in each period")
+        return self.responses(server.name, supply)
+
     def exact(self, here: Sequence[Placed]) -> list[Response] | None:
         """By the schedule, where all releases are known and nobody waits for lower priorities."""
+        if len({placed.rank for placed in here}) < len(here) or Blocking(here, self.known.demands).ceilings:
+            return None
         released = [self._released(placed, rank) for rank, placed in enumerate(reversed(here))]
         tasks = [task for task in released if task is not None]
-        if len(tasks) < len(released) or not tasks or len({placed.rank for placed in here}) < len(here):
+        if len(tasks) < len(released) or not tasks:
             return None
         found = schedule.response_times(tasks)
         if found is None:
@@ -51,9 +78,9 @@ class _Core:
         return found[::-1]
 
     def _released(self, placed: Placed, rank: int) -> schedule.Released | None:
-        """A process whose releases are all known, and that neither holds up others nor waits for them; None if it is none."""
+        """A process whose releases are all known; None if it is none, or cannot always be interrupted."""
         process = placed.process
-        if preemption(placed) is not Preemption.PREEMPTIVE or has_sections(placed, self.known.demands):
+        if not is_interruptible(placed) or placed.name in self.known.decisions:
             return None
         match [self.known.system.stimuli_by_name.get(name) for name in process.stimuli]:
             case [Periodic(jitter=None, condition=None, period=period, offset=offset)] if period > 0 <= offset:
@@ -66,48 +93,82 @@ class _Core:
                 )
         return None
 
-    def bounds(self, usable: Sequence[Placed], here: Sequence[Placed]) -> list[Response]:
+    def bounds(self, usable: Sequence[Placed | Server], here: Sequence[Placed], supply: Supply) -> list[Response]:
         """By busy windows; who comes lower may block, if its demand is known."""
-        known = self.known
-        ranks = sorted({placed.rank for placed in usable})
-        tasks = [
-            Task(
-                name=placed.process.name,
-                arrivals=finer(known.arrivals[placed.process.name], self.grains),
-                cost=known.costs[placed.process.name],
-                priority=ranks.index(placed.rank),
-            )
-            for placed in usable
-        ]
-        blocking = blocking_times([p for p in here if p.process.name in known.costs], known.demands, known.notes)
+        notes = self.known.notes
+        ranks = sorted({item.rank for item in usable})
+        tasks = [self._task(item, ranks) for item in usable]
+        blocking = Blocking([item for item in here if item.name in self.known.costs], self.known.demands)
+        blocking.note_protocols(notes)
+        waits = blocking.times()
         if tasks:
-            known.notes.assume("where not all releases on a core are known, all of them may come together at the worst moment")
-            known.notes.assume("best cases there hold once all tasks have been released")
-        found = fixed_priority.response_times(tasks, [blocking[task.name] for task in tasks])
-        for index, placed in enumerate(usable):
-            if preemption(placed) is not Preemption.PREEMPTIVE:
-                found[index] = self._to_the_last_region(index, usable, tasks, blocking)
+            notes.assume("where not all releases on a core are known, all of them may come together at the worst moment")
+            notes.assume("best cases there hold once all tasks have been released")
+        decisions = self._decisions(len(ranks)) if supply is FULL else []
+        found = levels.response_times(
+            [*tasks, *decisions], [*(waits.get(item.name, 0) for item in usable), *[0] * len(decisions)], supply
+        )
+        for index, item in enumerate(usable):
+            # Where deadlines or budgets decide, the busy window holds for tasks that cannot be interrupted, too.
+            if isinstance(item, Placed) and not is_interruptible(item) and item.sharing is Sharing.ARRIVAL and supply is FULL:
+                found[index] = self._to_the_last_region(index, usable, [*tasks, *decisions], blocking, waits)
         # The methods are exact for arrivals that do not know of each other; offsets may keep the worst moment from coming.
-        return [replace(response, claim=Claim.BOUND) for response in found]
+        return [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
+
+    def _task(self, item: Placed | Server, ranks: Sequence[Rank]) -> Task:
+        """A process or server as the methods know it; the job of a server is to use its budget."""
+        if isinstance(item, Server):
+            # Budget that is kept may be used at the end of one period and again at the start of the next one.
+            jitter = item.period - item.budget if item.scheduler.policy == Policy.DEFERRABLE_SERVER else 0
+            arrivals: Arrivals = PeriodicArrivals(item.period, jitter)
+            cost = Cost.constant(item.budget * self.grains)
+        else:
+            arrivals, cost = self.known.arrivals[item.name], self.known.costs[item.name]
+        return Task(
+            name=item.name,
+            arrivals=finer(arrivals, self.grains),
+            cost=cost,
+            priority=ranks.index(item.rank),
+            sharing=item.sharing,
+            deadline=(item.deadline or 0) * self.grains if item.sharing is Sharing.DEADLINE else 0,
+            slice=item.slice * self.grains,
+        )
+
+    def _decisions(self, priority: int) -> list[Task]:
+        """The decisions of schedulers at the arrivals of tasks, which come before everything else."""
+        return [
+            Task(
+                name=f"decision for {placed.name}",
+                arrivals=finer(self.known.arrivals[placed.name], self.grains),
+                cost=self.known.decisions[placed.name],
+                priority=priority,
+            )
+            for placed in self.known.on_core(self.core)
+            if placed.name in self.known.decisions and placed.name in self.known.arrivals
+        ]
 
     def _to_the_last_region(
-        self, index: int, here: Sequence[Placed], tasks: Sequence[Task], blocking: Mapping[str, Time]
+        self,
+        index: int,
+        here: Sequence[Placed | Server],
+        tasks: Sequence[Task],
+        blocking: Blocking,
+        waits: Mapping[str, Time],
     ) -> Response:
         """The response time of a task that is not interrupted in its last region, or only by some."""
         placed, task = here[index], tasks[index]
-        is_cooperative = preemption(placed) is Preemption.COOPERATIVE
-        if is_cooperative:
+        assert isinstance(placed, Placed)
+        if preemption(placed) is Preemption.COOPERATIVE:
             sentence = "cooperative tasks are interrupted by preemptive ones at once, by others between runnables"
             self.known.notes.assume(sentence)
         higher = [other for other in tasks if other is not task and other.priority >= task.priority]
         always = [
             tasks[number]
             for number, other in enumerate(here)
-            if tasks[number].priority > task.priority
-            and (other.is_isr or (is_cooperative and preemption(other) is not Preemption.COOPERATIVE))
+            if (tasks[number].priority > task.priority if isinstance(other, Server) else blocking.interrupts(other, placed))
         ]
-        last = last_region(placed, self.known.demands)
-        return non_preemptive.response_time(task, higher, blocking[task.name], 1, last, always)
+        always += tasks[len(here) :]
+        return non_preemptive.response_time(task, higher, waits[placed.name], 1, blocking.last_region(placed), always)
 
 
 def in_picoseconds(response: Response, grains: int) -> Response:

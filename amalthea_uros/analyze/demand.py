@@ -8,27 +8,38 @@ without it does not pay for it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import ceil, floor
 
 from amalthea_uros.analyze.cost import Cost, Part
 from amalthea_uros.analyze.means import mean
-from amalthea_uros.analyze.notes import Notes
+from amalthea_uros.analyze.memory import MemoryAccess, count_of
+from amalthea_uros.analyze.modes import holds
+from amalthea_uros.analyze.notes import Notes, UnknownDemandError
+from amalthea_uros.analyze.overheads import Overheads
+from amalthea_uros.analyze.settings import Memory, Settings
 from amalthea_uros.perf.distributions import Distribution, highest, lowest
+from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import (
     Activity,
     Call,
     Count,
+    Demand,
     Execute,
     ExecutionNeed,
     Group,
+    Isr,
+    LabelAccess,
     Loop,
+    Migrate,
     ProbabilitySwitch,
     Process,
     Runnable,
     Switch,
+    WaitEvent,
+    walk,
 )
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
@@ -38,38 +49,33 @@ from amalthea_uros.units import Frequency, time_of_ticks
 MOST_GRAINS = 1000
 
 
-class UnknownDemandError(Exception):
-    """The demand of a process is not known; the text says why."""
-
-
 @dataclass(slots=True)
 class Demands:
-    """The demand of the processes of a system.
-
-    Attributes
-    ----------
-    frequencies : of cores, instead of what the system says
-    scale : factor on all execution times
-    """
+    """The demand of the processes of a system."""
 
     system: System
     notes: Notes
-    frequencies: dict[str, Frequency] = field(default_factory=dict)
-    scale: Fraction = Fraction(1)
+    settings: Settings = field(default_factory=Settings)
+    memory: MemoryAccess = field(init=False)
+    overheads: Overheads = field(init=False)
     _known: dict[tuple[str, str], tuple[Part, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.memory = MemoryAccess(self.system, self.notes, self.frequency)
+        self.overheads = Overheads(self.system)
 
     def grains(self, core: str) -> int:
         """How many grains a picosecond has on a core; 1 where they would be too small, and then demand is rounded outwards."""
         frequency = self.frequency(core)
         if frequency is None:
             return 1
-        fineness = (time_of_ticks(1, frequency) * self.scale).denominator
+        fineness = (time_of_ticks(1, frequency) * self.settings.scale).denominator
         return fineness if fineness <= MOST_GRAINS else 1
 
     def frequency(self, core: str) -> Frequency | None:
         """The clock of a core, None if it is not known."""
-        if core in self.frequencies:
-            return self.frequencies[core]
+        if core in self.settings.frequencies:
+            return self.settings.frequencies[core]
         clock = self.system.clocks.get(self.system.cores[core].clock or "")
         return clock.frequency if clock is not None and clock.frequency else None
 
@@ -80,22 +86,54 @@ class Demands:
         ------
         UnknownDemandError : something in it has no bound, or the core no clock.
         """
-        return Cost(_summed(self._parts(process.activities, core, ())))
+        parts = self._parts(process.activities, core, ())
+        if self.settings.memory is Memory.IMPLICIT:
+            parts += self._copies(process.activities, core)
+        if isinstance(process, Isr):
+            parts += [self._ticks(demand, core) for demand in self.overheads.of_isr(process, core)]
+        return Cost(_scaled(_summed(parts), self.settings.factors.get(process.name)))
+
+    def piece(self, process: Process, activities: Sequence[Activity], core: str) -> Cost:
+        """What some activities of a process cost, without what comes before and behind all of them; raises as `cost`."""
+        return Cost(_scaled(_summed(self._parts(activities, core, ())), self.settings.factors.get(process.name)))
+
+    def decision(self, scheduler: Scheduler, core: str) -> Cost:
+        """What one decision of a scheduler costs; raises as `cost`."""
+        return Cost(_summed(self._parts(scheduler.overhead, core, ())))
+
+    def _copies(self, activities: Sequence[Activity], core: str) -> list[Part]:
+        """The copies of all labels that a process reads, before it starts, and of those that it writes, at its end."""
+        found = dict.fromkeys((access.label, access.kind) for access in self._accesses(activities, ()))
+        self.notes.assume("each label is copied once at the start and once at the end of a job that reads or writes it")
+        grains = self.settings.scale * self.grains(core)
+        return [self.memory.part(core, label, kind, count_of(1), grains) for label, kind in found]
+
+    def _accesses(self, activities: Sequence[Activity], above: tuple[str, ...]) -> Iterator[LabelAccess]:
+        for activity in walk(tuple(activities)):
+            if isinstance(activity, LabelAccess):
+                yield activity
+            elif isinstance(activity, Call) and activity.runnable in self.system.runnables and activity.runnable not in above:
+                yield from self._accesses(self.system.runnables[activity.runnable].activities, (*above, activity.runnable))
 
     def _parts(self, activities: Iterable[Activity], core: str, above: tuple[str, ...]) -> list[Part]:
-        return [part for activity in activities for part in self._of(activity, core, above)]
+        return [part for activity in activities for part in self._with_services(activity, core, above)]
+
+    def _with_services(self, activity: Activity, core: str, above: tuple[str, ...]) -> Iterator[Part]:
+        """The parts of one activity, and of the services of the operating system that it calls."""
+        yield from self._of(activity, core, above)
+        for demand in self.overheads.of_activity(activity, core):
+            yield self._ticks(demand, core)
 
     def _of(self, activity: Activity, core: str, above: tuple[str, ...]) -> Sequence[Part]:
         """The parts of one activity; what takes no time has none."""
         match activity:
             case Execute(demand=demand):
-                by_type = dict(demand.by_core_type)
-                ticks = by_type.get(self.system.cores[core].type or "", demand.ticks)
-                if ticks is None:
-                    raise UnknownDemandError(f"there are ticks without a value for {core}")
-                return [self._time(ticks, self.scale, core)]
+                return [self._ticks(demand, core)]
             case ExecutionNeed(needs=needs):
-                return [self._time(need, self._ticks_per_unit(name, core) * self.scale, core) for name, need in needs]
+                scale = self.settings.scale
+                return [self._time(need, self._ticks_per_unit(name, core) * scale, core) for name, need in needs]
+            case LabelAccess(label=label, kind=kind, times=times) if self.settings.memory is Memory.EXPLICIT:
+                return [self.memory.part(core, label, kind, count_of(times), self.settings.scale * self.grains(core))]
             case Call():
                 return self._call(activity, core, above)
             case Group(activities=inner):
@@ -103,12 +141,35 @@ class Demands:
             case ProbabilitySwitch(branches=branches):
                 weights = [branch.weight for branch in branches]
                 return _one_of([self._parts(branch.activities, core, above) for branch in branches], weights)
-            case Switch(cases=cases, default=default):
-                alternatives = [*(case.activities for case in cases), default or ()]
-                return _one_of([self._parts(inner, core, above) for inner in alternatives], [1.0] * len(alternatives))
-            case Loop():
+            case Switch():
+                alternatives = [self._parts(inner, core, above) for inner in self._possible(activity)]
+                return _one_of(alternatives, [1.0] * len(alternatives))
+            case Loop(condition=condition):
+                if holds(condition, self.settings.modes) is False:
+                    return []
                 raise UnknownDemandError("there is a loop, and nothing says how often it is repeated at most")
+            case WaitEvent():
+                raise UnknownDemandError("it waits for events, and nothing says how long at most")
+            case Migrate():
+                raise UnknownDemandError("it moves to another scheduler, for which there is no analysis")
         return []
+
+    def _possible(self, switch: Switch) -> list[tuple[Activity, ...]]:
+        """The branches that may be taken, given the modes that are known."""
+        found: list[tuple[Activity, ...]] = []
+        for case in switch.cases:
+            value = holds(case.condition, self.settings.modes)
+            if value is not False:
+                found.append(case.activities)
+            if value:
+                return found
+        return [*found, switch.default or ()]
+
+    def _ticks(self, demand: Demand, core: str) -> Part:
+        ticks = dict(demand.by_core_type).get(self.system.cores[core].type or "", demand.ticks)
+        if ticks is None:
+            raise UnknownDemandError(f"there are ticks without a value for {core}")
+        return self._time(ticks, self.settings.scale, core)
 
     def _call(self, call: Call, core: str, above: tuple[str, ...]) -> Sequence[Part]:
         runnable = self.system.runnables.get(call.runnable)
@@ -117,6 +178,11 @@ class Demands:
         if runnable.name in above:
             raise UnknownDemandError(f"the runnable {runnable.name!r} calls itself")
         parts = self._runnable(runnable, core, above)
+        match runnable.condition and holds(runnable.condition, self.settings.modes):
+            case False:
+                return []
+            case None if runnable.condition is not None:
+                parts = [replace(_any_time(part), best=0) for part in parts]
         if call.times is not None:
             parts = [_repeated(part, call.times) for part in parts]
         return [_counted(part, call.counter) for part in parts] if call.counter else parts
@@ -165,6 +231,16 @@ def _summed(parts: Sequence[Part]) -> tuple[Part, ...]:
             else replace(same, worst=same.worst + part.worst, best=same.best + part.best, average=same.average + part.average)
         )
     return tuple(found.values())
+
+
+def _scaled(parts: tuple[Part, ...], factor: Fraction | None) -> tuple[Part, ...]:
+    """Parts that take longer or shorter by a factor."""
+    if factor is None:
+        return parts
+    return tuple(
+        replace(part, worst=ceil(part.worst * factor), best=floor(part.best * factor), average=part.average * factor)
+        for part in parts
+    )
 
 
 def _counted(part: Part, counter: Counter) -> Part:

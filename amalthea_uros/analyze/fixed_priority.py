@@ -12,11 +12,8 @@ For tasks that cannot be interrupted see `non_preemptive`.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
-
 from amalthea_uros.analyze.best_case import best_response
-from amalthea_uros.analyze.busy_window import Interference
+from amalthea_uros.analyze.busy_window import Interference, demand_rate
 from amalthea_uros.analyze.task import Claim, Response, Task
 from amalthea_uros.units import Time
 
@@ -24,31 +21,6 @@ METHOD = "busy window, fixed priorities, preemptive"
 SOURCE = "Lehoczky 1990; Tindell, Burns, Wellings 1994"
 #: Busy windows with more jobs are given up; the load is then so near to 1 that the result would mean nothing.
 MOST_JOBS = 20_000
-
-
-def response_times(tasks: Sequence[Task], blocking: Sequence[Time]) -> list[Response]:
-    """The response times of all tasks of a processor, in the order given.
-
-    Parameters
-    ----------
-    blocking : the longest that each task can wait for a task of lower priority
-    """
-    order = sorted(range(len(tasks)), key=lambda index: -tasks[index].priority)
-    ordered = [tasks[index] for index in order]
-    interference = Interference.of_first(ordered)
-    sharers = Counter(task.priority for task in tasks)
-    found: dict[int, Response] = {}
-    start: Time = 0
-    for position, index in enumerate(order):
-        task = tasks[index]
-        if sharers[task.priority] == 1:
-            claim = Claim.BOUND if blocking[index] else Claim.EXACT
-            found[index], start = response_time(task, interference[position], blocking[index], start, claim)
-        else:
-            # Tasks of the same priority are served in the order of their arrival; that all others come first is a safe bound.
-            others = [other for other in ordered if other.priority >= task.priority and other is not task]
-            found[index], start = response_time(task, Interference.of(others), blocking[index])[0], 0
-    return [found[index] for index in range(len(tasks))]
 
 
 def response_time(
@@ -62,8 +34,7 @@ def response_time(
     """
     best = best_response(task, higher)
     if higher.overloads_with(task):
-        rate = higher.rate + float(task.cost.mean_worst * task.arrivals.rate)
-        return _unbounded(best, f"the demand up to this priority is {rate:.1%} of the processor"), start
+        return unbounded(best, higher, task, METHOD, SOURCE), start
     worst, worst_window, worst_job = -1, 0, 0
     window = 0
     completions: list[Time] = []
@@ -95,10 +66,13 @@ def response_time(
                 },
             )
             return response, completions[0]
-    return _unbounded(
-        best, f"its busy window has more than {MOST_JOBS:,} jobs: the demand up to this priority fills the processor"
-    ), start
+    reason = f"its busy window has more than {MOST_JOBS:,} jobs: the demand up to this priority fills the processor"
+    return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason), start
 
 
-def _unbounded(best: Time, reason: str) -> Response:
-    return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)
+def unbounded(best: Time, higher: Interference, task: Task, method: str, source: str) -> Response:
+    """What is told of a task where more is demanded than served."""
+    rate = higher.rate + float(demand_rate(task))
+    supplied = f"{float(higher.supply.rate):.1%} of it are granted" if higher.supply.rate < 1 else "more than there is"
+    reason = f"the demand up to this priority is {rate:.1%} of the processor, {supplied}"
+    return Response(worst=None, best=best, method=method, source=source, reason=reason)

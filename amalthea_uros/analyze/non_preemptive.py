@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from amalthea_uros.analyze.busy_window import Interference
-from amalthea_uros.analyze.fixed_priority import MOST_JOBS
+from amalthea_uros.analyze.fixed_priority import MOST_JOBS, unbounded
 from amalthea_uros.analyze.task import Claim, Response, Task
 from amalthea_uros.units import Time
 
@@ -52,13 +52,11 @@ def response_time(
     last = task.cost.worst if last is None else last
     others, interrupting = Interference.of(higher), Interference.of(always)
     if others.overloads_with(task):
-        rate = others.rate + float(task.cost.mean_worst * task.arrivals.rate)
-        return _unbounded(task, f"the demand up to this priority is {rate:.1%} of the capacity")
+        return unbounded(task.cost.best, others, task, METHOD, SOURCE)
     period = Interference.of([*higher, task]).window(blocking, 0)
     if period is None or (jobs := task.arrivals.most(period)) > MOST_JOBS:
-        return _unbounded(
-            task, f"its busy period has more than {MOST_JOBS:,} jobs: the demand up to this priority fills the capacity"
-        )
+        reason = f"its busy period has more than {MOST_JOBS:,} jobs: the demand up to this priority fills the capacity"
+        return Response(worst=None, best=task.cost.best, method=METHOD, source=SOURCE, reason=reason)
     completions: list[Time] = []
     start = 0
     for job in range(1, jobs + 1):
@@ -82,10 +80,6 @@ def response_time(
             "earlier arrival": -task.arrivals.span(worst_job),
         },
     )
-
-
-def _unbounded(task: Task, reason: str) -> Response:
-    return Response(worst=None, best=task.cost.best, method=METHOD, source=SOURCE, reason=reason)
 
 
 def _start(others: Interference, before: Time, lower: Time, step: Time) -> Time:

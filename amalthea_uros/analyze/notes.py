@@ -8,6 +8,10 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.perf.named import Named
 
 
+class UnknownDemandError(Exception):
+    """The demand of a process is not known; the text says why."""
+
+
 @dataclass(slots=True)
 class Notes:
     """Collects findings and assumptions, each of them once."""

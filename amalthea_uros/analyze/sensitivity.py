@@ -6,13 +6,12 @@ shortens a response time.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 
-from amalthea_uros.analyze.result import Analysis
+from amalthea_uros.analyze.settings import Settings
 from amalthea_uros.analyze.system import analyze
 from amalthea_uros.perf.system import System
-from amalthea_uros.units import Frequency
 
 #: Factors are told to a thousandth.
 STEP = Fraction(1, 1000)
@@ -20,15 +19,14 @@ STEP = Fraction(1, 1000)
 GREATEST = Fraction(1000)
 
 
-def greatest_scale(system: System, frequencies: Mapping[str, Frequency] | None = None) -> Fraction | None:
+def greatest_scale(system: System, settings: Settings | None = None) -> Fraction | None:
     """The greatest factor on all execution times with which nothing is missed, to a thousandth; None if none is small enough.
 
     Deadlines and requirements that cannot be judged do not count.
     """
 
     def holds(steps: int) -> bool:
-        analysis: Analysis = analyze(system, frequencies, steps * STEP)
-        return not analysis.misses
+        return not analyze(system, replace(settings or Settings(), scale=steps * STEP)).misses
 
     low, high = 0, 1
     while high * STEP < GREATEST and holds(high):

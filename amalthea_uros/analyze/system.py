@@ -8,29 +8,26 @@ from fractions import Fraction
 from amalthea_uros.analyze.blocking import preemption
 from amalthea_uros.analyze.core import responses_on
 from amalthea_uros.analyze.known import Known
+from amalthea_uros.analyze.notes import Notes
+from amalthea_uros.analyze.overheads import COUNTED
 from amalthea_uros.analyze.propagation import Propagation
 from amalthea_uros.analyze.requirements import judge, upper_response_limits
 from amalthea_uros.analyze.result import Analysis, ProcessorResult, ProcessResult, Verdict
+from amalthea_uros.analyze.settings import Memory, Settings
 from amalthea_uros.analyze.task import Response
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.system import System
-from amalthea_uros.units import Frequency, Time
+from amalthea_uros.units import Time
 
 #: Rounds of propagation; irregularity that still grows then will not stop.
 MOST_ROUNDS = 100
 
 
-def analyze(system: System, frequencies: Mapping[str, Frequency] | None = None, scale: Fraction = Fraction(1)) -> Analysis:
-    """The analysis of a system.
-
-    Parameters
-    ----------
-    frequencies : of cores, instead of what the system says
-    scale : factor on all execution times, as if clocks were slower by it
-    """
-    known = Known(system, dict(frequencies or {}), scale)
-    if scale != 1:
-        known.notes.assume(f"all execution times are multiplied by {float(scale):g}")
+def analyze(system: System, settings: Settings | None = None) -> Analysis:
+    """The analysis of a system."""
+    settings = settings or Settings()
+    known = Known(system, settings)
+    _note_settings(settings, known.notes)
     known.place()
     responses = _responses(known)
     _note_left_out(known, responses)
@@ -63,18 +60,27 @@ def _responses(known: Known) -> dict[str, Response]:
     return {}
 
 
+def _note_settings(settings: Settings, notes: Notes) -> None:
+    if settings.scale != 1:
+        notes.assume(f"all execution times are multiplied by {float(settings.scale):g}")
+    for name, factor in settings.factors.items():
+        notes.assume(f"the execution times of {name} are multiplied by {float(factor):g}")
+    for label, value in settings.modes.items():
+        notes.assume(f"the mode {label} is always {value}")
+    if settings.memory is not Memory.NONE:
+        notes.assume("accesses to memory do not wait for those of other cores")
+
+
 def _note_left_out(known: Known, responses: Mapping[str, Response]) -> None:
     """Note what the system has and the analysis does not take into account."""
     system, notes = known.system, known.notes
     costs = {overhead.name: overhead for overhead in system.os.overheads}
     for operating_system in system.os.systems:
-        if operating_system.overhead in costs:
-            message = f"the overheads of {operating_system.name!r} are not taken into account"
-            notes.warning("ANA006", message, costs[operating_system.overhead])
-    for scheduler in system.schedulers.values():
-        if scheduler.overhead:
-            message = f"the cost of scheduling decisions of {scheduler.name!r} is not taken into account"
-            notes.warning("ANA006", message, scheduler)
+        overhead = costs.get(operating_system.overhead or "")
+        for service, _ in overhead.services if overhead else ():
+            if service not in COUNTED:
+                message = f"the cost of {service!r} in {operating_system.name!r} is not taken into account"
+                notes.warning("ANA006", message, overhead)
     for name, response in responses.items():
         process = known.placed[name].process
         if not isinstance(process, Task) or response.worst is None:

@@ -11,6 +11,14 @@ from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.units import Time
 
 
+class Sharing(StrEnum):
+    """Who of the same priority is served first."""
+
+    ARRIVAL = "first come, first served"
+    DEADLINE = "earliest deadline first"
+    SLICES = "round robin"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
     """A process on one processor.
@@ -18,12 +26,18 @@ class Task:
     Attributes
     ----------
     priority : higher numbers are served first
+    sharing : how it shares its priority with others; all of them do it in the same way
+    deadline : relative to the arrival, for the earliest deadline first
+    slice : how long it is served at a time, for round robin
     """
 
     name: str
     arrivals: Arrivals
     cost: Cost
     priority: int = 0
+    sharing: Sharing = Sharing.ARRIVAL
+    deadline: Time = 0
+    slice: Time = 0
 
 
 class Claim(StrEnum):

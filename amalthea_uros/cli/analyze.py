@@ -10,6 +10,7 @@ from typing import Any
 
 import click
 
+from amalthea_uros.analyze.settings import Settings
 from amalthea_uros.analyze.system import analyze
 from amalthea_uros.cli.output import Output, output_option
 from amalthea_uros.pipeline import system_of
@@ -61,7 +62,7 @@ def command(
         raise click.BadParameter(f"there is no core {unknown[0]!r}; cores are {', '.join(system.cores)}")
     if explain is not None and explain not in system.processes:
         raise click.BadParameter(f"there is no process {explain!r}; processes are {', '.join(system.processes)}")
-    analysis = analyze(system, dict(frequencies), Fraction(str(scale)))
+    analysis = analyze(system, Settings(frequencies=dict(frequencies), scale=Fraction(str(scale))))
     Terminal(sys.stderr).findings((*findings, *analysis.findings))
     for output in outputs:
         if output.format == "json":

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Event, EventChain, Events
-from amalthea_uros.perf.hardware import Clock, Core, Hardware, Memory
+from amalthea_uros.perf.hardware import Cache, Clock, Connection, Core, Hardware, Interconnect, Memory
 from amalthea_uros.perf.mapping import Mapping as SystemMapping
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.os import InterruptController, Os, Scheduler
@@ -48,6 +48,20 @@ class System:
     def memories(self) -> Mapping[str, Memory]:
         """The memories."""
         return _by_name(memory for structure in self.hardware.walk() for memory in structure.memories)
+
+    @cached_property
+    def modules(self) -> Mapping[str, Cache | Interconnect | Connection]:
+        """What can lie on the way from a core to a memory."""
+        found: list[Cache | Interconnect | Connection] = []
+        for structure in self.hardware.walk():
+            found += (*structure.caches, *structure.interconnects, *structure.connections)
+            found += (cache for core in structure.cores for cache in core.caches)
+        return _by_name(found)
+
+    @cached_property
+    def memory_of(self) -> Mapping[str, str]:
+        """The memories of labels and other elements."""
+        return {placement.element: placement.memory for placement in self.mapping.placements}
 
     @cached_property
     def schedulers(self) -> Mapping[str, Scheduler]:

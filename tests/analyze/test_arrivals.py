@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support import SHARED
 
-from amalthea_uros.analyze import fixed_priority, non_preemptive
+from amalthea_uros.analyze import levels, non_preemptive
 from amalthea_uros.analyze.activation import arrivals_of
 from amalthea_uros.analyze.arrivals import Behind, Curve, Delayed, Every, Once, Pattern, Periodic, Together
 from amalthea_uros.analyze.cost import Cost
@@ -97,9 +97,9 @@ def test_the_tutorial_of_compositional_analysis():
     arrivals = {name: Periodic(source["P"], source["J"]) for name, source in case["sources"].items()}
     worst = {}
     for resource, analysis in (
-        ("CPU1", lambda tasks: fixed_priority.response_times(tasks, [0] * len(tasks))),
+        ("CPU1", levels.response_times),
         ("BUS", non_preemptive.response_times),
-        ("CPU2", lambda tasks: fixed_priority.response_times(tasks, [0] * len(tasks))),
+        ("CPU2", levels.response_times),
     ):
         tasks = [
             # Lower numbers are more important there.

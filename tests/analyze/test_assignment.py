@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 from support import ROOT
 
 from amalthea_uros import pipeline
-from amalthea_uros.analyze import fixed_priority
+from amalthea_uros.analyze import levels
 from amalthea_uros.analyze.arrivals import Periodic
 from amalthea_uros.analyze.assignment import assign
 from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.sensitivity import greatest_scale
+from amalthea_uros.analyze.settings import Settings
 from amalthea_uros.analyze.system import analyze
 from amalthea_uros.analyze.task import Task
 
@@ -23,7 +24,7 @@ ROWS = st.lists(st.tuples(st.integers(4, 14), st.integers(0, 8), st.integers(1, 
 def meets(order, tasks, deadlines):
     """Whether an order of indices, lowest priority first, meets all deadlines."""
     ranked = [Task(name=t.name, arrivals=t.arrivals, cost=t.cost, priority=order.index(i)) for i, t in enumerate(tasks)]
-    responses = fixed_priority.response_times(ranked, [0] * len(ranked))
+    responses = levels.response_times(ranked)
     return all(r.worst is not None and r.worst <= d for r, d in zip(responses, deadlines, strict=True))
 
 
@@ -54,8 +55,8 @@ def test_deadline_monotonic_order_is_not_best_with_jitter():
 def test_the_greatest_scale_is_where_a_verdict_changes(sample):
     system = pipeline.describe(ROOT / "samples" / f"{sample}.yaml").system
     scale = greatest_scale(system)
-    assert not analyze(system, scale=scale).misses
-    assert analyze(system, scale=scale + Fraction(1, 1000)).misses
+    assert not analyze(system, Settings(scale=scale)).misses
+    assert analyze(system, Settings(scale=scale + Fraction(1, 1000))).misses
 
 
 def test_the_control_function_of_the_thesis_has_room_for_its_deadline():

@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import SHARED
 
-from amalthea_uros.analyze import fixed_priority, non_preemptive, schedule
+from amalthea_uros.analyze import levels, non_preemptive, schedule
 from amalthea_uros.analyze.arrivals import Periodic
 from amalthea_uros.analyze.cost import Cost, Part
 from amalthea_uros.analyze.schedule import Released
@@ -40,7 +40,7 @@ def test_published_and_independent_figures(case):
     if "non_preemptive" in case["scheduling"]:
         found = non_preemptive.response_times(tasks, case["bit_time"])
     else:
-        found = fixed_priority.response_times(tasks, [task.get("blocking", 0) for task in case["tasks"]])
+        found = levels.response_times(tasks, [task.get("blocking", 0) for task in case["tasks"]])
     worst = [response.worst for response in found]
     if case.get("wcrt_measured_from") == "arrival_before_jitter":
         worst = [response + task["jitter"] for response, task in zip(worst, case["tasks"], strict=True)]
@@ -51,7 +51,7 @@ def test_published_and_independent_figures(case):
 def test_lehoczky_1990_has_its_worst_response_at_the_fifth_job():
     t1 = Task(name="t1", arrivals=Periodic(70), cost=Cost.constant(26), priority=2)
     t2 = Task(name="t2", arrivals=Periodic(100), cost=Cost.constant(62), priority=1)
-    _, response = fixed_priority.response_times([t1, t2], [0, 0])
+    _, response = levels.response_times([t1, t2])
     assert (response.worst, response.jobs) == (118, 7)
     assert response.terms["earlier arrival"] == -4 * 100
 
@@ -79,7 +79,7 @@ def test_schedules_job_by_job(case):
 def test_overload_is_a_result_with_a_reason():
     high = Task(name="high", arrivals=Periodic(10), cost=Cost.constant(6), priority=2)
     low = Task(name="low", arrivals=Periodic(10), cost=Cost.constant(5), priority=1)
-    first, second = fixed_priority.response_times([high, low], [0, 0])
+    first, second = levels.response_times([high, low])
     assert first.worst == 6
     assert second.worst is None
     assert "110.0%" in second.reason
@@ -89,7 +89,7 @@ def test_overload_is_a_result_with_a_reason():
 def test_a_processor_that_is_exactly_full():
     high = Task(name="high", arrivals=Periodic(4), cost=Cost.constant(2), priority=2)
     low = Task(name="low", arrivals=Periodic(8), cost=Cost.constant(4), priority=1)
-    assert [response.worst for response in fixed_priority.response_times([high, low], [0, 0])] == [2, 8]
+    assert [response.worst for response in levels.response_times([high, low])] == [2, 8]
 
 
 TASKS = st.lists(st.tuples(st.sampled_from([4, 5, 6, 8, 10, 12]), st.integers(1, 4), st.integers(0, 3)), min_size=1, max_size=4)
@@ -117,7 +117,7 @@ def test_the_busy_window_is_the_schedule_of_the_critical_instant(rows):
     assume(load(tasks) <= 1)
     released = [Released(name=t.name, period=t.arrivals.period, offset=0, cost=t.cost, priority=t.priority) for t in tasks]
     exact = schedule.response_times(released)
-    bounds = fixed_priority.response_times(tasks, [0] * len(tasks))
+    bounds = levels.response_times(tasks)
     # Released together, the worst moment is the first one (Liu and Layland 1973).
     assert [response.worst for response in bounds] == [response.worst for response in exact]
 
@@ -133,7 +133,7 @@ def test_offsets_never_make_it_worse_than_the_bound(rows, offsets):
     exact = schedule.response_times(released)
     until = max(offsets) + 2 * schedule.hyperperiod(released)
     jobs = schedule.schedule(released, until, Cost.best_of)
-    for one, bound, best in zip(exact, fixed_priority.response_times(tasks, [0] * len(tasks)), jobs, strict=True):
+    for one, bound, best in zip(exact, levels.response_times(tasks), jobs, strict=True):
         assert one.worst <= bound.worst
         # Once all tasks have started, and what was released before has ended.
         assert bound.best <= min(job.finish - job.release for job in best if job.release >= until / 2)
@@ -144,8 +144,8 @@ def test_more_load_never_shortens_a_response_time(rows):
     tasks = drawn(rows, jitter=True)
     more = [Task(name=t.name, arrivals=t.arrivals, cost=Cost.constant(t.cost.worst + 1), priority=t.priority) for t in tasks]
     for less, greater in zip(
-        fixed_priority.response_times(tasks, [0] * len(tasks)),
-        fixed_priority.response_times(more, [0] * len(more)),
+        levels.response_times(tasks),
+        levels.response_times(more),
         strict=True,
     ):
         assert greater.worst is None or (less.worst is not None and less.worst <= greater.worst)
@@ -155,7 +155,7 @@ def test_more_load_never_shortens_a_response_time(rows):
 def test_the_order_of_tasks_does_not_matter(rows, random):
     tasks = drawn(rows, jitter=True)
     shuffled = random.sample(tasks, len(tasks))
-    for analysis in (lambda ts: fixed_priority.response_times(ts, [0] * len(ts)), non_preemptive.response_times):
+    for analysis in (levels.response_times, non_preemptive.response_times):
         by_name = {task.name: response for task, response in zip(tasks, analysis(tasks), strict=True)}
         assert {task.name: response for task, response in zip(shuffled, analysis(shuffled), strict=True)} == by_name
 
@@ -212,7 +212,7 @@ class TestDemandThatIsNotTheSameInEachJob:
     def test_it_is_not_a_25_us_task(self):
         low = Task(name="low", arrivals=Periodic(10_000), cost=Cost.constant(1000), priority=1)
         executor = Task(name="executor", arrivals=Periodic(1000), cost=self.EXECUTOR, priority=2)
-        _, response = fixed_priority.response_times([executor, low], [0, 0])
+        _, response = levels.response_times([executor, low])
         # Two activations in the window of 1,037 us, of which one takes a message.
         assert response.worst == 1000 + 2 * 12 + 13
 

@@ -9,6 +9,7 @@ from support import ROOT, SHARED
 
 from amalthea_uros import extract, load, pipeline
 from amalthea_uros.analyze.result import Verdict
+from amalthea_uros.analyze.settings import Settings
 from amalthea_uros.analyze.system import analyze
 from amalthea_uros.perf import stimuli as perf_stimuli
 from amalthea_uros.perf.constraints import Constraints, Requirement, TimeLimit, TimeMetric
@@ -135,7 +136,7 @@ class TestTheChallengeOf2017:
         figures = waters()
         preemptive = variant.startswith("preemptive")
         built = challenge(figures, preemptive)
-        analysis = analyze(built, dict.fromkeys(built.cores, Fraction(frequency * 10**6)))
+        analysis = analyze(built, Settings(dict.fromkeys(built.cores, Fraction(frequency * 10**6))))
         found = by_name(analysis)
         for task in figures["tasks"]:
             if task["scheduling"] == "cooperative" and not preemptive:
@@ -153,14 +154,14 @@ class TestTheChallengeOf2017:
         figures = waters()
         built = challenge(figures, preemptive=True)
         for variant, frequency in (("nominal_200MHz_nomem", 200), ("unimore_300MHz_nomem", 300)):
-            analysis = analyze(built, dict.fromkeys(built.cores, Fraction(frequency * 10**6)))
+            analysis = analyze(built, Settings(dict.fromkeys(built.cores, Fraction(frequency * 10**6))))
             loads = {processor.name: round(float(processor.worst), 6) for processor in analysis.processors}
             assert loads == figures["variants"][variant]["core_utilisation"]
 
     def test_a_clock_and_a_factor_say_the_same(self):
         built = challenge(waters(), preemptive=True)
-        faster = analyze(built, dict.fromkeys(built.cores, Fraction(400 * 10**6)))
-        scaled = analyze(built, scale=Fraction(1, 2))
+        faster = analyze(built, Settings(dict.fromkeys(built.cores, Fraction(400 * 10**6))))
+        scaled = analyze(built, Settings(scale=Fraction(1, 2)))
         assert [p.response for p in faster.processes] == [p.response for p in scaled.processes]
 
 

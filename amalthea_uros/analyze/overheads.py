@@ -1,0 +1,90 @@
+"""What the operating system costs: services are charged to who calls them, interrupt entry and exit to the interrupt."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from amalthea_uros.perf.os import Overhead, SemaphoreKind, Service
+from amalthea_uros.perf.software import (
+    Activity,
+    ClearEvent,
+    Demand,
+    Group,
+    Isr,
+    IsrCategory,
+    SchedulePoint,
+    SemaphoreAccess,
+    SemaphoreOperation,
+    SetEvent,
+    Terminate,
+    Trigger,
+    WaitEvent,
+)
+from amalthea_uros.perf.system import System
+
+_OF_ACTIVITIES: dict[type, tuple[Service, ...]] = {
+    Trigger: (Service.ACTIVATE_TASK,),
+    Terminate: (Service.TERMINATE_TASK,),
+    SchedulePoint: (Service.SCHEDULE,),
+    SetEvent: (Service.SET_EVENT,),
+    WaitEvent: (Service.WAIT_EVENT,),
+    ClearEvent: (Service.CLEAR_EVENT,),
+}
+_OF_SEMAPHORES = {
+    (True, True): Service.RELEASE_SPINLOCK,
+    (True, False): Service.REQUEST_SPINLOCK,
+    (False, True): Service.RELEASE_RESOURCE,
+    (False, False): Service.REQUEST_RESOURCE,
+}
+#: Services of which it is known when they are called.
+COUNTED = {*(service for services in _OF_ACTIVITIES.values() for service in services), *_OF_SEMAPHORES.values()} | {
+    Service.SUSPEND_INTERRUPTS,
+    Service.RESUME_INTERRUPTS,
+}
+
+
+@dataclass(frozen=True)
+class Overheads:
+    """The costs of the operating systems of a system."""
+
+    system: System
+
+    @cached_property
+    def _by_core(self) -> dict[str, tuple[Overhead, dict[Service, Demand]]]:
+        stated = {overhead.name: overhead for overhead in self.system.os.overheads}
+        found = {}
+        for operating_system in self.system.os.systems:
+            overhead = stated.get(operating_system.overhead or "")
+            if overhead is not None:
+                cores = (core for scheduler in operating_system.schedulers for core in scheduler.cores)
+                found.update(dict.fromkeys(cores, (overhead, dict(overhead.services))))
+        return found
+
+    @cached_property
+    def _kinds(self) -> dict[str, SemaphoreKind | None]:
+        return {semaphore.name: semaphore.kind for semaphore in self.system.os.semaphores}
+
+    def of_activity(self, activity: Activity, core: str) -> Iterator[Demand]:
+        """What the services cost that an activity calls."""
+        if core in self._by_core:
+            _, costs = self._by_core[core]
+            yield from (costs[service] for service in self._services(activity) if service in costs)
+
+    def _services(self, activity: Activity) -> tuple[Service, ...]:
+        match activity:
+            case SemaphoreAccess(semaphore=name, operation=operation):
+                is_release = operation is SemaphoreOperation.RELEASE
+                return (_OF_SEMAPHORES[self._kinds.get(name) is SemaphoreKind.SPINLOCK, is_release],)
+            case Group(interruptible=False):
+                return (Service.SUSPEND_INTERRUPTS, Service.RESUME_INTERRUPTS)
+        return _OF_ACTIVITIES.get(type(activity), ())
+
+    def of_isr(self, isr: Isr, core: str) -> Iterator[Demand]:
+        """What comes before and after an interrupt service routine."""
+        if core in self._by_core:
+            overhead, _ = self._by_core[core]
+            around = overhead.category_1 if isr.category is IsrCategory.CATEGORY_1 else overhead.category_2
+            if around is not None:
+                yield from (demand for demand in (around.before, around.after) if demand is not None)
