@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from amalthea_uros.analyze.arrivals import Arrivals, Curve, Once, Pattern, Periodic
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import highest, lowest
+from amalthea_uros.perf.system import System
+from amalthea_uros.units import SECOND, Frequency
 
 
-def arrivals_of(stimulus: perf.Stimulus) -> Arrivals | None:
+def arrivals_of(stimulus: perf.Stimulus, system: System) -> Arrivals | None:
     """The event model of a stimulus that comes from outside; None if nothing bounds it, or another process fires it."""
     match stimulus:
         case perf.Periodic(period=period, jitter=jitter, min_distance=distance) if period > 0:
@@ -30,4 +34,21 @@ def arrivals_of(stimulus: perf.Stimulus) -> Arrivals | None:
         case perf.ArrivalCurve(points=points):
             limits = tuple((p.occurrences, p.lower) for p in points if p.lower and p.occurrences > 1)
             return Curve(limits) if limits else None
+        case perf.VariableRate(step=step, rate=rate, scenario=None) if step > 0:
+            highest_rate = highest(rate)
+            return Periodic(max(1, int(step / Fraction(highest_rate))), sporadic=True) if highest_rate else None
+        case perf.VariableRate(scenario=perf.Scenario(clock=name, recurrence=recurrence)) if recurrence > 0:
+            frequency = _greatest(next((clock for clock in system.stimuli.clocks if clock.name == name), None))
+            # An occurrence whenever the integral of the frequency has grown by the recurrence.
+            least = int(Fraction(recurrence) * SECOND / frequency) if frequency else 0
+            return Periodic(least, sporadic=True) if least else None
+    return None
+
+
+def _greatest(clock: perf.Clock | None) -> Frequency | None:
+    match clock:
+        case perf.ClockFunction(lowest=lowest, swing=swing):
+            return lowest + swing
+        case perf.ClockSteps(steps=steps):
+            return max((step.frequency for step in steps), default=None)
     return None

@@ -7,20 +7,26 @@ point is found, or none.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from amalthea_uros.analyze.activation import arrivals_of
 from amalthea_uros.analyze.arrivals import Arrivals, Behind, Delayed, Every, Together
+from amalthea_uros.analyze.occurrences import Occurrence, occurrences, raises
 from amalthea_uros.analyze.task import Response
-from amalthea_uros.perf.software import Activity, Call, Process, Trigger, walk
-from amalthea_uros.perf.stimuli import Counter, InterProcess
+from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
+from amalthea_uros.perf.software import Process, Trigger
+from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
 
 
 class UnknownArrivalsError(Exception):
     """Nothing bounds the arrivals of a process; the text says why."""
+
+
+#: A process that causes something, and whether it does so only every n-th time.
+Cause = tuple[Process, Counter | None]
 
 
 @dataclass(slots=True)
@@ -30,26 +36,22 @@ class Propagation:
     Attributes
     ----------
     least_costs : best-case execution times, as far as they are known
+    unknown : processes of which the response time is not known
     triggers : who triggers a stimulus
     """
 
     system: System
     least_costs: Mapping[str, Time]
-    triggers: dict[str, list[tuple[Process, Counter | None]]] = field(default_factory=dict)
+    unknown: Mapping[str, str]
+    triggers: dict[str, list[Cause]] = field(default_factory=dict)
+    happens: list[Occurrence] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        for process in self.system.processes.values():
-            for trigger in self._triggers(process.activities, ()):
-                self.triggers.setdefault(trigger.stimulus, []).append((process, trigger.counter))
-
-    def _triggers(self, activities: tuple[Activity, ...], above: tuple[str, ...]) -> Iterator[Trigger]:
-        for activity in walk(activities):
-            if isinstance(activity, Trigger):
-                yield activity
-            elif isinstance(activity, Call) and activity.runnable not in above:
-                runnable = self.system.runnables.get(activity.runnable)
-                if runnable is not None:
-                    yield from self._triggers(runnable.activities, (*above, activity.runnable))
+        self.happens = list(occurrences(self.system))
+        for what in self.happens:
+            if isinstance(what.activity, Trigger):
+                causes = self.triggers.setdefault(what.activity.stimulus, [])
+                causes += [(what.process, what.activity.counter)] * what.times
 
     def arrivals(self, process: Process, responses: Mapping[str, Response], above: tuple[str, ...] = ()) -> Arrivals:
         """The event model of a process.
@@ -69,21 +71,48 @@ class Propagation:
         stimulus = self.system.stimuli_by_name.get(name)
         if stimulus is None:
             raise UnknownArrivalsError(f"the stimulus {name!r} is not part of the model")
-        if not isinstance(stimulus, InterProcess):
-            arrivals = arrivals_of(stimulus)
+        if not isinstance(stimulus, InterProcess | EventTriggered):
+            arrivals = arrivals_of(stimulus, self.system)
             if arrivals is None:
                 raise UnknownArrivalsError(f"nothing bounds how often {name!r} occurs")
             return arrivals
-        sources = [self._behind(process, counter, responses, above) for process, counter in self.triggers.get(name, ())]
-        if not sources:
+        is_triggered = isinstance(stimulus, InterProcess)
+        causes = self.triggers.get(name, []) if is_triggered else self._causes(stimulus)  # type: ignore[arg-type]
+        if not causes:
             raise UnknownArrivalsError(f"nothing triggers {name!r}")
+        sources = [self._behind(process, counter, responses, above) for process, counter in causes]
         together = sources[0] if len(sources) == 1 else Together(tuple(sources))
         return _counted(together, stimulus.counter)
+
+    def _causes(self, stimulus: EventTriggered) -> list[Cause]:
+        """The processes in which the events of a stimulus occur."""
+        found: list[Cause] = []
+        for name in stimulus.events:
+            event = self.system.events_by_name.get(name)
+            if event is None:
+                raise UnknownArrivalsError(f"the event {name!r} is not part of the model")
+            self._check(event)
+            causes = [(what.process, None) for what in self.happens if raises(what, event) for _ in range(what.times)]
+            if not causes and isinstance(event, CustomEvent):
+                raise UnknownArrivalsError(f"nothing in the model raises the event {name!r}")
+            found += causes
+        return found
+
+    def _check(self, event: Event) -> None:
+        """Refuse events that may occur otherwise than by what processes execute."""
+        if isinstance(event, RunnableEvent) and event.change not in (RunnableChange.START, RunnableChange.TERMINATE):
+            raise UnknownArrivalsError(f"nothing bounds how often the event {event.name!r} occurs")
+        if isinstance(event, ModeLabelEvent):
+            assigned = {mode.label for stimulus in self.system.stimuli.stimuli for mode in stimulus.assignments}
+            if event.label is None or event.label in assigned:
+                raise UnknownArrivalsError(f"stimuli raise the event {event.name!r}, too")
 
     def _behind(
         self, process: Process, counter: Counter | None, responses: Mapping[str, Response], above: tuple[str, ...]
     ) -> Arrivals:
         """The arrivals that a process causes somewhere between its start and its end."""
+        if process.name in self.unknown:
+            raise UnknownArrivalsError(f"too little is known of {process.name!r}, which triggers it")
         before = self.arrivals(process, responses, above)
         response = responses.get(process.name)
         if response is None:

@@ -45,7 +45,7 @@ def analyze(system: System, settings: Settings | None = None) -> Analysis:
 def _responses(known: Known) -> dict[str, Response]:
     """All response times, computed as often as they change the arrivals of others."""
     least = {name: cost.best // known.demands.grains(known.placed[name].core) for name, cost in known.costs.items()}
-    propagation = Propagation(known.system, least)
+    propagation = Propagation(known.system, least, known.reasons)
     responses: dict[str, Response] = {}
     for _ in range(MOST_ROUNDS):
         before = responses

@@ -1,6 +1,7 @@
 """Event models: both directions belong together, and no arrivals beat them."""
 
 import json
+from fractions import Fraction
 
 import pytest
 from hypothesis import given
@@ -14,7 +15,8 @@ from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.propagation import behind
 from amalthea_uros.analyze.task import Task
 from amalthea_uros.perf import stimuli as perf
-from amalthea_uros.perf.distributions import Uniform
+from amalthea_uros.perf.distributions import Constant, Uniform
+from amalthea_uros.perf.system import System
 
 PERIODIC = st.builds(Periodic, st.integers(1, 30), st.integers(0, 80), st.integers(0, 5)).filter(
     lambda p: p.distance <= p.period
@@ -79,13 +81,28 @@ def test_a_pattern_is_as_dense_as_its_densest_place(pattern):
             ),
             Curve(((2, 3),)),
         ),
+        # At most 4 in each 10.
+        (perf.VariableRate(name="s", step=10, rate=Uniform(lower=1.0, upper=4.0)), Periodic(2, sporadic=True)),
+        # At 50 Hz at most, every second revolution: 40 ms.
+        (
+            perf.VariableRate(name="s", step=1, rate=Constant(1.0), scenario=perf.Scenario(clock="engine", recurrence=2.0)),
+            Periodic(40 * 10**9, sporadic=True),
+        ),
+        (
+            perf.VariableRate(name="s", step=1, rate=Constant(1.0), scenario=perf.Scenario(clock="steps")),
+            Periodic(250 * 10**9, sporadic=True),
+        ),
         (perf.RelativePeriodic(name="s", distance=Uniform(lower=0, upper=9)), None),
         (perf.InterProcess(name="s"), None),
         (perf.Custom(name="s"), None),
     ],
 )
 def test_stimuli(stimulus, model):
-    assert arrivals_of(stimulus) == model
+    clocks = (
+        perf.ClockFunction(name="engine", curve=perf.Curve.SINE, period=10, lowest=Fraction(20), swing=Fraction(30)),
+        perf.ClockSteps(name="steps", steps=tuple(perf.ClockStep(time=t, frequency=Fraction(t)) for t in (1, 4, 2))),
+    )
+    assert arrivals_of(stimulus, System(stimuli=perf.Stimuli(clocks=clocks))) == model
 
 
 def test_the_tutorial_of_compositional_analysis():

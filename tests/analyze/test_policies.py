@@ -1,0 +1,355 @@
+"""Schedulers of many kinds, what the operating system and memory cost, and what is known of modes: all values worked out by hand."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from amalthea_uros.analyze.settings import Memory, Settings
+from amalthea_uros.analyze.system import analyze
+from amalthea_uros.perf import conditions, hardware, mapping, os
+from amalthea_uros.perf.distributions import Boundaries, Constant
+from amalthea_uros.perf.events import CustomEvent, Events, LabelChange, LabelEvent
+from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
+from amalthea_uros.perf.mapping import Mapping, TaskAllocation
+from amalthea_uros.perf.os import Duration, OperatingSystem, Os, Overhead, Parameter, Parent, Policy, Scheduler, Service
+from amalthea_uros.perf.software import (
+    AccessKind,
+    Call,
+    Case,
+    Count,
+    Demand,
+    Execute,
+    Isr,
+    IsrCategory,
+    Label,
+    LabelAccess,
+    RaiseEvent,
+    Runnable,
+    SchedulePoint,
+    SemaphoreAccess,
+    SemaphoreOperation,
+    Software,
+    Switch,
+    Task,
+    WaitEvent,
+)
+from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic, Stimuli
+from amalthea_uros.perf.system import System
+from amalthea_uros.units import MICROSECOND as US
+
+
+def ticks(number):
+    return Execute(demand=Demand(Constant(number)))
+
+
+def system(schedulers, tasks, stimuli=(), events=(), isrs=(), labels=(), runnables=(), **os_parts):
+    """A core of 1 MHz, and tasks of (name, least distance in us, activities, allocation)."""
+    sporadic = [
+        RelativePeriodic(name=f"every {name}", distance=Boundaries(lower=distance * US, upper=2 * distance * US))
+        for name, distance, _, _ in tasks
+        if distance
+    ]
+    return System(
+        hardware=Hardware(
+            clocks=(Clock(name="clock", frequency=Fraction(10**6)),),
+            structures=(Structure(name="ECU", cores=(Core(name="core", clock="clock"),)),),
+        ),
+        os=Os(
+            systems=(OperatingSystem(name="OS", schedulers=tuple(schedulers), overhead="overhead"),),
+            **os_parts,
+        ),
+        stimuli=Stimuli(stimuli=(*sporadic, *stimuli)),
+        software=Software(
+            tasks=tuple(Task(name=name, stimuli=(f"every {name}",), activities=tuple(body)) for name, _, body, _ in tasks),
+            isrs=tuple(isrs),
+            labels=tuple(labels),
+            runnables=tuple(runnables),
+        ),
+        mapping=Mapping(tasks=tuple(TaskAllocation(task=name, **placed) for name, _, _, placed in tasks)),
+        events=Events(events=tuple(events)),
+    )
+
+
+def root(policy=Policy.OSEK, **more):
+    return Scheduler(name="root", policy=policy, cores=("core",), **more)
+
+
+def under(name, policy, priority=None, parent="root", **parameters):
+    stated = tuple(Parameter(key, (Duration(value * US),)) for key, value in parameters.items())
+    return Scheduler(name=name, policy=policy, parent=Parent(scheduler=parent, priority=priority), parameters=stated)
+
+
+def worst(built, settings=None):
+    analysis = analyze(built, settings)
+    return {
+        process.name: process.response.worst // US if process.response and process.response.worst else process.reason
+        for process in analysis.processes
+    }
+
+
+class TestPolicies:
+    def test_earliest_deadline_first(self):
+        tasks = [
+            ("short", 4, [ticks(1)], {"scheduler": "root", "deadline": 4 * US}),
+            ("long", 6, [ticks(3)], {"scheduler": "root", "deadline": 5 * US}),
+        ]
+        # Spuri 1996: the short one, one behind the long one, has the same deadline.
+        assert worst(system([root(Policy.EARLIEST_DEADLINE_FIRST)], tasks)) == {"short": 3, "long": 4}
+
+    def test_a_task_without_a_deadline_makes_all_others_unknown(self):
+        tasks = [("T", 4, [ticks(1)], {"scheduler": "root"})]
+        assert worst(system([root(Policy.EARLIEST_DEADLINE_FIRST)], tasks)) == {"T": "it has no deadline"}
+
+    @pytest.mark.parametrize("policy", [Policy.DEADLINE_MONOTONIC, Policy.RATE_MONOTONIC])
+    def test_priorities_by_deadline_or_period(self, policy):
+        parameters = [(Parameter("period", (Duration(period * US),)),) for period in (20, 10)]
+        tasks = [
+            ("slow", 20, [ticks(3)], {"scheduler": "root", "deadline": 20 * US, "parameters": parameters[0]}),
+            ("fast", 10, [ticks(2)], {"scheduler": "root", "deadline": 10 * US, "parameters": parameters[1]}),
+        ]
+        assert worst(system([root(policy)], tasks)) == {"slow": 5, "fast": 2}
+
+    def test_round_robin(self):
+        slices = (Parameter("timeSliceLength", (Duration(2 * US),)),)
+        tasks = [
+            ("A", 100, [ticks(5)], {"scheduler": "root", "priority": 1, "parameters": slices}),
+            ("B", 100, [ticks(20)], {"scheduler": "root", "priority": 1, "parameters": slices}),
+            ("high", 100, [ticks(3)], {"scheduler": "root", "priority": 2, "parameters": slices}),
+        ]
+        # A needs three slices, and B gets one before each: 5 + 3 * 2, and 3 above; B waits for all of A.
+        assert worst(system([root(Policy.PRIORITY_BASED_ROUND_ROBIN)], tasks)) == {"A": 14, "B": 28, "high": 3}
+
+    def test_equal_priorities_are_served_in_the_order_of_arrival(self):
+        tasks = [(name, 100, [ticks(5)], {"scheduler": "root", "priority": 1}) for name in ("A", "B")]
+        tasks.append(("often", 8, [ticks(2)], {"scheduler": "root", "priority": 1}))
+        # What comes later than a job waits for it: each of the others is in its way once only.
+        assert worst(system([root()], tasks)) == {"A": 12, "B": 12, "often": 12}
+
+    def test_a_group_is_not_interrupted_from_within(self):
+        group = (Parameter("taskGroup", (1,)),)
+        tasks = [
+            ("top", 100, [ticks(1)], {"scheduler": "root", "priority": 4}),
+            ("high", 100, [ticks(2)], {"scheduler": "root", "priority": 3, "parameters": group}),
+            ("other", 100, [ticks(3)], {"scheduler": "root", "priority": 2}),
+            ("low", 100, [ticks(10), SchedulePoint(), ticks(5)], {"scheduler": "root", "priority": 1, "parameters": group}),
+        ]
+        # Those up to the ceiling of the group wait for ten of `low`; its last five are interrupted by `top` only.
+        assert worst(system([root()], tasks)) == {"top": 1, "high": 13, "other": 16, "low": 21}
+
+    def test_waiting_for_events_has_no_bound(self):
+        built = system([root()], [("T", 10, [ticks(1), WaitEvent(events=("e",))], {"scheduler": "root", "priority": 1})])
+        assert worst(built)["T"].startswith("it waits for events")
+
+
+class TestSchedulersBelowEachOther:
+    TASKS = (
+        ("urgent", 100, [ticks(3)], {"scheduler": "child", "priority": 1}),
+        ("main", 100, [ticks(5)], {"scheduler": "root", "priority": 5}),
+        ("urgent too", 100, [ticks(4)], {"scheduler": "child", "priority": 9}),
+    )
+
+    @pytest.mark.parametrize(("priority", "expected"), [(7, (7, 12, 4)), (3, (12, 5, 9))])
+    def test_the_parent_decides_first(self, priority, expected):
+        built = system([root(), under("child", Policy.OSEK, priority)], self.TASKS)
+        assert tuple(worst(built).values()) == expected
+
+    def test_a_grouping_decides_nothing(self):
+        built = system([root(), under("child", Policy.GROUPING)], self.TASKS)
+        assert worst(built) == {"urgent": 12, "main": 9, "urgent too": 4}
+
+    def test_deadlines_below_a_priority(self):
+        tasks = [
+            ("first", 100, [ticks(2)], {"scheduler": "root", "priority": 5}),
+            ("short", 4, [ticks(1)], {"scheduler": "child", "deadline": 4 * US}),
+            ("long", 60, [ticks(3)], {"scheduler": "child", "deadline": 60 * US}),
+        ]
+        built = system([root(), under("child", Policy.EARLIEST_DEADLINE_FIRST, 1)], tasks)
+        # `long` is held up by one job of `first` and two of `short`.
+        assert worst(built) == {"first": 2, "short": 3, "long": 7}
+
+    def test_two_children_of_one_priority_are_not_analysed(self):
+        built = system([root(), under("child", Policy.OSEK, 5)], self.TASKS)
+        assert "share a priority" in worst(built)["urgent"]
+
+    @pytest.mark.parametrize(
+        ("policy", "inside", "below"),
+        [
+            # The job comes when the budget has just been used up: 8 of waiting, 2, 8 of waiting, 1. What was kept of the budget may be
+            # used just before the next one, so that the task below waits for two of them.
+            (Policy.DEFERRABLE_SERVER, 8 + 2 + 8 + 1, 5 + 2 + 2),
+            (Policy.SPORADIC_SERVER, 8 + 2 + 8 + 1, 5 + 2),
+            # The job comes just behind the polling: it waits for the whole period.
+            (Policy.POLLING_SERVER, 10 + 2 + 8 + 1, 5 + 2),
+        ],
+    )
+    def test_servers(self, policy, inside, below):
+        # The server has the highest priority, so that it gets its budget of 2 in 10 at once.
+        tasks = [
+            ("inside", 100, [ticks(3)], {"scheduler": "server", "priority": 1}),
+            ("below", 100, [ticks(5)], {"scheduler": "root", "priority": 1}),
+        ]
+        built = system([root(), under("server", policy, 5, capacity=2, period=10)], tasks)
+        assert worst(built) == {"inside": inside, "below": below}
+
+    def test_a_server_that_does_not_get_its_budget(self):
+        tasks = [
+            ("inside", 100, [ticks(3)], {"scheduler": "server", "priority": 1}),
+            ("above", 10, [ticks(9)], {"scheduler": "root", "priority": 9}),
+        ]
+        built = system([root(), under("server", Policy.POLLING_SERVER, 5, capacity=2, period=10)], tasks)
+        assert worst(built) == {"inside": "the server 'server' is not sure to get its budget in each period", "above": 9}
+
+
+class TestCosts:
+    ONE = (("T", 100, [ticks(5)], {"scheduler": "root", "priority": 1}),)
+
+    def test_scheduling_decisions_at_arrival_and_end(self):
+        tasks = [*self.ONE, ("low", 100, [ticks(10)], {"scheduler": "root", "priority": 0})]
+        # Of each task one decision in its own demand, and one when it arrives, whoever is running.
+        assert worst(system([root(overhead=(ticks(1),))], tasks)) == {"T": 5 + 1 + 2, "low": 10 + 1 + 2 + 6}
+
+    def test_services_and_interrupts(self):
+        services = ((Service.REQUEST_RESOURCE, Demand(Constant(1))), (Service.RELEASE_RESOURCE, Demand(Constant(2))))
+        overhead = Overhead(
+            name="overhead",
+            services=services,
+            category_2=os.IsrOverhead(before=Demand(Constant(3)), after=Demand(Constant(4))),
+        )
+        body = [
+            SemaphoreAccess(semaphore="S", operation=SemaphoreOperation.REQUEST),
+            ticks(5),
+            SemaphoreAccess(semaphore="S", operation=SemaphoreOperation.RELEASE),
+        ]
+        built = system(
+            [root()],
+            [("T", 100, body, {"scheduler": "root", "priority": 1})],
+            isrs=[Isr(name="I", stimuli=("every T",), activities=(ticks(1),), category=IsrCategory.CATEGORY_2)],
+            overheads=(overhead,),
+            semaphores=(os.Semaphore(name="S", kind=os.SemaphoreKind.RESOURCE, ceiling=True),),
+        )
+        controller = os.InterruptController(name="controller", cores=("core",))
+        (only,) = built.os.systems
+        built = replace(
+            built,
+            os=replace(built.os, systems=(replace(only, interrupt_controllers=(controller,)),)),
+            mapping=replace(built.mapping, isrs=(mapping.IsrAllocation(isr="I", controller="controller"),)),
+        )
+        assert worst(built) == {"T": 1 + 5 + 2 + 8, "I": 3 + 1 + 4}
+
+    @pytest.mark.parametrize(
+        ("memory", "expected"), [(Memory.NONE, 1), (Memory.EXPLICIT, 1 + 4 * 9 + 2), (Memory.IMPLICIT, 1 + 9 + 2)]
+    )
+    def test_memory(self, memory, expected):
+        built = self.with_memory(
+            LabelAccess(label="far", kind=AccessKind.READ, times=Count(least=1, mean=2.0, most=3)),
+            LabelAccess(label="far", kind=AccessKind.READ),
+            LabelAccess(label="near", kind=AccessKind.WRITE),
+            ticks(1),
+        )
+        assert worst(built, Settings(memory=memory)) == {"T": expected}
+
+    def with_memory(self, *body):
+        """A memory at 2 cycles to write, and one behind a bus of half the clock: 1 on the way, 2 * 3 there, 2 of its own."""
+        built = system(
+            [root()],
+            [("T", 1000, body, {"scheduler": "root", "priority": 1})],
+            labels=[Label(name="far", size=32), Label(name="near", size=8)],
+        )
+
+        def latency(cycles):
+            return hardware.Latency(read=Constant(cycles), write=Constant(cycles))
+
+        accesses = (
+            hardware.Access(memory="local", latency=latency(2)),
+            hardware.Access(memory="global", latency=latency(100), path=("wire", "bus")),
+        )
+        structure = Structure(
+            name="ECU",
+            cores=(Core(name="core", clock="clock", accesses=accesses),),
+            memories=(hardware.Memory(name="local"), hardware.Memory(name="global", clock="clock", latency=Constant(2))),
+            interconnects=(hardware.Interconnect(name="bus", clock="slow", latency=latency(3)),),
+            connections=(hardware.Connection(name="wire", source="core", target="bus", latency=latency(1)),),
+        )
+        clocks = (Clock(name="clock", frequency=Fraction(10**6)), Clock(name="slow", frequency=Fraction(10**6, 2)))
+        placements = tuple(mapping.Placement(element=e, memory=m) for e, m in (("far", "global"), ("near", "local")))
+        return replace(
+            built,
+            hardware=Hardware(clocks=clocks, structures=(structure,)),
+            mapping=replace(built.mapping, placements=placements),
+        )
+
+    def test_labels_in_no_memory_are_told(self):
+        built = system([root()], [("T", 100, [LabelAccess(label="L", kind=AccessKind.READ), ticks(1)], self.ONE[0][3])])
+        analysis = analyze(built, Settings(memory=Memory.EXPLICIT))
+        assert [finding.rule for finding in analysis.findings] == ["ANA008"]
+
+    def test_factors_of_single_processes(self):
+        built = system([root()], self.ONE)
+        assert worst(built, Settings(factors={"T": Fraction(3)})) == {"T": 15}
+
+
+class TestModes:
+    def condition(self, relation, value):
+        return conditions.Condition(((conditions.ModeValueIs(label="mode", relation=relation, value=value),),))
+
+    @pytest.mark.parametrize(("mode", "expected"), [(None, 9), ("on", 9), ("off", 2), ("idle", 4)])
+    def test_a_switch(self, mode, expected):
+        switch = Switch(
+            cases=(
+                Case(activities=(ticks(9),), condition=self.condition(conditions.Relation.EQUAL, "on")),
+                Case(activities=(ticks(2),), condition=self.condition(conditions.Relation.EQUAL, "off")),
+            ),
+            default=(ticks(4),),
+        )
+        built = system([root()], [("T", 100, [switch], {"scheduler": "root", "priority": 1})])
+        assert worst(built, Settings(modes={"mode": mode} if mode else {})) == {"T": expected}
+
+    @pytest.mark.parametrize(("level", "expected"), [(None, (1, 8)), ("3", (8, 8)), ("2", (1, 1))])
+    def test_a_runnable_that_is_only_executed_in_some_modes(self, level, expected):
+        runnable = Runnable(name="R", activities=(ticks(7),), condition=self.condition(conditions.Relation.GREATER, "2"))
+        tasks = [("T", 100, [ticks(1), Call(runnable="R")], {"scheduler": "root", "priority": 1})]
+        built = system([root()], tasks, runnables=[runnable])
+        (process,) = analyze(built, Settings(modes={"mode": level} if level else {})).processes
+        assert (process.bcet // US, process.wcet // US) == expected
+
+
+class TestEventsThatActivate:
+    def respond(self, event, *body):
+        stimulus = EventTriggered(name="every second", events=("event",))
+        tasks = [
+            ("first", 20, [*body, ticks(5)], {"scheduler": "root", "priority": 2}),
+            ("second", None, [ticks(4)], {"scheduler": "root", "priority": 1}),
+        ]
+        return worst(system([root()], tasks, stimuli=[stimulus], events=[event]))["second"]
+
+    def test_events_that_software_raises(self):
+        assert self.respond(CustomEvent(name="event"), RaiseEvent(event="event")) == 9
+
+    def test_accesses_to_labels(self):
+        write = LabelAccess(label="L", kind=AccessKind.WRITE)
+        assert self.respond(LabelEvent(name="event", label="L", change=LabelChange.WRITE), write) == 9
+        assert "nothing triggers" in self.respond(LabelEvent(name="event", label="L", change=LabelChange.READ), write)
+
+    def test_twice_in_a_job(self):
+        twice = (RaiseEvent(event="event"), RaiseEvent(event="event"))
+        # Both may be there before the first one is served.
+        assert self.respond(CustomEvent(name="event"), *twice) == 13
+
+    def test_events_from_outside(self):
+        assert "nothing in the model raises" in self.respond(CustomEvent(name="event"))
+
+    def test_who_is_triggered_by_something_unknown_is_unknown_too(self):
+        assert "too little is known" in self.respond(
+            CustomEvent(name="event"), RaiseEvent(event="event"), WaitEvent(events=("e",))
+        )
+
+
+def test_periodic_releases_and_a_server_are_no_exact_schedule():
+    built = system(
+        [root(), under("server", Policy.POLLING_SERVER, 5, capacity=2, period=10)],
+        [("T", None, [ticks(5)], {"scheduler": "root", "priority": 1}), ("I", 90, [ticks(1)], {"scheduler": "server"})],
+        stimuli=[Periodic(name="every T", period=100 * US)],
+    )
+    claims = {process.name: process.response.claim for process in analyze(built).processes}
+    assert claims == {"T": "bound", "I": "bound"}
