@@ -7,7 +7,7 @@
 
 The names of this module are the public interface: `load` and `save`, the model and its documents, findings and errors, every
 AMALTHEA class and enumeration; `build` and `describe` for an `app.yaml`, `extract` and `build_model` between AMALTHEA models and
-systems of the generic performance model.
+systems of the generic performance model, `analyze_system` for response times.
 """
 
 from __future__ import annotations
@@ -16,6 +16,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from amalthea_uros.analyze.result import Analysis as Analysis
+    from amalthea_uros.analyze.settings import Settings as Settings
+    from amalthea_uros.analyze.system import analyze_system as analyze_system
     from amalthea_uros.bridge.build import build_model as build_model
     from amalthea_uros.bridge.extract import Extraction as Extraction
     from amalthea_uros.bridge.extract import extract as extract
@@ -50,9 +53,12 @@ _HOMES = {
     "Reference": "metamodel.model",
     "load": "xmi.load",
     "save": "xmi.save",
+    "Analysis": "analyze.result",
     "Assembly": "uros.assemble",
     "Built": "pipeline",
     "Extraction": "bridge.extract",
+    "Settings": "analyze.settings",
+    "analyze_system": "analyze.system",
     "build": "pipeline",
     "build_model": "bridge.build",
     "describe": "pipeline",

@@ -1,5 +1,7 @@
 """How long response times take: many tasks on one core and on several, and a model of the size of the challenge of 2017.
 
+Where numba is installed, everything is measured as Python and as machine code.
+
 python benchmarks/response_times.py --repeat 5
 """
 
@@ -9,12 +11,13 @@ import argparse
 import time
 from collections.abc import Callable
 from fractions import Fraction
+from importlib.util import find_spec
 from random import Random
 
-from amalthea_uros.analyze import levels
+from amalthea_uros.analyze import kernel, levels
 from amalthea_uros.analyze.arrivals import Periodic
 from amalthea_uros.analyze.cost import Cost
-from amalthea_uros.analyze.system import analyze
+from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.analyze.task import Task
 from amalthea_uros.perf import mapping, os, software, stimuli
 from amalthea_uros.perf.distributions import Statistics
@@ -25,14 +28,14 @@ PERIODS = (1, 2, 5, 10, 20, 50, 100, 200, 1000)
 MILLISECOND = 10**9
 
 
-def task_set(count: int, load: float, random: Random) -> list[Task]:
-    """Periodic tasks with rate-monotonic priorities and jitter of up to a tenth of the period."""
+def task_set(count: int, load: float, random: Random, jitter: bool) -> list[Task]:
+    """Periodic tasks with rate-monotonic priorities, and perhaps jitter of up to a tenth of the period."""
     shares = [random.random() for _ in range(count)]
     periods = sorted(random.choice(PERIODS) * MILLISECOND for _ in range(count))
     return [
         Task(
             name=f"T{index}",
-            arrivals=Periodic(period, random.randrange(period // 10)),
+            arrivals=Periodic(period, random.randrange(period // 10) if jitter else 0),
             cost=Cost.constant(max(1, int(period * load * share / sum(shares)))),
             priority=-index,
         )
@@ -83,18 +86,32 @@ def least_time(work: Callable[[], object], repeat: int) -> float:
     return min(times) * 1000
 
 
+def measure(random: Random, repeat: int, how: str) -> None:
+    """Print one line for each kind of work."""
+    for jitter in (False, True):
+        for cores in (1, 4):
+            sets = [task_set(1000, 0.7, random, jitter) for _ in range(cores)]
+            took = least_time(lambda sets=sets: [levels.response_times(s) for s in sets], repeat)
+            kind = "with jitter" if jitter else "without jitter"
+            print(f"{how}: {cores} x 1,000 tasks at 70 % load, {kind}: {took:.1f} ms")
+    system = challenge_system(random)
+    took = least_time(lambda: analyze_system(system), repeat)
+    print(f"{how}: 21 tasks with 1,250 runnables and 15,255 label accesses: {took:.1f} ms")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--repeat", type=int, default=5)
     options = parser.parse_args()
-    random = Random(1)
-    for cores in (1, 2, 4):
-        sets = [task_set(1000, 0.7, random) for _ in range(cores)]
-        took = least_time(lambda sets=sets: [levels.response_times(s) for s in sets], options.repeat)
-        print(f"{cores} x 1,000 tasks at 70 % load: {took:.0f} ms")
-    system = challenge_system(random)
-    took = least_time(lambda: analyze(system), options.repeat)
-    print(f"21 tasks with 1,250 runnables and 15,255 label accesses: {took:.0f} ms")
+    loops = (kernel.demand_in, kernel.fixed_point, kernel.least_response)
+    for loop in loops:
+        loop.keep_python()
+    measure(Random(1), options.repeat, "Python")
+    if find_spec("numba"):
+        for loop in loops:
+            loop.compile()
+        levels.response_times(task_set(10, 0.7, Random(1), True))
+        measure(Random(1), options.repeat, "compiled")
 
 
 if __name__ == "__main__":

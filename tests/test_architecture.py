@@ -22,7 +22,7 @@ PACKAGE = "amalthea_uros"
         ("metamodel", ("diagnostics",)),
         ("difference", ("metamodel",)),
         ("xmi", ("diagnostics", "errors", "garbage", "resources", "metamodel")),
-        ("analyze", ("perf", "units", "diagnostics")),
+        ("analyze", ("perf", "units", "diagnostics", "compiled")),
         ("pipeline", ("bridge", "diagnostics", "garbage", "metamodel", "perf", "spec", "uros", "xmi")),
         ("report", ("diagnostics", "metamodel", "difference", "perf", "units", "uros", "pipeline", "analyze")),
     ],

@@ -6,6 +6,7 @@ arrival at its end does not count.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -27,6 +28,11 @@ class Arrivals:
     def rate(self) -> Fraction:
         """The most arrivals per time in the long run."""
         raise NotImplementedError
+
+    @property
+    def gap(self) -> Time | None:
+        """The longest time from one arrival to the next; None if that is not bounded, or not known."""
+        return None
 
     def most(self, window: Time) -> int:
         """Eta+: the most arrivals in a window of that length."""
@@ -73,6 +79,11 @@ class Periodic(Arrivals):
         """See `Arrivals`."""
         return Fraction(1, self.period)
 
+    @property
+    def gap(self) -> Time | None:
+        """See `Arrivals`."""
+        return None if self.sporadic else self.period + self.jitter
+
 
 @dataclass(frozen=True)
 class Pattern(Arrivals):
@@ -91,13 +102,32 @@ class Pattern(Arrivals):
         if count < 2:
             return 0
         rounds, steps = divmod(count - 1, len(self.times))
+        return rounds * self.period + self._least[steps]
+
+    def most(self, window: Time) -> int:
+        """See `Arrivals`."""
+        if window <= 0:
+            return 0
+        rounds, rest = divmod(window - 1, self.period)
+        return rounds * len(self.times) + bisect_right(self._least, rest)
+
+    @cached_property
+    def _least(self) -> list[Time]:
+        """The least time that so many steps take, for less than a round."""
         twice = (*self.times, *(time + self.period for time in self.times))
-        return rounds * self.period + min(twice[i + steps] - twice[i] for i in range(len(self.times)))
+        length = len(self.times)
+        return [min(twice[i + steps] - twice[i] for i in range(length)) for steps in range(length)]
 
     @property
     def rate(self) -> Fraction:
         """See `Arrivals`."""
         return Fraction(len(self.times), self.period)
+
+    @property
+    def gap(self) -> Time:
+        """See `Arrivals`."""
+        ends = (*self.times[1:], self.times[0] + self.period)
+        return max(end - start for start, end in zip(self.times, ends, strict=True))
 
 
 @dataclass(frozen=True)
@@ -213,9 +243,16 @@ class Behind(Arrivals):
         """See `Arrivals`."""
         if count < 2:
             return 0
-        ends = enumerate(self.completions, start=1)
-        earliest = min(self.arrivals.span(job + count - 1) - end for job, end in ends) + self.least
-        return max((count - 1) * self.least, earliest)
+        if count not in self._spans:
+            ends = enumerate(self.completions, start=1)
+            earliest = min(self.arrivals.span(job + count - 1) - end for job, end in ends) + self.least
+            self._spans[count] = max((count - 1) * self.least, earliest)
+        return self._spans[count]
+
+    @cached_property
+    def _spans(self) -> dict[int, Time]:
+        """What has been found; windows ask for the same again and again."""
+        return {}
 
     @property
     def rate(self) -> Fraction:
@@ -233,6 +270,10 @@ class Finer(Arrivals):
     def span(self, count: int) -> Time:
         """See `Arrivals`."""
         return self.arrivals.span(count) * self.factor
+
+    def most(self, window: Time) -> int:
+        """See `Arrivals`."""
+        return self.arrivals.most(-(-window // self.factor))
 
     @property
     def rate(self) -> Fraction:
@@ -260,6 +301,16 @@ class Together(Arrivals):
 
     def span(self, count: int) -> Time:
         """See `Arrivals`."""
+        if count not in self._spans:
+            self._spans[count] = self._span(count)
+        return self._spans[count]
+
+    @cached_property
+    def _spans(self) -> dict[int, Time]:
+        """What has been found; windows ask for the same again and again."""
+        return {}
+
+    def _span(self, count: int) -> Time:
         if count <= 1 or self.most(1) >= count:
             return 0
         above = 1

@@ -8,9 +8,8 @@ the first jobs of a system may run before others have started.
 
 from __future__ import annotations
 
-import numpy as np
-
 from amalthea_uros.analyze.busy_window import Interference
+from amalthea_uros.analyze.kernel import least_response
 from amalthea_uros.analyze.task import Task
 from amalthea_uros.units import Time
 
@@ -18,14 +17,8 @@ from amalthea_uros.units import Time
 def best_response(task: Task, higher: Interference) -> Time:
     """A lower bound of the response time behind the start; exact for periodic tasks whose offsets are not known."""
     own, rows = task.cost.best, higher.rows
-    rate = float((rows.best / rows.periods).sum())
-    if rate >= 1:
+    if higher.best_rate >= 1:
         return own
     # No fixed point lies above: there R is at most C + rate * R.
-    response = int(own / (1 - rate)) + 1
-    while True:
-        avoidable = np.maximum(-(-response // rows.periods) - 1, 0)
-        reached = own + int((avoidable * rows.best).sum())
-        if reached >= response:
-            return response
-        response = reached
+    start = int(own / (1 - higher.best_rate)) + 1
+    return least_response(own, start, rows.periods, rows.best, higher.count)

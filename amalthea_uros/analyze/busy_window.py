@@ -6,60 +6,31 @@ n times the period and the distance, because ceil(ceil(x / p) / n) = ceil(x / (p
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import accumulate
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.arrivals import NEVER, Periodic
+from amalthea_uros.analyze.arrivals import Periodic
+from amalthea_uros.analyze.kernel import LIMIT, MOST_STEPS, demand_in, fixed_point
 from amalthea_uros.analyze.supply import FULL, Supply
 from amalthea_uros.analyze.task import Task
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
-
-#: A busy window that is still growing after so many steps is taken to have no end.
-MOST_STEPS = 100_000
-#: Windows beyond it are as good as endless: 53 days.
-LIMIT: Time = NEVER // 4
+    from amalthea_uros.analyze.kernel import Numbers
 
 
-def fixed_point(
-    window: int, fixed: int, periods: Numbers, jitters: Numbers, distances: Numbers, costs: Numbers, limited: bool
-) -> int:
-    """The least window that holds its own demand, from a lower bound on; more than LIMIT if there is none below it."""
-    for _ in range(MOST_STEPS):
-        demand = fixed + demand_in(window, periods, jitters, distances, costs, limited)
-        if demand <= window:
-            return window
-        if demand > LIMIT:
-            return demand
-        window = demand
-    return LIMIT + 1
-
-
-def demand_in(window: int, periods: Numbers, jitters: Numbers, distances: Numbers, costs: Numbers, limited: bool) -> int:
-    """The demand that arrives in a window; without least distances where `limited` is false."""
-    count = (window + jitters + periods - 1) // periods
-    if limited:
-        near = (window + distances - 1) // np.maximum(distances, 1)
-        count = np.where(distances > 0, np.minimum(count, near), count)
-    return int((count * costs).sum())
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Rows:
-    """The periodic parts of tasks.
+    """Tasks with the same arrivals are one row with the sum of their costs; what is added later may not change earlier ones.
 
     Attributes
     ----------
     best : least costs, 0 where arrivals may stay away or jitter
+    limited : whether any of the least distances matters
     """
 
     periods: Numbers
@@ -69,28 +40,30 @@ class Rows:
     best: Numbers
     limited: bool
 
-    def first(self, count: int) -> Rows:
-        """The first rows."""
-        return Rows(
-            self.periods[:count],
-            self.jitters[:count],
-            self.distances[:count],
-            self.costs[:count],
-            self.best[:count],
-            self.limited,
-        )
+    @classmethod
+    def of(cls, keys: Iterable[tuple[int, int, int]]) -> Rows:
+        """Rows of periods, jitters and distances, without costs so far."""
+        columns = np.array(list(keys), dtype=np.int64).reshape(-1, 3)
+        periods, jitters, distances = (np.ascontiguousarray(columns[:, index]) for index in range(3))
+        return cls(periods, jitters, distances, np.zeros_like(periods), np.zeros_like(periods), bool(distances.any()))
+
+    def with_more(self, row: int, worst: int, best: int) -> Rows:
+        """Rows of which one costs more."""
+        more = Rows(self.periods, self.jitters, self.distances, self.costs.copy(), self.best.copy(), self.limited)
+        more.costs[row] += worst
+        more.best[row] += best
+        return more
 
 
-def _rows(task: Task) -> list[tuple[int, int, int, int, int]]:
+def _rows(task: Task) -> list[tuple[tuple[int, int, int], int, int]]:
+    """Period, jitter and distance, worst and best cost of each part of a periodic task."""
     arrivals = task.arrivals
     if not isinstance(arrivals, Periodic):
         return []
     is_certain = not arrivals.jitter and not arrivals.sporadic
     return [
         (
-            arrivals.period * part.prescaler,
-            arrivals.jitter,
-            arrivals.distance * part.prescaler,
+            (arrivals.period * part.prescaler, arrivals.jitter, arrivals.distance * part.prescaler),
             part.worst,
             part.best if is_certain else 0,
         )
@@ -104,16 +77,26 @@ class Interference:
 
     Attributes
     ----------
+    known, number : only the first ones of the tasks count
+    rows, count : the periodic ones, of which only the first rows count
     others : tasks whose arrivals are not periodic
-    rate : about the demand per time in the long run
+    rate, best_rate : about the demand per time in the long run, and the least that cannot be avoided
     supply : what serves them
     """
 
-    tasks: Sequence[Task]
+    known: Sequence[Task]
+    number: int
     rows: Rows
-    others: Sequence[Task]
+    count: int
+    others: tuple[Task, ...]
     rate: float
+    best_rate: float
     supply: Supply = FULL
+
+    @property
+    def tasks(self) -> Sequence[Task]:
+        """Those that demand."""
+        return self.known[: self.number]
 
     @classmethod
     def of(cls, tasks: Sequence[Task], supply: Supply = FULL) -> Interference:
@@ -123,25 +106,34 @@ class Interference:
 
     @classmethod
     def of_first(cls, tasks: Sequence[Task], supply: Supply = FULL) -> list[Interference]:
-        """That of no task, of the first one, of the first two, and so on; all of them share their rows."""
-        rows = [_rows(task) for task in tasks]
-        columns = np.array([row for part in rows for row in part], dtype=np.int64).reshape(-1, 5)
-        whole = Rows(*(np.ascontiguousarray(columns[:, index]) for index in range(5)), bool(columns[:, 2].any()))  # type: ignore[arg-type, call-arg]
-        ends = list(accumulate((len(part) for part in rows), initial=0))
-        rates = list(accumulate((float(demand_rate(task)) for task in tasks), initial=0.0))
-        others = [task for task in tasks if not isinstance(task.arrivals, Periodic)]
-        counts = list(accumulate((not isinstance(task.arrivals, Periodic) for task in tasks), initial=0))
-        return [
-            cls(tasks[:index], whole.first(ends[index]), others[: counts[index]], rates[index], supply)
-            for index in range(len(tasks) + 1)
-        ]
+        """That of no task, of the first one, of the first two, and so on; they share what they have in common."""
+        parts = [_rows(task) for task in tasks]
+        numbers: dict[tuple[int, int, int], int] = {}
+        for part in parts:
+            for key, _, _ in part:
+                numbers.setdefault(key, len(numbers))
+        rows, count, rate, best_rate = Rows.of(numbers), 0, 0.0, 0.0
+        others: tuple[Task, ...] = ()
+        found = [cls(tasks, 0, rows, count, others, rate, best_rate, supply)]
+        for number, (task, part) in enumerate(zip(tasks, parts, strict=True), start=1):
+            for key, worst, best in part:
+                row = numbers[key]
+                if row < count:
+                    rows = rows.with_more(row, worst, best)
+                else:
+                    rows.costs[row], rows.best[row], count = worst, best, row + 1
+                best_rate += best / key[0]
+            others = others if part else (*others, task)
+            rate += about_rate(task)
+            found.append(cls(tasks, number, rows, count, others, rate, best_rate, supply))
+        return found
 
     def in_window(self, window: Time) -> Time:
         """The most demand that arrives in a window."""
         if window <= 0:
             return 0
         rows = self.rows
-        periodic = demand_in(window, rows.periods, rows.jitters, rows.distances, rows.costs, rows.limited)
+        periodic = demand_in(window, rows.periods, rows.jitters, rows.distances, rows.costs, self.count, rows.limited)
         return periodic + self._of_others(window)
 
     def _of_others(self, window: Time) -> Time:
@@ -160,10 +152,12 @@ class Interference:
         window = max(1, fixed, start)
         for _ in range(MOST_STEPS):
             others = self._of_others(window)
-            window = fixed_point(window, fixed + others, rows.periods, rows.jitters, rows.distances, rows.costs, rows.limited)
+            window = fixed_point(
+                window, fixed + others, rows.periods, rows.jitters, rows.distances, rows.costs, self.count, rows.limited
+            )
             if window > LIMIT:
                 return None
-            if self._of_others(window) == others:
+            if not self.others or self._of_others(window) == others:
                 return window
         return None
 
@@ -180,12 +174,19 @@ class Interference:
 
     def overloads_with(self, task: Task) -> bool:
         """Whether these tasks and another one demand more than there is, exactly."""
-        about, supplied = self.rate + float(demand_rate(task)), self.supply.rate
-        if abs(about - float(supplied)) > 1e-6:
-            return about > supplied
-        return sum((demand_rate(other) for other in self.tasks), demand_rate(task)) > supplied
+        excess = self.rate + about_rate(task) - float(self.supply.rate)
+        if abs(excess) > 1e-6:
+            return excess > 0
+        return sum((demand_rate(other) for other in self.tasks), demand_rate(task)) > self.supply.rate
 
 
 def demand_rate(task: Task) -> Fraction:
     """The demand of a task per time in the long run, at worst."""
     return task.cost.mean_worst * task.arrivals.rate
+
+
+def about_rate(task: Task) -> float:
+    """The same, fast and not quite exact."""
+    if isinstance(task.arrivals, Periodic):
+        return sum([part.worst / part.prescaler for part in task.cost.parts]) / task.arrivals.period
+    return float(demand_rate(task))

@@ -13,8 +13,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from amalthea_uros.analyze.busy_window import LIMIT, MOST_STEPS, Interference
+from amalthea_uros.analyze.busy_window import Interference
 from amalthea_uros.analyze.fixed_priority import unbounded
+from amalthea_uros.analyze.kernel import LIMIT, MOST_STEPS
 from amalthea_uros.analyze.task import Claim, Response, Sharing, Task
 from amalthea_uros.units import Time
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from amalthea_uros.analyze.notes import Notes
 from amalthea_uros.analyze.result import ProcessResult, RequirementResult, Verdict
 from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
 from amalthea_uros.perf.system import System
@@ -20,11 +21,14 @@ def upper_response_limits(system: System) -> dict[str, Time]:
     return found
 
 
-def judge(system: System, processes: Mapping[str, ProcessResult]) -> Iterator[RequirementResult]:
-    """The verdict on each limit of a time; limits of something else are left to other analyses."""
+def judge(system: System, processes: Mapping[str, ProcessResult], notes: Notes) -> Iterator[RequirementResult]:
+    """The verdict on each limit of a time; limits of something else are told to be left out."""
     for requirement in system.constraints.requirements:
         limit = requirement.limit
         if not isinstance(limit, TimeLimit):
+            notes.warning(
+                "ANA009", f"the requirement {requirement.name!r} limits {limit.metric}, which is not judged", requirement
+            )
             continue
         is_upper = limit.bound is Bound.UPPER
         process = processes.get(requirement.process or "")
@@ -41,14 +45,60 @@ def judge(system: System, processes: Mapping[str, ProcessResult]) -> Iterator[Re
 
 
 def _value(process: ProcessResult, metric: TimeMetric, is_upper: bool) -> Time | None:
-    """The greatest or least value of a metric; None if it is not bounded, or not computed."""
-    response = process.response
+    """The greatest or least value of a metric; None if it is not bounded, or not known."""
+    least, most = _range(process, metric)
+    return most if is_upper else least
+
+
+def _range(process: ProcessResult, metric: TimeMetric) -> tuple[Time | None, Time | None]:
+    """The least and the greatest value of a metric, or safe bounds of them."""
+    least, most = process.bcet, process.wcet
     match metric:
-        case TimeMetric.RESPONSE_TIME if response is not None:
-            return response.worst if is_upper else response.best
         case TimeMetric.NET_EXECUTION_TIME | TimeMetric.RUNNING_TIME | TimeMetric.CORE_EXECUTION_TIME:
-            return process.wcet if is_upper else process.bcet
-    return None
+            return least, most
+        case TimeMetric.ACTIVATE_TO_ACTIVATE:
+            return process.distance, process.gap
+    response = process.response
+    if response is None or least is None:
+        return None, None
+    best, worst = response.best, response.worst
+    if worst is None:
+        return (best if metric is TimeMetric.RESPONSE_TIME else None), None
+    # Whatever a job waits for, it also executes: at least its best case lies behind its start and between its interruptions.
+    waits = worst - least
+    match metric:
+        case TimeMetric.RESPONSE_TIME:
+            return best, worst
+        case TimeMetric.GROSS_EXECUTION_TIME:
+            return least, worst
+        case TimeMetric.START_DELAY | TimeMetric.READY_TIME:
+            return 0, waits
+        case TimeMetric.WAITING_TIME | TimeMetric.PARKING_TIME | TimeMetric.POLLING_TIME:
+            # Processes that wait for others are unknown; with ceilings nobody waits for a semaphore.
+            return 0, 0
+        case TimeMetric.LATENESS if process.deadline is not None:
+            return best - process.deadline, worst - process.deadline
+    return _between_jobs(process, metric, waits, best, worst)
+
+
+def _between_jobs(
+    process: ProcessResult, metric: TimeMetric, waits: Time, best: Time, worst: Time
+) -> tuple[Time | None, Time | None]:
+    """Times from a job to the next one: the distance of their activations, and how much earlier or later both may start or end."""
+    if process.distance is None:
+        return None, None
+    match metric:
+        case TimeMetric.START_TO_START:
+            return max(0, process.distance - waits), _plus(process.gap, waits)
+        case TimeMetric.END_TO_END:
+            return max(0, process.distance - (worst - best)), _plus(process.gap, worst - best)
+        case TimeMetric.END_TO_START:
+            return process.distance - worst, _plus(process.gap, waits - best)
+    return None, None
+
+
+def _plus(value: Time | None, more: Time) -> Time | None:
+    return None if value is None else value + more
 
 
 def _verdict(process: ProcessResult | None, limit: TimeLimit, value: Time | None) -> Verdict:

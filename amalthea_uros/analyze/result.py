@@ -38,6 +38,7 @@ class ProcessResult:
     Attributes
     ----------
     response : None if it is not known, and then `reason` says why
+    distance, gap : the least and the longest time from one activation to the next; None if that is not known
     """
 
     name: str
@@ -52,6 +53,8 @@ class ProcessResult:
     deadline: Time | None
     verdict: Verdict
     reason: str = ""
+    distance: Time | None = None
+    gap: Time | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from amalthea_uros.analyze.busy_window import LIMIT, MOST_STEPS, Interference, demand_rate
+from amalthea_uros.analyze.busy_window import Interference, demand_rate
 from amalthea_uros.analyze.fixed_priority import MOST_JOBS, unbounded
+from amalthea_uros.analyze.kernel import LIMIT, MOST_STEPS
 from amalthea_uros.analyze.task import Claim, Response, Task
 from amalthea_uros.units import Time
 

@@ -1,37 +1,67 @@
-"""By how much execution times may grow before a verdict changes.
+"""By how much execution times may change before a verdict does.
 
-All of them are multiplied by one factor, as a slower clock would do; the greatest factor is found by bisection, since more load never
-shortens a response time.
+They are multiplied by a factor, all of them as a slower clock would do, or those of one process; the greatest factor is found by
+bisection, since more load never shortens a response time.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from amalthea_uros.analyze.settings import Settings
-from amalthea_uros.analyze.system import analyze
+from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
 
-#: Factors are told to a thousandth.
+#: Factors below 1 are told to a thousandth, those above to a thousandth of themselves.
 STEP = Fraction(1, 1000)
 #: Greater factors say no more than that there is room.
-GREATEST = Fraction(1000)
+GREATEST = 1000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sensitivity:
+    """The greatest factors on execution times with which nothing is missed; None where no factor helps.
+
+    Attributes
+    ----------
+    everything : on all of them, on top of the scale of the analysis
+    processes : on those of one process
+    """
+
+    everything: Fraction | None
+    processes: Mapping[str, Fraction | None]
+
+
+def sensitivity(system: System, settings: Settings | None = None) -> Sensitivity:
+    """The greatest factors; deadlines and requirements that cannot be judged do not count."""
+    settings = settings or Settings()
+    return Sensitivity(
+        everything=greatest_scale(system, settings),
+        processes={name: _greatest_of(name, system, settings) for name in system.processes},
+    )
 
 
 def greatest_scale(system: System, settings: Settings | None = None) -> Fraction | None:
-    """The greatest factor on all execution times with which nothing is missed, to a thousandth; None if none is small enough.
+    """The greatest factor on all execution times."""
+    settings = settings or Settings()
+    return _greatest(lambda factor: not analyze_system(system, replace(settings, scale=settings.scale * factor)).misses)
 
-    Deadlines and requirements that cannot be judged do not count.
-    """
 
-    def holds(steps: int) -> bool:
-        return not analyze(system, replace(settings or Settings(), scale=steps * STEP)).misses
+def _greatest_of(name: str, system: System, settings: Settings) -> Fraction | None:
+    def holds(factor: Fraction) -> bool:
+        factors = {**settings.factors, name: settings.factors.get(name, 1) * factor}
+        return not analyze_system(system, replace(settings, factors=factors)).misses
 
-    low, high = 0, 1
-    while high * STEP < GREATEST and holds(high):
+    return _greatest(holds)
+
+
+def _greatest(holds: Callable[[Fraction], bool]) -> Fraction | None:
+    low, high = (1000, 2000) if holds(Fraction(1)) else (0, 1000)
+    while low and high * STEP < GREATEST and holds(high * STEP):
         low, high = high, high * 2
-    while high - low > 1:
+    while high - low > max(1, low // 1000):
         middle = (low + high) // 2
-        low, high = (middle, high) if holds(middle) else (low, middle)
+        low, high = (middle, high) if holds(middle * STEP) else (low, middle)
     return low * STEP if low else None

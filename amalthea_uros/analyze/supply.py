@@ -8,18 +8,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import ClassVar
 
 from amalthea_uros.units import Time
 
 
 @dataclass(frozen=True, slots=True)
 class Full:
-    """All of the processor's time."""
+    """All of the processor's time.
 
-    @property
-    def rate(self) -> Fraction:
-        """The share of the processor in the long run."""
-        return Fraction(1)
+    Attributes
+    ----------
+    rate : the share of the processor in the long run
+    """
+
+    rate: ClassVar[Fraction] = Fraction(1)
 
     def time_for(self, demand: Time) -> Time:
         """The longest time until so much demand has been served."""

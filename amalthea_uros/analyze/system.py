@@ -23,26 +23,33 @@ from amalthea_uros.units import Time
 MOST_ROUNDS = 100
 
 
-def analyze(system: System, settings: Settings | None = None) -> Analysis:
+def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
     """The analysis of a system."""
-    settings = settings or Settings()
-    known = Known(system, settings)
-    _note_settings(settings, known.notes)
-    known.place()
-    responses = _responses(known)
+    known = prepare(system, settings)
+    responses = respond(known)
     _note_left_out(known, responses)
     limits = upper_response_limits(system)
     processes = tuple(_process(name, known, responses.get(name), limits) for name in system.processes)
+    requirements = tuple(judge(system, {process.name: process for process in processes}, known.notes))
     return Analysis(
         processors=tuple(_processors(known)),
         processes=processes,
-        requirements=tuple(judge(system, {process.name: process for process in processes})),
+        requirements=requirements,
         assumptions=tuple(known.notes.assumptions),
         findings=tuple(known.notes.found),
     )
 
 
-def _responses(known: Known) -> dict[str, Response]:
+def prepare(system: System, settings: Settings | None = None) -> Known:
+    """What is known of a system before response times."""
+    settings = settings or Settings()
+    known = Known(system, settings)
+    _note_settings(settings, known.notes)
+    known.place()
+    return known
+
+
+def respond(known: Known) -> dict[str, Response]:
     """All response times, computed as often as they change the arrivals of others."""
     least = {name: cost.best // known.demands.grains(known.placed[name].core) for name, cost in known.costs.items()}
     propagation = Propagation(known.system, least, known.reasons)
@@ -99,6 +106,7 @@ def _process(name: str, known: Known, response: Response | None, limits: Mapping
     placed, cost, process = known.placed.get(name), known.costs.get(name), known.system.processes[name]
     deadline = placed.deadline if placed is not None and placed.deadline is not None else limits.get(name)
     grains = known.demands.grains(placed.core) if placed else 1
+    arrivals = known.arrivals.get(name)
     return ProcessResult(
         name=name,
         is_isr=not isinstance(process, Task),
@@ -112,6 +120,8 @@ def _process(name: str, known: Known, response: Response | None, limits: Mapping
         deadline=deadline,
         verdict=_verdict(response, deadline),
         reason=response.reason if response is not None else known.reasons.get(name, ""),
+        distance=arrivals.span(2) if arrivals is not None else None,
+        gap=arrivals.gap if arrivals is not None else None,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
@@ -10,11 +11,13 @@ from typing import Any
 
 import click
 
-from amalthea_uros.analyze.settings import Settings
-from amalthea_uros.analyze.system import analyze
+from amalthea_uros.analyze.assignment import propose
+from amalthea_uros.analyze.sensitivity import sensitivity
+from amalthea_uros.analyze.settings import Memory, Settings
+from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.cli.output import Output, output_option
 from amalthea_uros.pipeline import system_of
-from amalthea_uros.report.analysis import write_explanation, write_json, write_text
+from amalthea_uros.report.analysis import Extras, write_explanation, write_json, write_text
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import Frequency, parse_frequency
 
@@ -38,17 +41,47 @@ class CoreFrequency(click.ParamType[tuple[str, Frequency]]):
         return core, frequency
 
 
+class ModeValue(click.ParamType[tuple[str, str]]):
+    """`LABEL=VALUE`."""
+
+    name = "LABEL=VALUE"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, str]:
+        """Parse one value."""
+        if isinstance(value, tuple):
+            return value
+        label, equals, text = str(value).partition("=")
+        if not equals or not label or not text:
+            self.fail(f"{value!r} is not of the form LABEL=VALUE", param, ctx)
+        return label, text
+
+
 @click.command("analyze")
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL_OR_YAML...")
 @click.option("--frequency", "frequencies", multiple=True, type=CoreFrequency(), help="Clock of a core; may be repeated.")
 @click.option("--scale", type=click.FloatRange(min=0, min_open=True), default=1.0, help="Factor on all execution times.")
+@click.option(
+    "--mode", "modes", multiple=True, type=ModeValue(), help="Value of a mode label that does not change; may be repeated."
+)
+@click.option(
+    "--memory",
+    type=click.Choice([str(memory) for memory in Memory]),
+    default=str(Memory.NONE),
+    help="What accesses to labels cost: nothing, each its latency, or one copy per job.",
+)
 @click.option("--explain", metavar="PROCESS", help="Show what the response time of a process is made of.")
+@click.option("--sensitivity", "with_sensitivity", is_flag=True, help="Show by how much execution times may grow.")
+@click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
 @output_option("text", "json")
 def command(
     paths: tuple[Path, ...],
     frequencies: tuple[tuple[str, Frequency], ...],
     scale: float,
+    modes: tuple[tuple[str, str], ...],
+    memory: str,
     explain: str | None,
+    with_sensitivity: bool,
+    with_priorities: bool,
     outputs: tuple[Output, ...],
 ) -> None:
     """Compute response times, loads and verdicts.
@@ -57,18 +90,30 @@ def command(
     claims (exact, or a safe bound), and the assumptions are listed. Exit code 1 if a requirement or deadline is missed.
     """
     system, findings = system_of(paths)
-    unknown = [core for core, _ in frequencies if core not in system.cores]
-    if unknown:
-        raise click.BadParameter(f"there is no core {unknown[0]!r}; cores are {', '.join(system.cores)}")
-    if explain is not None and explain not in system.processes:
-        raise click.BadParameter(f"there is no process {explain!r}; processes are {', '.join(system.processes)}")
-    analysis = analyze(system, Settings(frequencies=dict(frequencies), scale=Fraction(str(scale))))
+    _check_name("core", [core for core, _ in frequencies], system.cores)
+    _check_name("mode label", [label for label, _ in modes], [label.name for label in system.software.mode_labels])
+    _check_name("process", [explain] if explain is not None else [], system.processes)
+    settings = Settings(dict(frequencies), Fraction(str(scale)), modes=dict(modes), memory=Memory(memory))
+    analysis = analyze_system(system, settings)
+    extras = Extras(
+        sensitivity=sensitivity(system, settings) if with_sensitivity else None,
+        proposals=tuple(propose(system, settings)) if with_priorities else None,
+    )
     Terminal(sys.stderr).findings((*findings, *analysis.findings))
     for output in outputs:
         if output.format == "json":
-            output.write(partial(write_json, analysis, paths, findings))
+            output.write(partial(write_json, analysis, extras, paths, findings))
         elif explain is not None:
             output.write(partial(write_explanation, analysis, explain))
         else:
-            output.write(partial(write_text, analysis))
+            output.write(partial(write_text, analysis, extras))
     sys.exit(1 if analysis.misses else 0)
+
+
+def _check_name(kind: str, names: Iterable[str], known: Iterable[str]) -> None:
+    """Refuse a name that the model does not have."""
+    existing = list(known)
+    for name in names:
+        if name not in existing:
+            said = f"those of the model are {', '.join(existing)}" if existing else "the model has none"
+            raise click.BadParameter(f"there is no {kind} {name!r}; {said}")

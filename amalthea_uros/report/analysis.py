@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
 from pathlib import Path
 from typing import IO, Any
 
 from amalthea_uros import __version__
+from amalthea_uros.analyze.assignment import Proposal
 from amalthea_uros.analyze.result import Analysis, ProcessorResult, ProcessResult, RequirementResult, Verdict
+from amalthea_uros.analyze.sensitivity import GREATEST, Sensitivity
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.report.findings import finding_json
 from amalthea_uros.report.terminal import Terminal
@@ -21,12 +24,23 @@ _COLOURS = {Verdict.MET: "32", Verdict.MISSED: "31", Verdict.UNBOUNDED: "31", Ve
 _BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET)
 
 
-def write_text(analysis: Analysis, stream: IO[str]) -> None:
+@dataclass(frozen=True, slots=True)
+class Extras:
+    """What is shown on request."""
+
+    sensitivity: Sensitivity | None = None
+    proposals: tuple[Proposal, ...] | None = None
+
+
+def write_text(analysis: Analysis, extras: Extras, stream: IO[str]) -> None:
     """Tables that a person reads at a glance, worst first."""
     terminal = Terminal(stream)
     _processors(terminal, analysis)
     _processes(terminal, analysis)
     _requirements(terminal, analysis)
+    _sensitivity(terminal, extras.sensitivity)
+    for proposal in extras.proposals or ():
+        _proposal(terminal, proposal)
     _methods(terminal, analysis)
     if analysis.assumptions:
         terminal.heading("Assumptions")
@@ -118,6 +132,30 @@ def _margin(requirement: RequirementResult) -> str:
     return "" if requirement.margin is None else time_text(requirement.margin)
 
 
+def _sensitivity(terminal: Terminal, found: Sensitivity | None) -> None:
+    if found is None:
+        return
+    terminal.heading("Execution times may be multiplied by at most")
+    rows = [("all together", _factor(found.everything)), *((name, _factor(f)) for name, f in found.processes.items())]
+    terminal.table(("of", "factor"), rows, right=(1,))
+
+
+def _factor(factor: Fraction | None) -> str:
+    if factor is None:
+        return "no factor helps"
+    return f"{float(factor):.3f}" if factor < GREATEST else f"{GREATEST} or more"
+
+
+def _proposal(terminal: Terminal, proposal: Proposal) -> None:
+    terminal.heading(f"Priorities on {proposal.core}")
+    if proposal.priorities is None:
+        terminal.line(f"  nothing is proposed: {proposal.reason}")
+        return
+    ordered = sorted(proposal.priorities.items(), key=lambda item: -item[1])
+    rows = [(name, "?" if (now := proposal.current[name]) is None else str(now), str(to)) for name, to in ordered]
+    terminal.table(("task", "now", "proposed"), rows, right=(1, 2))
+
+
 def _methods(terminal: Terminal, analysis: Analysis) -> None:
     methods = dict.fromkeys(
         f"{process.response.method} ({process.response.source})" for process in analysis.processes if process.response
@@ -145,9 +183,9 @@ def write_explanation(analysis: Analysis, name: str, stream: IO[str]) -> None:
     terminal.line(f"  {response.method} ({response.source}), {response.jobs} jobs looked at")
 
 
-def write_json(analysis: Analysis, paths: Sequence[Path], findings: Sequence[Finding], stream: IO[str]) -> None:
+def write_json(analysis: Analysis, extras: Extras, paths: Sequence[Path], findings: Sequence[Finding], stream: IO[str]) -> None:
     """The same for programs; times are picoseconds under names that end in `_ps`."""
-    result = {
+    result: dict[str, Any] = {
         "amuros": __version__,
         "model": " ".join(map(str, paths)),
         "assumptions": list(analysis.assumptions),
@@ -178,6 +216,15 @@ def write_json(analysis: Analysis, paths: Sequence[Path], findings: Sequence[Fin
             for requirement in analysis.requirements
         ],
     }
+    if extras.sensitivity is not None:
+        result["sensitivity"] = {
+            "everything": _number(extras.sensitivity.everything),
+            "processes": {name: _number(factor) for name, factor in extras.sensitivity.processes.items()},
+        }
+    if extras.proposals is not None:
+        result["priorities"] = [
+            {"processor": p.core, "current": p.current, "proposed": p.priorities, "reason": p.reason} for p in extras.proposals
+        ]
     json.dump(result, stream, indent=2, ensure_ascii=False)
     stream.write("\n")
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from amalthea_uros.analyze.settings import Memory, Settings
-from amalthea_uros.analyze.system import analyze
+from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import conditions, hardware, mapping, os
 from amalthea_uros.perf.distributions import Boundaries, Constant
 from amalthea_uros.perf.events import CustomEvent, Events, LabelChange, LabelEvent
@@ -81,7 +81,7 @@ def under(name, policy, priority=None, parent="root", **parameters):
 
 
 def worst(built, settings=None):
-    analysis = analyze(built, settings)
+    analysis = analyze_system(built, settings)
     return {
         process.name: process.response.worst // US if process.response and process.response.worst else process.reason
         for process in analysis.processes
@@ -281,7 +281,7 @@ class TestCosts:
 
     def test_labels_in_no_memory_are_told(self):
         built = system([root()], [("T", 100, [LabelAccess(label="L", kind=AccessKind.READ), ticks(1)], self.ONE[0][3])])
-        analysis = analyze(built, Settings(memory=Memory.EXPLICIT))
+        analysis = analyze_system(built, Settings(memory=Memory.EXPLICIT))
         assert [finding.rule for finding in analysis.findings] == ["ANA008"]
 
     def test_factors_of_single_processes(self):
@@ -310,7 +310,7 @@ class TestModes:
         runnable = Runnable(name="R", activities=(ticks(7),), condition=self.condition(conditions.Relation.GREATER, "2"))
         tasks = [("T", 100, [ticks(1), Call(runnable="R")], {"scheduler": "root", "priority": 1})]
         built = system([root()], tasks, runnables=[runnable])
-        (process,) = analyze(built, Settings(modes={"mode": level} if level else {})).processes
+        (process,) = analyze_system(built, Settings(modes={"mode": level} if level else {})).processes
         assert (process.bcet // US, process.wcet // US) == expected
 
 
@@ -351,5 +351,5 @@ def test_periodic_releases_and_a_server_are_no_exact_schedule():
         [("T", None, [ticks(5)], {"scheduler": "root", "priority": 1}), ("I", 90, [ticks(1)], {"scheduler": "server"})],
         stimuli=[Periodic(name="every T", period=100 * US)],
     )
-    claims = {process.name: process.response.claim for process in analyze(built).processes}
+    claims = {process.name: process.response.claim for process in analyze_system(built).processes}
     assert claims == {"T": "bound", "I": "bound"}

@@ -13,6 +13,7 @@ from amalthea_uros.analyze.arrivals import Periodic
 from amalthea_uros.analyze.cost import Cost, Part
 from amalthea_uros.analyze.schedule import Released
 from amalthea_uros.analyze.task import Task
+from amalthea_uros.analyze.utilization import liu_layland
 
 
 def vectors(name, accept=lambda case: True):
@@ -46,6 +47,11 @@ def test_published_and_independent_figures(case):
         worst = [response + task["jitter"] for response, task in zip(worst, case["tasks"], strict=True)]
     assert worst == case["expected_wcrt"]
     assert [sum(response.terms.values()) for response in found] == [response.worst for response in found]
+
+
+@pytest.mark.parametrize("case", vectors("textbook", lambda case: case["scheduling"] == "utilization_bound"))
+def test_liu_and_layland_1973(case):
+    assert liu_layland(case["n"]) == pytest.approx(case["expected"], rel=1e-15)
 
 
 def test_lehoczky_1990_has_its_worst_response_at_the_fifth_job():

@@ -10,9 +10,9 @@ from support import ROOT, SHARED
 from amalthea_uros import extract, load, pipeline
 from amalthea_uros.analyze.result import Verdict
 from amalthea_uros.analyze.settings import Settings
-from amalthea_uros.analyze.system import analyze
+from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import stimuli as perf_stimuli
-from amalthea_uros.perf.constraints import Constraints, Requirement, TimeLimit, TimeMetric
+from amalthea_uros.perf.constraints import Bound, Constraints, CountLimit, CountMetric, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.distributions import Boundaries, Constant, Uniform
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
@@ -48,12 +48,12 @@ class TestTheThesis:
     """Section 7 of its figures: simulated values of both models, which the exact analysis meets at its ends."""
 
     def test_simple(self):
-        analysis = analyze(pipeline.describe(SAMPLES / "bodas-test-simple.yaml").system)
+        analysis = analyze_system(pipeline.describe(SAMPLES / "bodas-test-simple.yaml").system)
         control = by_name(analysis)["Control_Function"].response
         assert (control.best, control.worst, control.claim) == (16 * US, 16 * US, "exact")
 
     def test_advanced(self):
-        analysis = analyze(pipeline.describe(SAMPLES / "bodas-test-advanced.yaml").system)
+        analysis = analyze_system(pipeline.describe(SAMPLES / "bodas-test-advanced.yaml").system)
         processes = by_name(analysis)
         executor, control = processes["Executor_Task"], processes["Control_Function"]
         assert (executor.response.best, executor.response.worst) == (12 * US, 25 * US)
@@ -67,8 +67,8 @@ class TestTheThesis:
 
     def test_the_built_model_gives_the_same_as_its_description(self):
         for sample in SAMPLES.glob("*.yaml"):
-            described = analyze(pipeline.describe(sample).system)
-            read = analyze(extract(load(sample.with_suffix(".amxmi"))).system)
+            described = analyze_system(pipeline.describe(sample).system)
+            read = analyze_system(extract(load(sample.with_suffix(".amxmi"))).system)
             assert read == described
 
 
@@ -136,7 +136,7 @@ class TestTheChallengeOf2017:
         figures = waters()
         preemptive = variant.startswith("preemptive")
         built = challenge(figures, preemptive)
-        analysis = analyze(built, Settings(dict.fromkeys(built.cores, Fraction(frequency * 10**6))))
+        analysis = analyze_system(built, Settings(dict.fromkeys(built.cores, Fraction(frequency * 10**6))))
         found = by_name(analysis)
         for task in figures["tasks"]:
             if task["scheduling"] == "cooperative" and not preemptive:
@@ -154,14 +154,14 @@ class TestTheChallengeOf2017:
         figures = waters()
         built = challenge(figures, preemptive=True)
         for variant, frequency in (("nominal_200MHz_nomem", 200), ("unimore_300MHz_nomem", 300)):
-            analysis = analyze(built, Settings(dict.fromkeys(built.cores, Fraction(frequency * 10**6))))
+            analysis = analyze_system(built, Settings(dict.fromkeys(built.cores, Fraction(frequency * 10**6))))
             loads = {processor.name: round(float(processor.worst), 6) for processor in analysis.processors}
             assert loads == figures["variants"][variant]["core_utilisation"]
 
     def test_a_clock_and_a_factor_say_the_same(self):
         built = challenge(waters(), preemptive=True)
-        faster = analyze(built, Settings(dict.fromkeys(built.cores, Fraction(400 * 10**6))))
-        scaled = analyze(built, Settings(scale=Fraction(1, 2)))
+        faster = analyze_system(built, Settings(dict.fromkeys(built.cores, Fraction(400 * 10**6))))
+        scaled = analyze_system(built, Settings(scale=Fraction(1, 2)))
         assert [p.response for p in faster.processes] == [p.response for p in scaled.processes]
 
 
@@ -186,7 +186,7 @@ def one_core(*tasks, stimuli=None, **more):
 
 
 def cost_of(*activities, runnables=()):
-    process = by_name(analyze(one_core(("T", 1000, activities), runnables=runnables)))["T"]
+    process = by_name(analyze_system(one_core(("T", 1000, activities), runnables=runnables)))["T"]
     return (
         None if process.bcet is None else process.bcet // US,
         None if process.wcet is None else process.wcet // US,
@@ -232,7 +232,7 @@ class TestTasksThatCannotAlwaysBeInterrupted:
         first, *others = built.software.tasks
         tasks = (first, *(replace(task, preemption=preemption) for task in others))
         built = replace(built, software=replace(built.software, tasks=tasks))
-        return [process.response.worst // US for process in analyze(built).processes]
+        return [process.response.worst // US for process in analyze_system(built).processes]
 
     def test_preemptive(self):
         # C: 11 of its own, 10 of B, 2 of A at 0 and at 20.
@@ -256,7 +256,7 @@ class TestTriggers:
             ("sink", None, [ticks(40)]),
             stimuli=[InterProcess(name="trigger sink")],
         )
-        found = by_name(analyze(built))
+        found = by_name(analyze_system(built))
         assert found["source"].response.worst == 50 * US
         # A job of each of the others can come first: 20 + 30, and 40 of its own.
         assert found["sink"].response.worst == 90 * US
@@ -270,7 +270,7 @@ class TestTriggers:
                 ("last", 1000, [ticks(5)]),
                 stimuli=[InterProcess(name="trigger sink")],
             )
-            return by_name(analyze(built))["last"].response.worst
+            return by_name(analyze_system(built))["last"].response.worst
 
         # The ends of jobs of 1 to 50 us come closer together than those of jobs of 50 us.
         assert worst(1) >= worst(50)
@@ -281,7 +281,7 @@ class TestTriggers:
             ("two", None, [ticks(1), Trigger(stimulus="trigger one")]),
             stimuli=[InterProcess(name="trigger one"), InterProcess(name="trigger two")],
         )
-        assert [process.verdict for process in analyze(built).processes] == ["unknown", "unknown"]
+        assert [process.verdict for process in analyze_system(built).processes] == ["unknown", "unknown"]
 
 
 class TestWhatIsNotKnown:
@@ -293,7 +293,7 @@ class TestWhatIsNotKnown:
             [TaskAllocation(task="T", scheduler="core", priority=1)],
             policy="PfairPD2",
         )
-        analysis = analyze(built)
+        analysis = analyze_system(built)
         assert analysis.processes[0].verdict is Verdict.UNKNOWN
         assert analysis.processes[0].response is None
         assert [finding.rule for finding in analysis.findings] == ["ANA002"]
@@ -311,11 +311,11 @@ class TestWhatIsNotKnown:
     )
     def test_reasons(self, change, reason):
         built = one_core(("low", 1000, [ticks(1)]))
-        assert analyze(replace(built, **change)).processes[0].reason == reason
+        assert analyze_system(replace(built, **change)).processes[0].reason == reason
 
     def test_who_comes_behind_something_unknown_is_unknown_too(self):
         built = one_core(("loop", 1000, [Loop(activities=())]), ("behind", 1000, [ticks(1)]))
-        found = by_name(analyze(built))
+        found = by_name(analyze_system(built))
         assert found["behind"].response is None
         assert "too little is known of 'loop'" in found["behind"].reason
 
@@ -335,7 +335,7 @@ class TestWhatIsNotKnown:
             Scheduler(name="global", policy=Policy.OSEK, cores=("one", "two")),
             Scheduler(name="three", policy=Policy.OSEK, cores=("three",)),
         )
-        analysis = analyze(replace(built, os=Os(systems=(OperatingSystem(name="OS", schedulers=schedulers),))))
+        analysis = analyze_system(replace(built, os=Os(systems=(OperatingSystem(name="OS", schedulers=schedulers),))))
         found = by_name(analysis)
         assert found["free"].reason == "several cores serve it"
         assert found["fixed"].reason == "too little is known of 'free', which may come before it"
@@ -350,7 +350,7 @@ class TestWhatIsNotKnown:
             model = load(path)
         except ReadError:
             return
-        analyze(extract(model).system)
+        analyze_system(extract(model).system)
 
 
 class TestVerdicts:
@@ -361,14 +361,67 @@ class TestVerdicts:
     @pytest.mark.parametrize(("limit", "verdict"), [(31, "met"), (30, "met"), (29, "missed")])
     def test_a_response_time(self, limit, verdict):
         built = one_core(("high", 100, [ticks(20)]), ("low", 100, [ticks(10)]), constraints=self.requirement(limit))
-        analysis = analyze(built)
+        analysis = analyze_system(built)
         assert analysis.requirements[0].verdict == by_name(analysis)["low"].verdict == verdict
         assert analysis.misses == (verdict == "missed")
 
     def test_overload(self):
         built = one_core(("high", 100, [ticks(70)]), ("low", 100, [ticks(40)]), constraints=self.requirement(100))
-        analysis = analyze(built)
+        analysis = analyze_system(built)
         assert by_name(analysis)["high"].response.worst == 70 * US
         assert by_name(analysis)["low"].verdict == analysis.requirements[0].verdict == "unbounded"
         assert analysis.processors[0].worst == Fraction("1.1")
         assert analysis.misses
+
+
+class TestRequirements:
+    """A task of 20 us behind one of 30, which comes every 100 with a jitter of 10, all at 1 MHz."""
+
+    JITTER = (Periodic(name="every high", period=100 * US, jitter=Uniform(lower=0, upper=10 * US)),)
+
+    def judged(self, metric, bound=Bound.UPPER, process="low"):
+        limit = TimeLimit(metric=metric, value=0, bound=bound)
+        requirement = Requirement(name="R", process=process, limit=limit)
+        built = one_core(
+            ("high", None, [ticks(30)]),
+            ("low", 200, [ticks(20, 15)]),
+            stimuli=self.JITTER,
+            constraints=Constraints(requirements=(requirement,)),
+        )
+        tasks = (replace(built.software.tasks[0], stimuli=("every high",)), built.software.tasks[1])
+        (result,) = analyze_system(replace(built, software=replace(built.software, tasks=tasks))).requirements
+        return None if result.value is None else result.value // US
+
+    @pytest.mark.parametrize(
+        ("metric", "least", "most"),
+        [
+            (TimeMetric.RESPONSE_TIME, 15, 50),
+            (TimeMetric.NET_EXECUTION_TIME, 15, 20),
+            (TimeMetric.GROSS_EXECUTION_TIME, 15, 50),
+            # Of 50 us a job executes 15 at least.
+            (TimeMetric.START_DELAY, 0, 35),
+            (TimeMetric.READY_TIME, 0, 35),
+            (TimeMetric.WAITING_TIME, 0, 0),
+            (TimeMetric.ACTIVATE_TO_ACTIVATE, 200, 200),
+            # Starts vary by 35, ends by 50 - 15.
+            (TimeMetric.START_TO_START, 200 - 35, 200 + 35),
+            (TimeMetric.END_TO_END, 200 - 35, 200 + 35),
+            # From an end 50 after the activation to the next start at once; from one after 15 to a start 35 late.
+            (TimeMetric.END_TO_START, 200 - 50, 200 + 35 - 15),
+            (TimeMetric.LATENESS, None, None),
+            (TimeMetric.OS_OVERHEAD, None, None),
+        ],
+    )
+    def test_metrics(self, metric, least, most):
+        assert (self.judged(metric, Bound.LOWER), self.judged(metric)) == (least, most)
+
+    def test_jitter_moves_activations(self):
+        assert self.judged(TimeMetric.ACTIVATE_TO_ACTIVATE, Bound.LOWER, "high") == 90
+        assert self.judged(TimeMetric.ACTIVATE_TO_ACTIVATE, process="high") == 110
+
+    def test_limits_of_something_else_are_told(self):
+        limit = CountLimit(metric=CountMetric.PREEMPTIONS, value=3)
+        built = one_core(
+            ("low", 100, [ticks(1)]), constraints=Constraints(requirements=(Requirement(name="R", process="low", limit=limit),))
+        )
+        assert [finding.rule for finding in analyze_system(built).findings] == ["ANA009"]

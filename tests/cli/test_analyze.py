@@ -71,6 +71,9 @@ def test_another_clock(tmp_path):
         (["--frequency", "Core_0=0MHz"], "greater than zero"),
         (["--explain", "Nothing"], "there is no process 'Nothing'"),
         (["--scale", "0"], "0"),
+        (["--mode", "speed"], "not of the form LABEL=VALUE"),
+        (["--mode", "speed=1"], "there is no mode label 'speed'; the model has none"),
+        (["--memory", "cached"], "'cached'"),
     ],
 )
 def test_wrong_use(arguments, message):
@@ -85,3 +88,34 @@ def test_files_that_cannot_be_read(tmp_path):
     assert amuros("analyze", tmp_path / "none.amxmi").returncode == 2
     broken = shutil.copy(ADVANCED, tmp_path / "broken.amxmi")
     assert amuros("analyze", broken).returncode == 2
+
+
+def test_sensitivity_and_priorities(tmp_path):
+    run = amuros(
+        "analyze",
+        ADVANCED,
+        "--sensitivity",
+        "--assign-priorities",
+        "--output",
+        "text",
+        "--output",
+        f"json={tmp_path / 'r.json'}",
+    )
+    assert run.returncode == 0
+    assert "Execution times may be multiplied by at most" in run.stdout
+    assert "nothing is proposed: 'Executor_Task' has no deadline" in run.stdout
+    result = json.loads((tmp_path / "r.json").read_text())
+    assert result["sensitivity"]["everything"] == pytest.approx(1000 / 29, rel=1e-3)
+    assert result["priorities"][0]["proposed"] is None
+
+
+def test_proposed_priorities(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text(
+        "amuros: 1\nname: app\nhardware: single-core\ntasks:\n"
+        "  - {name: Slow, period: 20 ms, execution_time: 5 ms, deadline: 20 ms, priority: 2}\n"
+        "  - {name: Fast, period: 5 ms, execution_time: 1 ms, deadline: 2 ms, priority: 1}\n"
+    )
+    run = amuros("analyze", path, "--assign-priorities")
+    assert run.returncode == 1
+    assert "  Fast    1         2\n  Slow    2         1\n" in run.stdout, run.stdout + run.stderr
