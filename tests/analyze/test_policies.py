@@ -4,7 +4,11 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from system_strategies import systems
 
+from amalthea_uros.analyze.assignment import propose
 from amalthea_uros.analyze.settings import Memory, Settings
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import conditions, hardware, mapping, os
@@ -353,3 +357,12 @@ def test_periodic_releases_and_a_server_are_no_exact_schedule():
     )
     claims = {process.name: process.response.claim for process in analyze_system(built).processes}
     assert claims == {"T": "bound", "I": "bound"}
+
+
+@settings(max_examples=200)
+@given(systems(), st.sampled_from(Memory))
+def test_no_system_is_too_strange(system, memory):
+    analysis = analyze_system(system, Settings(memory=memory))
+    for process in analysis.processes:
+        assert process.response is not None or process.reason
+    propose(system)
