@@ -1,7 +1,7 @@
 """Hot loops: the same functions as machine code, where numba is installed (`pip install amuros[fast]`).
 
-Loading numba takes a few tenths of a second, which small models would not earn back. So a function runs as Python until it has been
-called often.
+Loading numba takes a few tenths of a second, which small models would not earn back. So a function runs as Python until that has
+taken about as long.
 """
 
 from __future__ import annotations
@@ -14,42 +14,64 @@ from typing import Generic, ParamSpec, TypeVar, cast
 P = ParamSpec("P")
 R = TypeVar("R")
 
-#: As many calls take about as long as loading numba.
-CALLS_BEFORE = 10_000
+#: About how long it takes to load numba, in microseconds.
+LOADING = 400_000
 
 
 class Compiled(Generic[P, R]):
-    """A function in the subset of Python that numba knows."""
+    """A function in the subset of Python that numba knows.
 
-    def __init__(self, function: Callable[P, R]) -> None:
+    Attributes
+    ----------
+    is_compiled : whether it is machine code by now, which works on arrays; Python is faster on lists
+    """
+
+    def __init__(self, function: Callable[P, R], cost: int) -> None:
         update_wrapper(self, function)
         self._function = function
-        self._left = CALLS_BEFORE if find_spec("numba") else -1
+        self._cost = cost
+        self._left = LOADING if find_spec("numba") else None
+        self.is_compiled = False
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
-        """Call it; the last call as Python compiles it."""
-        if self._left >= 0:
-            self._left -= 1
-            if self._left < 0:
-                self.compile()
+        """Call it."""
+        if self._left is not None:
+            self.expect(self._cost)
         return self._function(*args, **kwargs)
 
+    def expect(self, microseconds: int) -> None:
+        """Count work that is to be done as Python; when all of it together takes longer than loading numba, compile."""
+        if self._left is not None:
+            self._left -= microseconds
+            if self._left < 0:
+                self.compile()
+
     def keep_python(self) -> None:
-        """Do not compile it, however often it is called."""
-        self._left = -1
+        """Do not compile it, however much there is to do."""
+        self._left = None
 
     def compile(self) -> None:
         """Make it machine code from now on, if numba is there."""
-        if find_spec("numba"):
+        self._left = None
+        if find_spec("numba") and not self.is_compiled:
             from numba import njit
 
-            self._left = -1
             try:
                 self._function = cast("Callable[P, R]", njit(cache=True)(self._function))
             except RuntimeError:  # there is no folder in which numba could keep the machine code
                 self._function = cast("Callable[P, R]", njit(self._function))
+            self.is_compiled = True
 
 
-def compiled(function: Callable[P, R]) -> Compiled[P, R]:
-    """Have a function compiled once it has been called often."""
-    return Compiled(function)
+def compiled(cost: int) -> Callable[[Callable[P, R]], Compiled[P, R]]:
+    """Have a function compiled once it has been used enough.
+
+    Parameters
+    ----------
+    cost : about how long a call takes as Python, in microseconds; 0 where callers tell by `Compiled.expect`
+    """
+
+    def wrap(function: Callable[P, R]) -> Compiled[P, R]:
+        return Compiled(function, cost)
+
+    return wrap

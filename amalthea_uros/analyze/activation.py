@@ -10,6 +10,9 @@ from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import SECOND, Frequency
 
+#: Of longer lists of occurrences nothing is made.
+MOST_OCCURRENCES = 10_000
+
 
 def arrivals_of(stimulus: perf.Stimulus, system: System) -> Arrivals | None:
     """The event model of a stimulus that comes from outside; None if nothing bounds it, or another process fires it."""
@@ -27,12 +30,14 @@ def arrivals_of(stimulus: perf.Stimulus, system: System) -> Arrivals | None:
             # Times beyond the period fall into later ones, where they meet those of the next rounds.
             return Pattern(period, tuple(sorted(time % period for time in times)))
         case perf.Burst(period=period, length=length, distance=distance, count=count) if period > 0:
-            times = tuple(index * distance for index in range(count) if index * distance < max(length, 1))
-            return Pattern(period, times) if times and times[-1] < period else None
+            happening = min(count, -(-max(length, 1) // distance)) if distance > 0 else count
+            if not 0 < happening <= MOST_OCCURRENCES or (happening - 1) * distance >= period:
+                return None
+            return Pattern(period, tuple(index * distance for index in range(happening)))
         case perf.Single():
             return Once()
         case perf.ArrivalCurve(points=points):
-            limits = tuple((p.occurrences, p.lower) for p in points if p.lower and p.occurrences > 1)
+            limits = tuple((p.occurrences, p.lower) for p in points if p.lower and 1 < p.occurrences <= MOST_OCCURRENCES)
             return Curve(limits) if limits else None
         case perf.VariableRate(step=step, rate=rate, scenario=None) if step > 0:
             highest_rate = highest(rate)

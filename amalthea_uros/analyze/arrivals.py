@@ -149,16 +149,18 @@ class Curve(Arrivals):
     def span(self, count: int) -> Time:
         """See `Arrivals`; distances add up over consecutive groups of arrivals."""
         steps_at_once, time = self._best
-        rounds, rest = divmod(max(0, count - 1), steps_at_once)
         # Beyond the first rounds the densest entry is repeated; the rest is put together in the best way.
-        return rounds * time + self._put_together(rest) if rounds else self._put_together(rest)
+        rounds, rest = divmod(max(0, count - 1), steps_at_once)
+        return rounds * time + self._put_together[rest]
 
-    def _put_together(self, steps: int) -> Time:
-        best = [0] * (steps + 1)
-        for reached in range(1, steps + 1):
+    @cached_property
+    def _put_together(self) -> list[Time]:
+        """The least time of so many steps, for fewer steps than the densest entry has."""
+        best = [0]
+        for reached in range(1, self._best[0]):
             usable = [(count - 1, time) for count, time in self.distances if count - 1 <= reached]
-            best[reached] = max((best[reached - step] + time for step, time in usable), default=best[reached - 1])
-        return best[steps]
+            best.append(max((best[reached - step] + time for step, time in usable), default=best[reached - 1]))
+        return best
 
     @property
     def rate(self) -> Fraction:
@@ -196,6 +198,23 @@ class Every(Arrivals):
     def rate(self) -> Fraction:
         """See `Arrivals`."""
         return self.arrivals.rate / self.prescaler
+
+
+@dataclass(frozen=True)
+class Repeated(Arrivals):
+    """Several arrivals for each of others, at the same moment in the worst case."""
+
+    arrivals: Arrivals
+    times: int
+
+    def span(self, count: int) -> Time:
+        """See `Arrivals`."""
+        return self.arrivals.span(-(-count // self.times))
+
+    @property
+    def rate(self) -> Fraction:
+        """See `Arrivals`."""
+        return self.arrivals.rate * self.times
 
 
 @dataclass(frozen=True)

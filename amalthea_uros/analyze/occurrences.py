@@ -58,7 +58,8 @@ class Occurrence:
 def occurrences(system: System) -> Iterator[Occurrence]:
     """Everything that the jobs of all processes may do, in order."""
     for process in system.processes.values():
-        yield from _within(process.activities, process, None, 1, (), system)
+        everything = _within(process.activities, process, None, 1, (), system)
+        yield from (what for what in everything if what.times > 0)
 
 
 def _within(

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from amalthea_uros.analyze.activation import arrivals_of
-from amalthea_uros.analyze.arrivals import Arrivals, Behind, Delayed, Every, Together
+from amalthea_uros.analyze.arrivals import Arrivals, Behind, Delayed, Every, Repeated, Together
 from amalthea_uros.analyze.occurrences import Occurrence, occurrences, raises
 from amalthea_uros.analyze.task import Response
 from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
@@ -25,8 +26,12 @@ class UnknownArrivalsError(Exception):
     """Nothing bounds the arrivals of a process; the text says why."""
 
 
-#: A process that causes something, and whether it does so only every n-th time.
-Cause = tuple[Process, Counter | None]
+class Cause(NamedTuple):
+    """A process that causes something, how often in a job, and whether only every n-th time."""
+
+    process: Process
+    times: int
+    counter: Counter | None
 
 
 @dataclass(slots=True)
@@ -51,7 +56,7 @@ class Propagation:
         for what in self.happens:
             if isinstance(what.activity, Trigger):
                 causes = self.triggers.setdefault(what.activity.stimulus, [])
-                causes += [(what.process, what.activity.counter)] * what.times
+                causes.append(Cause(what.process, what.times, what.activity.counter))
 
     def arrivals(self, process: Process, responses: Mapping[str, Response], above: tuple[str, ...] = ()) -> Arrivals:
         """The event model of a process.
@@ -80,7 +85,7 @@ class Propagation:
         causes = self.triggers.get(name, []) if is_triggered else self._causes(stimulus)  # type: ignore[arg-type]
         if not causes:
             raise UnknownArrivalsError(f"nothing triggers {name!r}")
-        sources = [self._behind(process, counter, responses, above) for process, counter in causes]
+        sources = [self._behind(cause, responses, above) for cause in causes]
         together = sources[0] if len(sources) == 1 else Together(tuple(sources))
         return _counted(together, stimulus.counter)
 
@@ -92,7 +97,7 @@ class Propagation:
             if event is None:
                 raise UnknownArrivalsError(f"the event {name!r} is not part of the model")
             self._check(event)
-            causes = [(what.process, None) for what in self.happens if raises(what, event) for _ in range(what.times)]
+            causes = [Cause(what.process, what.times, None) for what in self.happens if raises(what, event)]
             if not causes and isinstance(event, CustomEvent):
                 raise UnknownArrivalsError(f"nothing in the model raises the event {name!r}")
             found += causes
@@ -107,19 +112,18 @@ class Propagation:
             if event.label is None or event.label in assigned:
                 raise UnknownArrivalsError(f"stimuli raise the event {event.name!r}, too")
 
-    def _behind(
-        self, process: Process, counter: Counter | None, responses: Mapping[str, Response], above: tuple[str, ...]
-    ) -> Arrivals:
+    def _behind(self, cause: Cause, responses: Mapping[str, Response], above: tuple[str, ...]) -> Arrivals:
         """The arrivals that a process causes somewhere between its start and its end."""
+        process = cause.process
         if process.name in self.unknown:
             raise UnknownArrivalsError(f"too little is known of {process.name!r}, which triggers it")
-        before = self.arrivals(process, responses, above)
+        found = self.arrivals(process, responses, above)
         response = responses.get(process.name)
-        if response is None:
-            return _counted(before, counter)
-        if response.worst is None:
-            raise UnknownArrivalsError(f"{process.name!r}, which triggers it, has no bounded response time")
-        return _counted(behind(before, response, self.least_costs.get(process.name, 0)), counter)
+        if response is not None:
+            if response.worst is None:
+                raise UnknownArrivalsError(f"{process.name!r}, which triggers it, has no bounded response time")
+            found = behind(found, response, self.least_costs.get(process.name, 0))
+        return _counted(found if cause.times == 1 else Repeated(found, cause.times), cause.counter)
 
 
 def behind(arrivals: Arrivals, response: Response, least_cost: Time) -> Arrivals:

@@ -10,12 +10,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from heapq import heapify, heappop, heappush, heapreplace
+from itertools import accumulate
 from math import lcm
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from amalthea_uros.analyze.cost import Cost
+from amalthea_uros.analyze.kernel import Whole, dispatch
 from amalthea_uros.analyze.task import Claim, Response
 from amalthea_uros.units import Time
+
+if TYPE_CHECKING:
+    from amalthea_uros.analyze.kernel import Numbers
 
 METHOD = "schedule over the hyperperiod, fixed priorities, preemptive"
 SOURCE = "Leung, Whitehead 1982"
@@ -35,90 +42,118 @@ class Released:
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
-    """A job of a schedule."""
+class Jobs:
+    """The jobs of a task in order: when each is released, begins and ends, and in which pieces, where those were asked for.
 
-    release: Time
-    start: Time
-    finish: Time
+    Attributes
+    ----------
+    pieces : rows of (number of the job, begin, end)
+    """
+
+    releases: Numbers
+    begins: Numbers
+    ends: Numbers
+    pieces: Numbers
 
 
-def schedule(tasks: Sequence[Released], until: Time, cost_of: Callable[[Cost, int], Time]) -> list[list[Job]]:
-    """All jobs that are released before a time, by task and in order; jobs of the same priority in the order of release.
-
-    Later releases are there too, as far as they interrupt these jobs.
+def schedule(
+    tasks: Sequence[Released], until: Time, cost_of: Callable[[Cost, int], Time], watched: Sequence[bool] | None = None
+) -> list[Jobs]:
+    """The jobs of each task that are released before a time, all of them served to their ends.
 
     Parameters
     ----------
     cost_of : what the n-th job (from 1) of a task executes
+    watched : of which tasks the pieces are wanted; None: of none
     """
-    # Releases to come: time, then in the order in which jobs of the same time are served.
-    upcoming = [(task.offset, -task.priority, number, 1) for number, task in enumerate(tasks)]
-    heapify(upcoming)
-    found: list[list[Job]] = [[] for _ in tasks]
-    ready: list[list[int]] = []
-    now = pending = 0
-    while pending or upcoming[0][0] < until:
-        if not ready:
-            now = max(now, upcoming[0][0])
-        while upcoming[0][0] <= now:
-            release, rank, number, index = upcoming[0]
-            heapreplace(upcoming, (release + tasks[number].period, rank, number, index + 1))
-            # Rank, release and number decide; then what is left, and when it started.
-            heappush(ready, [rank, release, number, cost_of(tasks[number].cost, index), -1])
-            pending += release < until
-        job = ready[0]
-        _, release, number, left, start = job
-        begin = now if start < 0 else start
-        if now + left <= upcoming[0][0]:
-            now += left
-            heappop(ready)
-            if release < until:
-                pending -= 1
-                found[number].append(Job(release, begin, now))
-        else:
-            # In place: neither what is left nor the start decides the order.
-            job[3], job[4] = left - (upcoming[0][0] - now), begin
-            now = upcoming[0][0]
-    return found
+    counts = [max(0, -(-(until - task.offset) // task.period)) for task in tasks]
+    firsts = list(accumulate(counts, initial=0))
+    leads = [_lead(task.cost) for task in tasks]
+    cycles = [_cycle(task.cost) for task in tasks]
+    costs = [
+        cost_of(task.cost, index + 1)
+        for task, lead, cycle in zip(tasks, leads, cycles, strict=True)
+        for index in range(lead + cycle)
+    ]
+    tables = list(accumulate((lead + cycle for lead, cycle in zip(leads, cycles, strict=True)), initial=0))
+    periods, offsets = [task.period for task in tasks], [task.offset for task in tasks]
+    ranks, watch = [-task.priority for task in tasks], list(watched or [False] * len(tasks))
+    # About 3 us for each job as Python.
+    dispatch.expect(3 * firsts[-1])
+    form: Callable[[Any], Whole] = np.array if dispatch.is_compiled else list
+    begins, ends = form([-1] * firsts[-1]), form([-1] * firsts[-1])
+    found = dispatch(
+        form(periods),
+        form(offsets),
+        form(ranks),
+        form(firsts[:-1]),
+        form(tables[:-1]),
+        form(leads),
+        form(cycles),
+        form(costs),
+        form(watch),
+        until,
+        begins,
+        ends,
+    )
+    begins, ends = np.asarray(begins, dtype=np.int64), np.asarray(ends, dtype=np.int64)
+    pieces = np.array(found, dtype=np.int64).reshape(-1, 3)
+    result = []
+    for number, task in enumerate(tasks):
+        first, last = firsts[number], firsts[number + 1]
+        releases = task.offset + task.period * np.arange(last - first, dtype=np.int64)
+        own = pieces[(pieces[:, 0] >= first) & (pieces[:, 0] < last)] - (first, 0, 0) if watch[number] else pieces[:0]
+        result.append(Jobs(releases, begins[first:last], ends[first:last], own))
+    return result
+
+
+def _lead(cost: Cost) -> int:
+    """How many jobs come before the costs repeat: counters with offsets may start late."""
+    return max((part.offset for part in cost.parts), default=0)
+
+
+def _cycle(cost: Cost) -> int:
+    return lcm(*(part.prescaler for part in cost.parts))
 
 
 def hyperperiod(tasks: Sequence[Released]) -> Time:
     """The time after which releases and costs repeat."""
-    return lcm(*(task.period * lcm(*(part.prescaler for part in task.cost.parts)) for task in tasks))
+    return lcm(*(task.period * _cycle(task.cost) for task in tasks))
+
+
+def settled(tasks: Sequence[Released]) -> Time:
+    """The time behind which all tasks have been released, and all counters have started; a hyperperiod later everything repeats."""
+    return max((task.offset + _lead(task.cost) * task.period for task in tasks), default=0)
+
+
+def fits(tasks: Sequence[Released], until: Time) -> bool:
+    """Whether a schedule up to a time is worth it, and exists: no more is demanded than served."""
+    if sum(until // task.period + 1 for task in tasks) > MOST_JOBS:
+        return False
+    return sum(task.cost.mean_worst / task.period for task in tasks) <= 1
 
 
 def response_times(tasks: Sequence[Released]) -> list[Response] | None:
     """The exact response times; None if the schedule is too long, or the processor overloaded."""
-    cycle = hyperperiod(tasks)
-    # Counters with offsets may start late; behind that everything repeats.
-    first = max((_settled(task) for task in tasks), default=0)
-    until = first + 2 * cycle
-    if sum(until // task.period + 1 for task in tasks) > MOST_JOBS:
-        return None
-    if sum(task.cost.mean_worst / task.period for task in tasks) > 1:
+    until = settled(tasks) + 2 * hyperperiod(tasks)
+    if not fits(tasks, until):
         return None
     worst = schedule(tasks, until, Cost.worst_of)
     best = schedule(tasks, until, Cost.best_of)
     return [_response(task, w, b) for task, w, b in zip(tasks, worst, best, strict=True)]
 
 
-def _settled(task: Released) -> Time:
-    latest = max((max(part.offset, part.prescaler) for part in task.cost.parts), default=0)
-    return task.offset + latest * task.period
-
-
-def _response(task: Released, worst: Sequence[Job], best: Sequence[Job]) -> Response:
-    at = max(range(len(worst)), key=lambda index: worst[index].finish - worst[index].release)
-    job = worst[at]
-    own = task.cost.worst_of(at + 1)
+def _response(task: Released, worst: Jobs, best: Jobs) -> Response:
+    responses = worst.ends - worst.releases
+    at = int(responses.argmax())
+    longest, own = int(responses[at]), task.cost.worst_of(at + 1)
     return Response(
-        worst=job.finish - job.release,
-        best=min(job.finish - job.release for job in best),
+        worst=longest,
+        best=int((best.ends - best.releases).min()),
         method=METHOD,
         source=SOURCE,
         claim=Claim.EXACT,
-        jobs=len(worst),
-        window=job.finish - job.release,
-        terms={"own": own, "interference": job.finish - job.release - own, "blocking": 0},
+        jobs=len(responses),
+        window=longest,
+        terms={"own": own, "interference": longest - own, "blocking": 0},
     )

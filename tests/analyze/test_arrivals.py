@@ -10,7 +10,7 @@ from support import SHARED
 
 from amalthea_uros.analyze import levels, non_preemptive
 from amalthea_uros.analyze.activation import arrivals_of
-from amalthea_uros.analyze.arrivals import Behind, Curve, Delayed, Every, Once, Pattern, Periodic, Together
+from amalthea_uros.analyze.arrivals import Behind, Curve, Delayed, Every, Once, Pattern, Periodic, Repeated, Together
 from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.propagation import behind
 from amalthea_uros.analyze.task import Task
@@ -63,6 +63,12 @@ def test_a_pattern_is_as_dense_as_its_densest_place(pattern):
         assert pattern.span(count) == densest
 
 
+def test_several_arrivals_for_each_of_others():
+    repeated = Repeated(Periodic(10), 3)
+    assert [repeated.span(count) for count in range(1, 8)] == [0, 0, 0, 10, 10, 10, 20]
+    assert (repeated.most(11), repeated.rate) == (6, Fraction(3, 10))
+
+
 @pytest.mark.parametrize(
     ("stimulus", "model"),
     [
@@ -92,6 +98,10 @@ def test_a_pattern_is_as_dense_as_its_densest_place(pattern):
             perf.VariableRate(name="s", step=1, rate=Constant(1.0), scenario=perf.Scenario(clock="steps")),
             Periodic(250 * 10**9, sporadic=True),
         ),
+        # Numbers that no analysis could go through.
+        (perf.ArrivalCurve(name="s", points=(perf.ArrivalCurvePoint(occurrences=2**40, lower=3),)), None),
+        (perf.Burst(name="s", period=2**40, length=2**40, count=2**40), None),
+        (perf.Burst(name="s", period=10, length=4, distance=2, count=2**40), Pattern(10, (0, 2))),
         (perf.RelativePeriodic(name="s", distance=Uniform(lower=0, upper=9)), None),
         (perf.InterProcess(name="s"), None),
         (perf.Custom(name="s"), None),

@@ -1,10 +1,14 @@
 """The hot loops as machine code give what they give as Python."""
 
+import dataclasses
+
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from amalthea_uros.analyze import kernel
+from amalthea_uros.analyze import kernel, schedule
+from amalthea_uros.analyze.cost import Cost, Part
+from amalthea_uros.analyze.schedule import Released
 from amalthea_uros.compiled import Compiled, compiled
 
 np = pytest.importorskip("numpy")
@@ -16,12 +20,13 @@ ROWS = st.lists(
 
 
 def as_machine_code(function):
-    found = Compiled(function.__wrapped__)
+    found = Compiled(function.__wrapped__, cost=1)
     found.compile()
     return found
 
 
-DEMAND_IN, FIXED_POINT, LEAST_RESPONSE = map(as_machine_code, (kernel.demand_in, kernel.fixed_point, kernel.least_response))
+LOOPS = (kernel.demand_in, kernel.fixed_point, kernel.least_response, kernel.dispatch)
+DEMAND_IN, FIXED_POINT, LEAST_RESPONSE, DISPATCH = map(as_machine_code, LOOPS)
 
 
 @given(rows=ROWS, window=st.integers(1, 10**13), fixed=st.integers(1, 10**10), data=st.data())
@@ -38,11 +43,45 @@ def test_the_same_numbers(rows, window, fixed, data):
         assert LEAST_RESPONSE(*least) == kernel.least_response.__wrapped__(*least)
 
 
-def test_only_what_is_called_often_is_compiled(monkeypatch):
-    monkeypatch.setattr("amalthea_uros.compiled.CALLS_BEFORE", 2)
+@given(
+    rows=st.lists(
+        st.tuples(st.sampled_from([4, 6, 10, 12]), st.integers(0, 7), st.integers(0, 3), st.integers(1, 3), st.integers(0, 2)),
+        min_size=1,
+        max_size=4,
+    )
+)
+def test_the_same_schedule(rows):
+    tasks = [
+        Released(
+            name=str(index),
+            period=period,
+            offset=offset,
+            cost=Cost((Part(worst=cost, best=cost), Part(worst=1, best=0, prescaler=prescaler, offset=start))),
+            priority=-index // 2,
+        )
+        for index, (period, offset, cost, prescaler, start) in enumerate(rows)
+    ]
+    assume(sum(task.cost.mean_worst / task.period for task in tasks) <= 1)
+    watched = [index % 2 == 0 for index in range(len(tasks))]
+    found = []
+    for function in (Compiled(kernel.dispatch.__wrapped__, 0), DISPATCH):
+        schedule.dispatch = function
+        found.append(schedule.schedule(tasks, 100, Cost.worst_of, watched))
+    schedule.dispatch = kernel.dispatch
+    for python, machine, task, is_watched in zip(*found, tasks, watched, strict=True):
+        assert [column.tolist() for column in dataclasses.astuple(python)] == [c.tolist() for c in dataclasses.astuple(machine)]
+        if is_watched:
+            executed = [0] * len(python.releases)
+            for job, begin, end in python.pieces.tolist():
+                executed[job] += end - begin
+            assert executed == [task.cost.worst_of(job + 1) for job in range(len(executed))]
+
+
+def test_only_what_is_used_much_is_compiled(monkeypatch):
+    monkeypatch.setattr("amalthea_uros.compiled.LOADING", 25)
     seen = []
 
-    @compiled
+    @compiled(cost=10)
     def double(number):
         return number * 2
 
@@ -54,9 +93,9 @@ def test_only_what_is_called_often_is_compiled(monkeypatch):
 def test_without_numba_everything_stays_python(monkeypatch):
     monkeypatch.setattr("amalthea_uros.compiled.find_spec", lambda _: None)
 
-    @compiled
+    @compiled(cost=10**9)
     def double(number):
         return number * 2
 
     double.compile()
-    assert double(2) == 4
+    assert (double(2), double.is_compiled) == (4, False)
