@@ -1,0 +1,116 @@
+"""Latencies by following each job: immediate forward and backward job chains.
+
+M. Günzel, K.-H. Chen, N. Ueter, G. von der Brüggen, M. Dürr and J.-J. Chen, "Timing analysis of asynchronized distributed cause-effect
+chains", RTAS 2021 (augmented job chains); with execution times that vary, the same with the earliest reads and the latest writes, and
+the rule that a job which comes before its reader on the same core is not interrupted by it: M. Günzel and others, "Compositional timing
+analysis of asynchronized distributed cause-effect chains", ACM Transactions on Embedded Computing Systems 22(4), 2023.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amalthea_uros.analyze.chains.track import Track, reach
+from amalthea_uros.units import Time
+
+if TYPE_CHECKING:
+    from amalthea_uros.analyze.kernel import Numbers
+
+SOURCE = "Günzel and others 2021, 2023"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Followed:
+    """The job chains that start at the jobs of the first step, and those that end at the jobs of the last one, in one cycle.
+
+    Attributes
+    ----------
+    reads : of the jobs at which forward chains start
+    reads_before : of the jobs before those
+    ends : of the forward chains
+    starts : reads at which backward chains start
+    writes : of the jobs at which they end
+    writes_behind : of the jobs behind those
+    """
+
+    reads: Numbers
+    reads_before: Numbers
+    ends: Numbers
+    starts: Numbers
+    writes: Numbers
+    writes_behind: Numbers
+
+    @property
+    def reaction_time(self) -> Time:
+        """Maximum reaction time: an event just behind the read before, to the first output that it has caused."""
+        return int((self.ends - self.reads_before).max())
+
+    @property
+    def reduced_reaction_time(self) -> Time:
+        """Maximum reduced reaction time, first to first: from the read."""
+        return int((self.ends - self.reads).max())
+
+    @property
+    def data_age(self) -> Time:
+        """Maximum data age: from the read to the moment at which the output is overwritten."""
+        return int((self.writes_behind - self.starts).max())
+
+    @property
+    def reduced_data_age(self) -> Time:
+        """Maximum reduced data age, last to last: from the read to the output."""
+        return int((self.writes - self.starts).max())
+
+
+def follow(tracks: Sequence[Track], settled: Time) -> Followed:
+    """Follow all jobs of one cycle.
+
+    Parameters
+    ----------
+    tracks : of the steps of the chain, in order
+    settled : the time behind which all steps repeat
+    """
+    cycle, length = max(track.cycle for track in tracks), reach(tracks)
+    # A cycle that is so far behind the settled time that chains which end in it, and the job before, start behind that.
+    start = settled + length
+    whole = [track.extended(start + cycle + 2 * length) for track in tracks]
+    first, last = whole[0], whole[-1]
+    begin = _jobs_in(first, start, start + cycle)
+    end = _jobs_in(last, start, start + cycle)
+    return Followed(
+        reads=first.reads[begin],
+        reads_before=first.reads[begin - 1],
+        ends=last.writes[forward(whole, begin)],
+        starts=first.reads[backward(whole, end)],
+        writes=last.writes[end],
+        writes_behind=last.writes[end + 1],
+    )
+
+
+def _jobs_in(track: Track, begin: Time, end: Time) -> Numbers:
+    first, last = np.searchsorted(track.releases, (begin, end))
+    return np.arange(first, last, dtype=np.int64)
+
+
+def forward(tracks: Sequence[Track], jobs: Numbers) -> Numbers:
+    """The jobs of the last step that are the first to use what jobs of the first step wrote."""
+    for track, reader in zip(tracks, tracks[1:], strict=False):
+        # A read sees what has been written at that moment.
+        found = np.searchsorted(reader.reads, track.writes[jobs], side="left")
+        if track.hurries:
+            found = np.minimum(found, np.searchsorted(reader.reads, track.releases[jobs], side="left"))
+        jobs = found
+    return jobs
+
+
+def backward(tracks: Sequence[Track], jobs: Numbers) -> Numbers:
+    """The jobs of the first step that wrote what jobs of the last one use."""
+    for writer, track in zip(tracks[-2::-1], tracks[:0:-1], strict=True):
+        found = np.searchsorted(writer.writes, track.reads[jobs], side="right")
+        if writer.hurries:
+            found = np.maximum(found, np.searchsorted(writer.releases, track.reads[jobs], side="right"))
+        jobs = found - 1
+    return jobs
