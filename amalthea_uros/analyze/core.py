@@ -15,8 +15,9 @@ from amalthea_uros.analyze.placement import Placed, Rank, Server
 from amalthea_uros.analyze.supply import FULL, Budget, Supply
 from amalthea_uros.analyze.task import Claim, Response, Sharing, Task
 from amalthea_uros.perf.os import Policy
-from amalthea_uros.perf.software import Preemption
+from amalthea_uros.perf.software import Preemption, Process
 from amalthea_uros.perf.stimuli import Periodic
+from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
 
 
@@ -65,33 +66,33 @@ class _Core:
 
     def exact(self, here: Sequence[Placed]) -> list[Response] | None:
         """By the schedule, where all releases are known and nobody waits for lower priorities."""
+        tasks = self.released(here)
+        found = schedule.response_times(tasks) if tasks else None
+        if found is not None:
+            self.known.notes.assume("periodic tasks are released at their offsets; where none is stated, at 0")
+        return found
+
+    def released(self, here: Sequence[Placed]) -> list[schedule.Released]:
+        """The processes, if all releases are known, and nobody waits for lower priorities; otherwise nothing."""
         if len({placed.rank for placed in here}) < len(here) or Blocking(here, self.known.demands).ceilings:
-            return None
-        released = [self._released(placed, rank) for rank, placed in enumerate(reversed(here))]
-        tasks = [task for task in released if task is not None]
-        if len(tasks) < len(released) or not tasks:
-            return None
-        found = schedule.response_times(tasks)
-        if found is None:
-            return None
-        self.known.notes.assume("periodic tasks are released at their offsets; where none is stated, at 0")
-        return found[::-1]
+            return []
+        found = [self._released(placed, rank) for rank, placed in enumerate(reversed(here))]
+        return [] if None in found else [task for task in reversed(found) if task is not None]
 
     def _released(self, placed: Placed, rank: int) -> schedule.Released | None:
         """A process whose releases are all known; None if it is none, or cannot always be interrupted."""
-        process = placed.process
         if not is_interruptible(placed) or placed.name in self.known.decisions:
             return None
-        match [self.known.system.stimuli_by_name.get(name) for name in process.stimuli]:
-            case [Periodic(jitter=None, condition=None, period=period, offset=offset)] if period > 0 <= offset:
-                return schedule.Released(
-                    name=process.name,
-                    period=period * self.grains,
-                    offset=offset * self.grains,
-                    cost=self.known.costs[process.name],
-                    priority=rank,
-                )
-        return None
+        stimulus = known_releases(placed.process, self.known.system)
+        if stimulus is None:
+            return None
+        return schedule.Released(
+            name=placed.name,
+            period=stimulus.period * self.grains,
+            offset=stimulus.offset * self.grains,
+            cost=self.known.costs[placed.name],
+            priority=rank,
+        )
 
     def bounds(self, usable: Sequence[Placed | Server], here: Sequence[Placed], supply: Supply) -> list[Response]:
         """By busy windows; who comes lower may block, if its demand is known."""
@@ -169,6 +170,25 @@ class _Core:
         ]
         always += tasks[len(here) :]
         return non_preemptive.response_time(task, higher, waits[placed.name], 1, blocking.last_region(placed), always)
+
+
+def released_on(core: str, known: Known) -> list[schedule.Released]:
+    """The tasks of a core of which the schedule is known but for execution times; otherwise nothing."""
+    here = known.served(core, None)
+    placed = [item for item in here if isinstance(item, Placed)]
+    if len(placed) < len(here) or not all(item.name in known.costs and item.name in known.arrivals for item in placed):
+        return []
+    if (core, True) in known.disturbed or (core, False) in known.disturbed:
+        return []
+    return _Core(known, core).released(placed)
+
+
+def known_releases(process: Process, system: System) -> Periodic | None:
+    """The stimulus of a process that is released at known times; None if it is not."""
+    match [system.stimuli_by_name.get(name) for name in process.stimuli]:
+        case [Periodic(jitter=None, condition=None, period=period, offset=offset) as stimulus] if period > 0 <= offset:
+            return stimulus
+    return None
 
 
 def in_picoseconds(response: Response, grains: int) -> Response:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 
+from amalthea_uros.analyze.chains.result import ChainResult
 from amalthea_uros.analyze.task import Response
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.units import Frequency, Time
@@ -89,6 +90,7 @@ class Analysis:
 
     processors: tuple[ProcessorResult, ...]
     processes: tuple[ProcessResult, ...]
+    chains: tuple[ChainResult, ...]
     requirements: tuple[RequirementResult, ...]
     assumptions: tuple[str, ...]
     findings: tuple[Finding, ...]

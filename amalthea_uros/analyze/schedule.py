@@ -68,14 +68,10 @@ def schedule(
     """
     counts = [max(0, -(-(until - task.offset) // task.period)) for task in tasks]
     firsts = list(accumulate(counts, initial=0))
-    leads = [_lead(task.cost) for task in tasks]
-    cycles = [_cycle(task.cost) for task in tasks]
-    costs = [
-        cost_of(task.cost, index + 1)
-        for task, lead, cycle in zip(tasks, leads, cycles, strict=True)
-        for index in range(lead + cycle)
-    ]
-    tables = list(accumulate((lead + cycle for lead, cycle in zip(leads, cycles, strict=True)), initial=0))
+    cycles = [cycle(task.cost) for task in tasks]
+    costs = [table(task.cost, cost_of) for task in tasks]
+    leads = [len(row) - length for row, length in zip(costs, cycles, strict=True)]
+    tables = list(accumulate(map(len, costs), initial=0))
     periods, offsets = [task.period for task in tasks], [task.offset for task in tasks]
     ranks, watch = [-task.priority for task in tasks], list(watched or [False] * len(tasks))
     # About 3 us for each job as Python.
@@ -90,7 +86,7 @@ def schedule(
         form(tables[:-1]),
         form(leads),
         form(cycles),
-        form(costs),
+        form([cost for row in costs for cost in row]),
         form(watch),
         until,
         begins,
@@ -107,18 +103,24 @@ def schedule(
     return result
 
 
+def table(cost: Cost, cost_of: Callable[[Cost, int], Time]) -> list[Time]:
+    """The costs of the first jobs; the last ones of these repeat, as many as a cycle has."""
+    return [cost_of(cost, index + 1) for index in range(_lead(cost) + cycle(cost))]
+
+
 def _lead(cost: Cost) -> int:
     """How many jobs come before the costs repeat: counters with offsets may start late."""
     return max((part.offset for part in cost.parts), default=0)
 
 
-def _cycle(cost: Cost) -> int:
+def cycle(cost: Cost) -> int:
+    """After how many jobs the costs repeat."""
     return lcm(*(part.prescaler for part in cost.parts))
 
 
 def hyperperiod(tasks: Sequence[Released]) -> Time:
     """The time after which releases and costs repeat."""
-    return lcm(*(task.period * _cycle(task.cost) for task in tasks))
+    return lcm(*(task.period * cycle(task.cost) for task in tasks))
 
 
 def settled(tasks: Sequence[Released]) -> Time:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 
+from amalthea_uros.perf.software import Communication
 from amalthea_uros.units import Frequency
 
 
@@ -28,6 +29,8 @@ class Settings:
     scale : factor on all execution times, as if clocks were slower by it
     factors : the same for single processes
     modes : values of mode labels that do not change
+    communication : how all labels are read and written; None: as the model says, and implicit where it says nothing
+    any_phase : whether counters at which chains start may start at any of their occurrences
     """
 
     frequencies: Mapping[str, Frequency] = field(default_factory=dict)
@@ -35,3 +38,5 @@ class Settings:
     factors: Mapping[str, Fraction] = field(default_factory=dict)
     modes: Mapping[str, str] = field(default_factory=dict)
     memory: Memory = Memory.NONE
+    communication: Communication | None = None
+    any_phase: bool = False

@@ -6,6 +6,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from amalthea_uros.analyze.blocking import preemption
+from amalthea_uros.analyze.chains import phases
+from amalthea_uros.analyze.chains.evaluate import Evaluation
+from amalthea_uros.analyze.chains.result import ChainResult
 from amalthea_uros.analyze.core import responses_on
 from amalthea_uros.analyze.known import Known
 from amalthea_uros.analyze.notes import Notes
@@ -30,14 +33,28 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     _note_left_out(known, responses)
     limits = upper_response_limits(system)
     processes = tuple(_process(name, known, responses.get(name), limits) for name in system.processes)
+    chains = tuple(_chains(known, responses))
     requirements = tuple(judge(system, {process.name: process for process in processes}, known.notes))
     return Analysis(
         processors=tuple(_processors(known)),
         processes=processes,
+        chains=chains,
         requirements=requirements,
         assumptions=tuple(known.notes.assumptions),
         findings=tuple(known.notes.found),
     )
+
+
+def _chains(known: Known, responses: Mapping[str, Response]) -> Iterator[ChainResult]:
+    """The chains, with all phases of the counters at which they start, if that is wanted."""
+    evaluation = Evaluation(known, responses)
+    for chain in known.system.events.chains:
+        found = evaluation.chain(chain)
+        if known.settings.any_phase and found.values:
+            variants = [prepare(system, known.settings) for system in phases.variants(chain, known.system)]
+            results = [Evaluation(variant, respond(variant)).chain(chain) for variant in variants]
+            found = phases.merged(results) if results else found
+        yield found
 
 
 def prepare(system: System, settings: Settings | None = None) -> Known:
@@ -97,8 +114,6 @@ def _note_left_out(known: Known, responses: Mapping[str, Response]) -> None:
             limit = process.activation_limit
             message = f"{name!r} can be activated {jobs} times before it ends; more than {limit} at a time are lost"
             notes.warning("ANA007", message, process)
-    if system.events.chains:
-        notes.assume("event chains and their latencies are not judged here")
 
 
 def _process(name: str, known: Known, response: Response | None, limits: Mapping[str, Time]) -> ProcessResult:

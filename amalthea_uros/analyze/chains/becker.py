@@ -1,8 +1,8 @@
 """Bounds of the data age of periodic tasks whose releases are known, by what can reach what.
 
-M. Becker, D. Dasari, S. Mubeen, M. Behnam and T. Nolte, "End-to-end timing analysis of cause-effect chains in automotive embedded systems",
-Journal of Systems Architecture 80, 2017: a job can read until it has to start, and what a job wrote can be read until the next one has
-ended; the last job that can be reached at each step gives the longest path.
+M. Becker, D. Dasari, S. Mubeen, M. Behnam and T. Nolte, "End-to-end timing analysis of cause-effect chains in automotive embedded
+systems", Journal of Systems Architecture 80, 2017: a job can read until it has to start, and what a job wrote can be read until the
+next one has ended; the last job that can be reached at each step gives the longest path.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """A bound of the data age of periodic tasks whose releases are known, step by step.
 
-R. Bi, X. Liu, J. Ren, P. Wang, H. Lv and G. Tan, "Efficient maximum data age analysis for cause-effect chains in automotive systems", DAC
-2022: releases of two periodic tasks are apart by whole multiples of the greatest common divisor of their periods.
+R. Bi, X. Liu, J. Ren, P. Wang, H. Lv and G. Tan, "Efficient maximum data age analysis for cause-effect chains in automotive
+systems", DAC 2022: releases of two periodic tasks are apart by whole multiples of the greatest common divisor of their periods.
 """
 
 from __future__ import annotations

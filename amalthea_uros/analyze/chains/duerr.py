@@ -1,8 +1,8 @@
 """Bounds of reaction time and data age of sporadic tasks.
 
 M. Dürr, G. von der Brüggen, K.-H. Chen and J.-J. Chen, "End-to-end timing analysis of sporadic cause-effect chains in distributed
-systems", ACM Transactions on Embedded Computing Systems 18(5s), 2019, theorems 5.4 and 5.10. A writer that comes before its reader on the
-same core has written before that can read, and its response time does not count.
+systems", ACM Transactions on Embedded Computing Systems 18(5s), 2019, theorems 5.4 and 5.10. A writer that comes before its reader
+on the same core has written before that can read, and its response time does not count.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """A bound of the reaction time under logical execution times.
 
-A. Hamann, D. Dasari, S. Kramer, M. Pressler and F. Wurst, "Communication centric design in complex automotive embedded systems", ECRTS 2017: at
-each step a period of waiting, and a period until the output is there.
+A. Hamann, D. Dasari, S. Kramer, M. Pressler and F. Wurst, "Communication centric design in complex automotive embedded systems",
+ECRTS 2017: at each step a period of waiting, and a period until the output is there.
 """
 
 from __future__ import annotations

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from math import lcm
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +23,34 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.kernel import Numbers
 
 SOURCE = "Günzel and others 2021, 2023"
+#: Chains with more jobs are bounded otherwise.
+MOST_JOBS = 10_000_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inputs:
+    """The jobs of the first step whose data are not overwritten on the way, after N. Feiertag and others 2008.
+
+    Attributes
+    ----------
+    reads, reads_before : of these jobs, and of those of them before each
+    first_writes, last_writes : of the first and the last output that is based on each
+    """
+
+    reads: Numbers
+    reads_before: Numbers
+    first_writes: Numbers
+    last_writes: Numbers
+
+    @property
+    def last_to_first(self) -> Numbers:
+        """From an input to the first output based on it."""
+        return self.first_writes - self.reads
+
+    @property
+    def first_to_last(self) -> Numbers:
+        """From just behind the input before to the last output based on this one."""
+        return self.last_writes - self.reads_before
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +65,7 @@ class Followed:
     starts : reads at which backward chains start
     writes : of the jobs at which they end
     writes_behind : of the jobs behind those
+    inputs : reads of which the data reach the end
     """
 
     reads: Numbers
@@ -43,6 +74,7 @@ class Followed:
     starts: Numbers
     writes: Numbers
     writes_behind: Numbers
+    inputs: Inputs
 
     @property
     def reaction_time(self) -> Time:
@@ -50,9 +82,15 @@ class Followed:
         return int((self.ends - self.reads_before).max())
 
     @property
-    def reduced_reaction_time(self) -> Time:
-        """Maximum reduced reaction time, first to first: from the read."""
-        return int((self.ends - self.reads).max())
+    def mean_reaction_time(self) -> float:
+        """The mean over events that come at any moment alike."""
+        waits = (self.reads - self.reads_before).astype(np.float64)
+        return float(((self.ends - self.reads + waits / 2) * waits).sum() / waits.sum())
+
+    @property
+    def first_to_first(self) -> Numbers:
+        """From each read to the first output that it has caused; the greatest is the maximum reduced reaction time."""
+        return self.ends - self.reads
 
     @property
     def data_age(self) -> Time:
@@ -60,9 +98,9 @@ class Followed:
         return int((self.writes_behind - self.starts).max())
 
     @property
-    def reduced_data_age(self) -> Time:
-        """Maximum reduced data age, last to last: from the read to the output."""
-        return int((self.writes - self.starts).max())
+    def last_to_last(self) -> Numbers:
+        """From the read to each output that is based on it; the greatest is the maximum reduced data age."""
+        return self.writes - self.starts
 
 
 def follow(tracks: Sequence[Track], settled: Time) -> Followed:
@@ -73,9 +111,9 @@ def follow(tracks: Sequence[Track], settled: Time) -> Followed:
     tracks : of the steps of the chain, in order
     settled : the time behind which all steps repeat
     """
-    cycle, length = max(track.cycle for track in tracks), reach(tracks)
-    # A cycle that is so far behind the settled time that chains which end in it, and the job before, start behind that.
-    start = settled + length
+    cycle, length = lcm(*(track.cycle for track in tracks)), reach(tracks)
+    # A cycle so far behind the settled time that chains which end in it, and those which end a little before, start behind that.
+    start = settled + 2 * length
     whole = [track.extended(start + cycle + 2 * length) for track in tracks]
     first, last = whole[0], whole[-1]
     begin = _jobs_in(first, start, start + cycle)
@@ -87,7 +125,31 @@ def follow(tracks: Sequence[Track], settled: Time) -> Followed:
         starts=first.reads[backward(whole, end)],
         writes=last.writes[end],
         writes_behind=last.writes[end + 1],
+        inputs=_inputs(whole, start, cycle, length),
     )
+
+
+def _inputs(tracks: Sequence[Track], start: Time, cycle: Time, length: Time) -> Inputs:
+    first, last = tracks[0], tracks[-1]
+    outputs = _jobs_in(last, start - length, start + cycle + length)
+    jobs, first_of = np.unique(backward(tracks, outputs), return_index=True)
+    first_outputs = outputs[first_of]
+    reads = first.reads[jobs]
+    # Without the ones at both ends, of which not all outputs are there.
+    here = np.flatnonzero((reads[1:-1] >= start - length // 2) & (reads[1:-1] < start - length // 2 + cycle)) + 1
+    return Inputs(
+        reads=reads[here],
+        reads_before=reads[here - 1],
+        first_writes=last.writes[first_outputs[here]],
+        last_writes=last.writes[first_outputs[here + 1] - 1],
+    )
+
+
+def worth(tracks: Sequence[Track], settled: Time) -> bool:
+    """Whether following is not too much work."""
+    cycle, length = lcm(*(track.cycle for track in tracks)), reach(tracks)
+    time = settled + cycle + 4 * length
+    return sum(len(track.releases) * time // track.until for track in tracks) <= MOST_JOBS
 
 
 def _jobs_in(track: Track, begin: Time, end: Time) -> Numbers:
@@ -97,7 +159,7 @@ def _jobs_in(track: Track, begin: Time, end: Time) -> Numbers:
 
 def forward(tracks: Sequence[Track], jobs: Numbers) -> Numbers:
     """The jobs of the last step that are the first to use what jobs of the first step wrote."""
-    for track, reader in zip(tracks, tracks[1:], strict=False):
+    for track, reader in pairwise(tracks):
         # A read sees what has been written at that moment.
         found = np.searchsorted(reader.reads, track.writes[jobs], side="left")
         if track.hurries:

@@ -1,7 +1,8 @@
 """A bound of the maximum reaction time of periodic tasks whose releases are known.
 
-T. Kloda, A. Bertout and Y. Sorel, "Latency analysis for data chains of real-time periodic tasks", ETFA 2018: for each release of the first
-task the next release of each further one, behind the response time of the one before where that does not come first anyway.
+T. Kloda, A. Bertout and Y. Sorel, "Latency analysis for data chains of real-time periodic tasks", ETFA 2018: for each release of
+the first task the next release of each further one, behind the response time of the one before where that does not come first
+anyway.
 """
 
 from __future__ import annotations

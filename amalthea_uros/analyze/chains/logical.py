@@ -1,7 +1,8 @@
 """Logical execution times: a job reads at its release, and what it writes can be read at the end of its period.
 
-No schedule changes that, so that following the jobs is exact (J. Martinez, I. Sañudo and M. Bertogna, "Analytical characterization of
-end-to-end communication delays with logical execution time", IEEE Transactions on CAD 37(11), 2018; the formula is that of `job_chains`).
+No schedule changes that, so that following the jobs is exact (J. Martinez, I. Sañudo and M. Bertogna, "Analytical characterization
+of end-to-end communication delays with logical execution time", IEEE Transactions on CAD 37(11), 2018; the formula is that of
+`job_chains`).
 """
 
 from __future__ import annotations

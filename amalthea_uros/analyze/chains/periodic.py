@@ -24,14 +24,16 @@ class Step:
 
     Attributes
     ----------
-    period : the longest time between two releases
+    period : the longest time between two releases, if `is_regular`: there is such a time
     response : worst-case response time
     offset : of the first release; None if releases are not known
     hurries : whether its jobs come before those of the next step on the same core
     """
 
+    name: str = ""
     period: Time
     response: Time
+    is_regular: bool = True
     offset: Time | None = 0
     hurries: bool = False
 

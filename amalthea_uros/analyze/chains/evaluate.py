@@ -1,0 +1,199 @@
+"""The chains of a system: resolved, put in time, evaluated by every method, and the tightest valid value of each taken."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from amalthea_uros.analyze.chains.expand import Unfolded, UnfoldError, combined, sequences, unfold
+from amalthea_uros.analyze.chains.methods import Methods
+from amalthea_uros.analyze.chains.quantities import Quantity, Value
+from amalthea_uros.analyze.chains.resolve import Carrier, Resolver, Route, UnresolvedError
+from amalthea_uros.analyze.chains.result import ChainResult
+from amalthea_uros.analyze.chains.stages import Stage, hop_text, stages
+from amalthea_uros.analyze.chains.timing import Timed, Timing, UntimedError
+from amalthea_uros.analyze.known import Known
+from amalthea_uros.analyze.task import Claim, Response
+from amalthea_uros.perf.events import EventChain
+from amalthea_uros.perf.hardware import StructureKind
+from amalthea_uros.perf.system import System
+
+
+@dataclass(slots=True)
+class Evaluation:
+    """Evaluates the chains of a system."""
+
+    known: Known
+    responses: Mapping[str, Response]
+    resolver: Resolver = field(init=False)
+    timing: Timing = field(init=False)
+    controllers: Mapping[str, str] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.resolver = Resolver(self.known.system)
+        self.timing = Timing(self.known, self.responses)
+        self.controllers = controllers(self.known.system)
+
+    def chain(self, chain: EventChain) -> ChainResult:
+        """One chain."""
+        how = str(self.known.settings.communication or "as modelled")
+        try:
+            unfolded = unfold(chain, self.known.system)
+            by_events = {events: self.resolver.routes(events) for events in sequences(unfolded)}
+        except (UnfoldError, UnresolvedError) as error:
+            self.known.notes.warning("CHN001", f"the chain {chain.name!r} is not evaluated: {error}", chain)
+            return ChainResult(name=chain.name, communication=how, reason=str(error))
+        self._note_gaps(chain, [route for found in by_events.values() for route in found])
+        told = tuple(_route_text(route) for found in by_events.values() for route in found)
+        values: dict[tuple[str, ...], list[Value]] = {}
+        reason = ""
+        for events, found in by_events.items():
+            try:
+                values[events] = _worst_of([self._route(route) for route in found])
+            except UntimedError as error:
+                reason = str(error)
+                values[events] = []
+        everything = _combine(unfolded, values)
+        tightest = _tightest(everything)
+        if not reason and not any(value.quantity is Quantity.MAX_REACTION_TIME for value in tightest):
+            reason = self._why_unbounded([route for found in by_events.values() for route in found])
+        if reason:
+            self.known.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {reason}", chain)
+        return ChainResult(
+            name=chain.name, communication=how, routes=told, values=tightest, everything=tuple(everything), reason=reason
+        )
+
+    def _note_gaps(self, chain: EventChain, routes: Sequence[Route]) -> None:
+        for route in routes:
+            for hop, first, then in zip(route.hops, route.events, route.events[1:], strict=False):
+                if hop.carrier in (Carrier.NOTHING, Carrier.NEXT_JOB):
+                    message = (
+                        f"in the chain {chain.name!r} nothing carries the effect from {first!r} to {then!r}; "
+                        "it is evaluated as if there were a variable between them"
+                    )
+                    self.known.notes.warning("CHN002", message, chain)
+
+    def _route(self, route: Route) -> list[Value]:
+        found = stages(route, self.known.settings.communication)
+        timed = [self.timing.group(group, follower) for group, follower in _with_followers(_groups(found))]
+        parts: list[list[Timed]] = []
+        before = None
+        for group, each in zip(_groups(found), timed, strict=True):
+            controller = self._controller(group[0])
+            if controller != before or not parts:
+                parts.append([])
+            parts[-1].append(each)
+            before = controller
+        return list(Methods(parts, self.timing.unit, route.gaps == 0).values())
+
+    def _controller(self, stage: Stage) -> str:
+        placed = self.known.placed.get(stage.process.name)
+        return self.controllers.get(placed.core, "") if placed is not None else ""
+
+    def _why_unbounded(self, routes: Iterable[Route]) -> str:
+        for route in routes:
+            for group, follower in _with_followers(_groups(stages(route, self.known.settings.communication))):
+                timed = self.timing.group(group, follower)
+                if not timed.step.is_regular:
+                    return f"nothing says how long {timed.step.name!r} may stay away"
+        return ""
+
+
+def controllers(system: System) -> dict[str, str]:
+    """The controller of each core: cores of different ones do not share a clock."""
+    found: dict[str, str] = {}
+    for structure in system.hardware.walk():
+        if structure.kind is StructureKind.ECU:
+            for inner in structure.walk():
+                found.update(dict.fromkeys((core.name for core in inner.cores), structure.name))
+    return found
+
+
+def _groups(found: Sequence[Stage]) -> list[list[Stage]]:
+    """Stages with those that they trigger."""
+    groups: list[list[Stage]] = []
+    for stage in found:
+        if stage.is_triggered:
+            groups[-1].append(stage)
+        else:
+            groups.append([stage])
+    return groups
+
+
+def _with_followers(groups: Sequence[Sequence[Stage]]) -> list[tuple[Sequence[Stage], Stage | None]]:
+    followers: list[Stage | None] = [group[0] for group in groups[1:]]
+    return list(zip(groups, [*followers, None], strict=True))
+
+
+def _route_text(route: Route) -> str:
+    parts = [route.events[0]]
+    for hop, event in zip(route.hops, route.events[1:], strict=True):
+        parts.append(f"-[{hop_text(hop)}]-> {event}")
+    return " ".join(parts)
+
+
+def _worst_of(found: Sequence[Sequence[Value]]) -> list[Value]:
+    """The values of several ways that one sequence of events can mean: of each method the worst one."""
+    if len(found) == 1:
+        return list(found[0])
+    result = []
+    for value in found[0]:
+        same = [_same(value, others) for others in found]
+        if None not in same and not value.quantity.is_mean:
+            worst = max if value.quantity.is_upper else min
+            result.append(worst((each for each in same if each is not None), key=lambda each: each.value or 0))
+    return result
+
+
+def _same(value: Value, others: Iterable[Value]) -> Value | None:
+    return next((o for o in others if (o.quantity, o.method) == (value.quantity, value.method)), None)
+
+
+def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[Value]]) -> list[Value]:
+    """The values of a chain from those of the ways through it."""
+    if len(values) == 1:
+        return next(iter(values.values()))
+    (_, first), *_ = values.items()
+    found = []
+    for value in first:
+        each = {events: _same(value, ways) for events, ways in values.items()}
+        if None in each.values() or value.quantity.is_mean:
+            continue
+        times = {events: way.value for events, way in each.items() if way is not None}
+        reacts = value.quantity in (Quantity.MAX_REACTION_TIME, Quantity.MAX_REDUCED_REACTION_TIME)
+        if reacts:
+            time = combined(unfolded, times)
+        else:
+            known = [time for time in times.values() if time is not None]
+            time = (max if value.quantity.is_upper else min)(known)
+        claims = {way.claim for way in each.values() if way is not None}
+        # The greatest of the smallest is not the smallest of the greatest: of alternatives it is a bound.
+        is_exact = claims == {Claim.EXACT} and not reacts
+        found.append(
+            Value(
+                quantity=value.quantity,
+                value=time,
+                claim=Claim.EXACT if is_exact else Claim.BOUND,
+                method=value.method,
+                source=value.source,
+            )
+        )
+    return found
+
+
+def _tightest(values: Sequence[Value]) -> tuple[Value, ...]:
+    """Of each quantity the value that is exact, or else the tightest bound."""
+    found = {}
+    for quantity in Quantity:
+        here = [value for value in values if value.quantity is quantity and value.value is not None]
+        exact = [value for value in here if value.claim is Claim.EXACT]
+        if exact or here:
+            found[quantity] = (exact or [_best(here, quantity)])[0]
+    return tuple(found.values())
+
+
+def _best(values: Sequence[Value], quantity: Quantity) -> Value:
+    def time(value: Value) -> int:
+        return value.value or 0
+
+    return min(values, key=time) if quantity.is_upper else max(values, key=time)

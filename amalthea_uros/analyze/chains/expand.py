@@ -1,0 +1,153 @@
+"""Event chains as sequences of events: containers and references unfolded, alternatives and joins side by side.
+
+Where INCHRON's importer drops or changes a chain, it is taken as it stands here: what is missing inside is left out, and where a
+segment starts elsewhere than the one before ended, both events are kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from amalthea_uros.perf.events import ChainReference, EventChain, EventSet, Parallel, Segment
+from amalthea_uros.perf.events import Sequence as InSequence
+from amalthea_uros.perf.system import System
+
+#: A chain with more routes is not evaluated.
+MOST_ROUTES = 256
+
+
+class UnfoldError(Exception):
+    """A chain cannot be made a sequence of events; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fork:
+    """Parts of a chain side by side.
+
+    Attributes
+    ----------
+    branches : sequences of events and further forks
+    needed : how many of them have to complete
+    """
+
+    branches: tuple[Unfolded, ...]
+    needed: int
+
+
+#: Names of events, and forks.
+Unfolded = tuple["str | Fork", ...]
+
+
+def unfold(chain: EventChain, system: System) -> Unfolded:
+    """The events of a chain.
+
+    Raises
+    ------
+    UnfoldError : it is part of itself, refers to something missing, or has no events.
+    """
+    found = _Unfolding(system).item(chain, (chain.name,))
+    if not found:
+        raise UnfoldError("it has no events")
+    if routes(found) > MOST_ROUTES:
+        raise UnfoldError(f"it has more than {MOST_ROUTES} routes")
+    return found
+
+
+def routes(unfolded: Unfolded) -> int:
+    """How many ways through a chain there are."""
+    product = 1
+    for part in unfolded:
+        if isinstance(part, Fork):
+            product *= max(1, sum(routes(branch) for branch in part.branches))
+    return product
+
+
+@dataclass(frozen=True, slots=True)
+class _Unfolding:
+    system: System
+
+    def item(self, item: EventChain | Segment, above: tuple[str, ...]) -> Unfolded:
+        match item.items:
+            case InSequence(items=items):
+                inner: Unfolded = tuple(part for each in items for part in self._part(each, above))
+            case Parallel(items=items, completed=completed) if items:
+                branches = tuple(self._part(each, above) for each in items)
+                inner = (Fork(branches, min(max(completed, 1), len(branches))),)
+            case _:
+                inner = ()
+        return _joined((*self._event(item.stimulus), *inner, *self._event(item.response)))
+
+    def _part(self, item: ChainReference | Segment, above: tuple[str, ...]) -> Unfolded:
+        if isinstance(item, Segment):
+            return self.item(item, above)
+        if item.chain in above:
+            circle = " -> ".join((*above[above.index(item.chain) :], item.chain))
+            raise UnfoldError(f"it is part of itself: {circle}")
+        chain = self.system.chains.get(item.chain)
+        if chain is None:
+            raise UnfoldError(f"its part {item.chain!r} is not in the model")
+        return self.item(chain, (*above, chain.name))
+
+    def _event(self, name: str | None) -> Unfolded:
+        if name is None:
+            return ()
+        event = self.system.events_by_name.get(name)
+        if event is None:
+            raise UnfoldError(f"the event {name!r} is not in the model")
+        if not isinstance(event, EventSet):
+            return (name,)
+        parts = tuple(self._event(inner) for inner in event.events)
+        return (Fork(parts, len(parts)),) if len(parts) > 1 else tuple(part for inner in parts for part in inner)
+
+
+def _joined(parts: Iterable[str | Fork]) -> Unfolded:
+    """Without events that come twice in a row; those at the ends of the branches of a fork are told apart from it."""
+    found: list[str | Fork] = []
+    for part in parts:
+        if found and found[-1] == part:
+            continue
+        if isinstance(part, Fork) and found and isinstance(found[-1], str):
+            part = _without(part, found[-1], at_start=True)
+        if isinstance(part, str) and found and isinstance(found[-1], Fork):
+            found[-1] = _without(found[-1], part, at_start=False)
+        found.append(part)
+    return tuple(found)
+
+
+def _without(fork: Fork, event: str, at_start: bool) -> Fork:
+    """A fork whose branches do not repeat the event in front of it, or behind it."""
+
+    def trimmed(branch: Unfolded) -> Unfolded:
+        if at_start:
+            return branch[1:] if branch[:1] == (event,) else branch
+        return branch[:-1] if branch[-1:] == (event,) else branch
+
+    return Fork(tuple(map(trimmed, fork.branches)), fork.needed)
+
+
+def sequences(unfolded: Unfolded) -> list[tuple[str, ...]]:
+    """All ways through, each as a sequence of events."""
+    found: list[tuple[str, ...]] = [()]
+    for part in unfolded:
+        ways = [(part,)] if isinstance(part, str) else [way for branch in part.branches for way in sequences(branch)]
+        found = [(*before, *way) for before in found for way in ways]
+    return found
+
+
+def combined(unfolded: Unfolded, value: Mapping[tuple[str, ...], int | None], before: tuple[str, ...] = ()) -> int | None:
+    """The value of a chain of which those of all ways through are known; None stands for more than any.
+
+    Of a fork the branches are sorted, and the one counts with which enough of them have completed.
+    """
+    for index, part in enumerate(unfolded):
+        if isinstance(part, Fork):
+            rest = unfolded[index + 1 :]
+            values = [combined((*branch, *rest), value, before) for branch in part.branches]
+            return sorted(values, key=_endless_last)[part.needed - 1]
+        before = (*before, part)
+    return value[before]
+
+
+def _endless_last(value: int | None) -> tuple[bool, int]:
+    return (value is None, value or 0)

@@ -1,0 +1,419 @@
+"""Stages of a chain in time: when jobs read and write at the earliest and at the latest.
+
+By the schedule of a core where that is known but for execution times: the one of all best cases and the one of all worst cases
+bound every other one. Otherwise by releases and response times. Where releases are not known, there is only a step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from itertools import pairwise
+from math import lcm
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amalthea_uros.analyze import schedule
+from amalthea_uros.analyze.chains import progress
+from amalthea_uros.analyze.chains.periodic import Step
+from amalthea_uros.analyze.chains.places import Place
+from amalthea_uros.analyze.chains.resolve import When
+from amalthea_uros.analyze.chains.stages import At, Fire, Moment, Read, Stage, Write
+from amalthea_uros.analyze.chains.track import Track
+from amalthea_uros.analyze.core import known_releases, released_on
+from amalthea_uros.analyze.cost import Cost
+from amalthea_uros.analyze.demand import MOST_GRAINS
+from amalthea_uros.analyze.known import Known
+from amalthea_uros.analyze.schedule import Jobs, Released
+from amalthea_uros.analyze.task import Response
+from amalthea_uros.perf.software import Communication, Process, Trigger
+from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic
+from amalthea_uros.units import Time
+
+if TYPE_CHECKING:
+    from amalthea_uros.analyze.kernel import Numbers
+
+
+class UntimedError(Exception):
+    """Nothing bounds when jobs of a stage come; the text says why."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Timed:
+    """A stage, with those that it triggers, in time.
+
+    Attributes
+    ----------
+    widest : earliest reads and latest writes; None where releases are not known
+    narrowest : latest reads and earliest writes
+    settled : time behind which both repeat
+    is_exact : whether both are what happens
+    reason : why releases are not known
+    """
+
+    step: Step
+    widest: Track | None = None
+    narrowest: Track | None = None
+    settled: Time = 0
+    is_exact: bool = False
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class CoreSchedule:
+    """The schedules of a core for all worst and all best cases.
+
+    Attributes
+    ----------
+    is_constant : whether both are the same, so that it is what happens
+    """
+
+    tasks: Mapping[str, Released]
+    worst: Mapping[str, Jobs]
+    best: Mapping[str, Jobs]
+    settled: Time
+    cycle: Time
+    is_constant: bool
+
+    @property
+    def until(self) -> Time:
+        """The end of the time that is covered; its last cycle repeats."""
+        return self.settled + self.cycle
+
+
+@dataclass(slots=True)
+class Timing:
+    """The stages of the chains of a system in time; all times are in parts of a picosecond, `unit` of which make one."""
+
+    known: Known
+    responses: Mapping[str, Response]
+    unit: int = field(init=False)
+    _schedules: dict[tuple[str, bool], CoreSchedule | None] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        unit = lcm(*(self.known.demands.grains(core) for core in self.known.system.cores))
+        self.unit = unit if unit <= MOST_GRAINS else 1
+
+    def group(self, stages: Sequence[Stage], follower: Stage | None) -> Timed:
+        """A stage and those that it triggers one after the other.
+
+        Parameters
+        ----------
+        follower : the first stage that reads from the last of them
+
+        Raises
+        ------
+        UntimedError : something in it has no bounded response time, or is not known.
+        """
+        base, triggered = stages[0], stages[1:]
+        behind = sum(self._worst(stage.process) for stage in triggered)
+        least = sum(self._least(stage) for stage in triggered)
+        counters = self._counters(stages)
+        step = self._step(base, behind, counters, self._hurries(base, follower) and not triggered)
+        releases = known_releases(base.process, self.known.system)
+        if releases is None:
+            return Timed(step=step, reason=f"the releases of {base.process.name!r} are not known")
+        if len(counters) > 1:
+            return Timed(step=step, reason=f"it is not known which jobs of {base.process.name!r} take part")
+        timed = self._by_schedule(base, releases) or self._by_response(base, releases)
+        assert timed.widest is not None
+        assert timed.narrowest is not None
+        return replace(
+            timed,
+            step=step,
+            widest=self._part(_later(timed.widest, behind), counters, releases, step.hurries, timed.settled),
+            narrowest=self._part(_later(timed.narrowest, least), counters, releases, False, timed.settled),
+            is_exact=timed.is_exact and not triggered,
+        )
+
+    # What is known of processes
+
+    def _response(self, process: Process) -> Response:
+        response = self.responses.get(process.name)
+        if response is None:
+            reason = self.known.reasons.get(process.name, "nothing is known of it")
+            raise UntimedError(f"the response time of {process.name!r} is not known: {reason}")
+        return response
+
+    def _worst(self, process: Process) -> Time:
+        response = self._response(process)
+        if response.worst is None:
+            raise UntimedError(f"the response time of {process.name!r} has no bound: {response.reason}")
+        return response.worst * self.unit
+
+    def _least(self, stage: Stage) -> Time:
+        """The least time from the activation of a triggered process to where it is left."""
+        leave = stage.leave
+        if isinstance(leave, At) and leave.spot.when in (When.ACTIVATION, When.START):
+            return 0
+        return self._response(stage.process).best * self.unit
+
+    def _counters(self, stages: Sequence[Stage]) -> list[Counter]:
+        """What lets only some jobs of the first stage take part; those of triggers count its jobs, too."""
+        found = set(stages[0].counters)
+        for stage, then in pairwise(stages):
+            if isinstance(stage.leave, Fire) and stage.leave.place is not None:
+                trigger = stage.leave.place.activity
+                if isinstance(trigger, Trigger) and trigger.counter is not None:
+                    found.add(trigger.counter)
+            for name in then.process.stimuli:
+                stimulus = self.known.system.stimuli_by_name.get(name)
+                if isinstance(stimulus, InterProcess) and stimulus.counter is not None:
+                    found.add(stimulus.counter)
+            found |= then.counters
+        return [counter for counter in found if counter.prescaler > 1 or counter.offset > 1]
+
+    def _step(self, base: Stage, behind: Time, counters: Sequence[Counter], hurries: bool) -> Step:
+        name = base.process.name
+        arrivals = self.known.arrivals.get(name)
+        gap = arrivals.gap if arrivals is not None else None
+        releases = known_releases(base.process, self.known.system)
+        period = (gap or 0) * self.unit
+        offset = None if releases is None else releases.offset * self.unit
+        for counter in counters:
+            if offset is not None and releases is not None:
+                offset += ((counter.offset or counter.prescaler) - 1) * releases.period * self.unit
+            period *= counter.prescaler
+        response = self._worst(base.process)
+        if _is_logical(base.leave):
+            if releases is None or response > releases.period * self.unit:
+                raise UntimedError(f"{name!r} does not always end within its period, which logical execution times need")
+            response = releases.period * self.unit
+        return Step(
+            name=name,
+            period=period,
+            is_regular=gap is not None,
+            response=response + behind,
+            offset=offset if len(counters) < 2 else None,
+            hurries=hurries,
+        )
+
+    def _hurries(self, base: Stage, follower: Stage | None) -> bool:
+        """Whether the jobs of a stage come before those of the next one, which cannot read while they wait or run."""
+        if follower is None or isinstance(base.leave, Fire) or _is_logical(base.leave) or _is_logical(follower.enter):
+            return False
+        first, then = self.known.placed.get(base.process.name), self.known.placed.get(follower.process.name)
+        if first is None or then is None or first.core != then.core or first.server or then.server or first.rank <= then.rank:
+            return False
+        # Where the reader cannot always be interrupted, it may have started before, and read while the writer waits.
+        reads_at_start = isinstance(follower.enter, Read) and follower.enter.communication is Communication.IMPLICIT
+        return reads_at_start or bool(released_on(first.core, self.known))
+
+    # Tracks
+
+    def _by_schedule(self, stage: Stage, releases: Periodic) -> Timed | None:
+        placed = self.known.placed.get(stage.process.name)
+        if placed is None:
+            return None
+        found = self._schedule(placed.core, any(map(_is_inside, (stage.enter, stage.leave))))
+        if found is None:
+            return None
+        name, period = stage.process.name, found.tasks[stage.process.name].period
+        early = _Moments(self, stage, found.best[name], period, Cost.best_of)
+        late = _Moments(self, stage, found.worst[name], period, Cost.worst_of)
+        grains = self.known.demands.grains(placed.core)
+
+        def track(reads: Numbers, writes: Numbers) -> Track:
+            return self._unified(
+                Track(releases=found.worst[name].releases, reads=reads, writes=writes, cycle=found.cycle, until=found.until),
+                grains,
+            )
+
+        is_logical = _is_logical(stage.enter) and _is_logical(stage.leave)
+        certain = all(place.is_certain for place in stage.places) or not any(map(_is_inside, (stage.enter, stage.leave)))
+        return Timed(
+            step=_NO_STEP,
+            widest=track(early.at(stage.enter, False), late.at(stage.leave, True)),
+            narrowest=track(late.at(stage.enter, True), early.at(stage.leave, False)),
+            settled=found.settled * self.unit // grains,
+            is_exact=(found.is_constant or is_logical) and certain,
+        )
+
+    def _unified(self, track: Track, grains: int) -> Track:
+        """A track in the unit that all cores share; rounded outwards where that is too fine."""
+        if self.unit % grains == 0:
+            factor = self.unit // grains
+            return track if factor == 1 else _scaled(track, factor)
+        return Track(
+            releases=track.releases // grains,
+            reads=track.reads // grains,
+            writes=-(-track.writes // grains),
+            cycle=track.cycle // grains,
+            until=track.until // grains,
+        )
+
+    def _schedule(self, core: str, with_pieces: bool) -> CoreSchedule | None:
+        key = (core, with_pieces)
+        if key not in self._schedules:
+            self._schedules[key] = self._new_schedule(core, with_pieces)
+        return self._schedules[key]
+
+    def _new_schedule(self, core: str, with_pieces: bool) -> CoreSchedule | None:
+        tasks = released_on(core, self.known)
+        if not tasks:
+            return None
+        cycle, start = schedule.hyperperiod(tasks), schedule.settled(tasks)
+        if not schedule.fits(tasks, start + 2 * cycle):
+            return None
+        watched = [with_pieces] * len(tasks)
+        worst = schedule.schedule(tasks, start + 2 * cycle, Cost.worst_of, watched)
+        is_constant = all(part.worst == part.best for task in tasks for part in task.cost.parts)
+        best = worst if is_constant else schedule.schedule(tasks, start + 2 * cycle, Cost.best_of, watched)
+        names = [task.name for task in tasks]
+        return CoreSchedule(
+            tasks=dict(zip(names, tasks, strict=True)),
+            worst=dict(zip(names, worst, strict=True)),
+            best=dict(zip(names, best, strict=True)),
+            settled=start + cycle,
+            cycle=cycle,
+            is_constant=is_constant,
+        )
+
+    def _by_response(self, stage: Stage, releases: Periodic) -> Timed:
+        response, cost = self._response(stage.process), self.known.costs[stage.process.name]
+        placed = self.known.placed[stage.process.name]
+        grains = self.known.demands.grains(placed.core)
+        period, offset = releases.period * self.unit, releases.offset * self.unit
+        times = offset + period * np.arange(2, dtype=np.int64)
+        best, worst = response.best * self.unit, self._worst(stage.process)
+        # Of its response time a job executes its least cost at least behind its start.
+        start = max(0, worst - cost.best * self.unit // grains)
+
+        def at(moment: Moment, is_late: bool) -> Numbers:
+            match _kind(moment):
+                case When.ACTIVATION:
+                    return times
+                case When.START:
+                    return times + (start if is_late else 0)
+                case When.END:
+                    return times + (worst if is_late else best)
+                case None:
+                    return times + period
+            return times + (worst if is_late else 0)
+
+        def track(reads: Numbers, writes: Numbers) -> Track:
+            return Track(releases=times, reads=reads, writes=writes, cycle=period, until=offset + 2 * period)
+
+        return Timed(
+            step=_NO_STEP,
+            widest=track(at(stage.enter, False), at(stage.leave, True)),
+            narrowest=track(at(stage.enter, True), at(stage.leave, False)),
+            settled=offset,
+            is_exact=_is_logical(stage.enter) and _is_logical(stage.leave),
+        )
+
+    def _part(self, track: Track, counters: Sequence[Counter], releases: Periodic, hurries: bool, settled: Time) -> Track:
+        """Only the jobs that take part."""
+        if counters:
+            (counter,) = counters
+            cycle = lcm(track.cycle, releases.period * self.unit * counter.prescaler)
+            lead = counter.offset * releases.period * self.unit
+            track = track.extended(max(track.until, settled + lead) + 2 * cycle)
+            numbers = np.arange(1, len(track.releases) + 1)
+            taking_part = (numbers >= max(counter.offset, 1)) & ((numbers - counter.offset) % counter.prescaler == 0)
+            track = Track(
+                releases=track.releases[taking_part],
+                reads=track.reads[taking_part],
+                writes=track.writes[taking_part],
+                cycle=cycle,
+                until=track.until,
+            )
+        return replace(track, hurries=hurries)
+
+
+_NO_STEP = Step(period=0, response=0)
+
+
+@dataclass(frozen=True, slots=True)
+class _Moments:
+    """The moments of the jobs of a stage in a schedule."""
+
+    timing: Timing
+    stage: Stage
+    jobs: Jobs
+    period: Time
+    cost_of: Callable[[Cost, int], Time]
+
+    def at(self, moment: Moment, is_late: bool) -> Numbers:
+        jobs = self.jobs
+        match _kind(moment):
+            case When.ACTIVATION:
+                return jobs.releases
+            case When.START:
+                return jobs.begins
+            case When.END:
+                return jobs.ends
+            case None:
+                return jobs.releases + self.period
+        place = moment.spot.place if isinstance(moment, At) else moment.place
+        assert place is not None
+        if not place.is_certain:
+            return jobs.ends if is_late else jobs.begins
+        if _kind(moment) is When.BEFORE:
+            return progress.before(jobs, self._executed(place, with_place=False))
+        return progress.behind(jobs, self._executed(place, with_place=True))
+
+    def _executed(self, place: Place, with_place: bool) -> Numbers:
+        """How much each job has executed before a place, or behind it."""
+        process, known = self.stage.process, self.timing.known
+        core = known.placed[process.name].core
+        before = (*place.before, place.activity) if with_place else place.before
+        cost = known.demands.piece(process, before, core)
+        table = schedule.table(cost, self.cost_of)
+        lead = len(table) - schedule.cycle(cost)
+        index = np.arange(len(self.jobs.releases))
+        at = np.where(index < lead, index, lead + (index - lead) % schedule.cycle(cost))
+        found: Numbers = np.array(table, dtype=np.int64)[at]
+        return found
+
+
+def _kind(moment: Moment) -> When | None:
+    """At what a moment is; None: at the end of the period."""
+    match moment:
+        case Read(communication=Communication.LET):
+            return When.ACTIVATION
+        case Read(communication=Communication.EXPLICIT, place=Place()):
+            return When.BEFORE
+        case Read():
+            return When.START
+        case Write(communication=Communication.LET):
+            return None
+        case Write(communication=Communication.EXPLICIT, place=Place()) | Fire(place=Place()):
+            return When.BEHIND
+        case Write() | Fire():
+            return When.END
+        case At(communication=Communication.LET, is_end=is_end):
+            return None if is_end else When.ACTIVATION
+        case At(spot=spot):
+            return spot.when
+    return When.END
+
+
+def _is_inside(moment: Moment) -> bool:
+    """Whether a moment lies within a job, where only its pieces tell when that is."""
+    return _kind(moment) in (When.BEFORE, When.BEHIND)
+
+
+def _is_logical(moment: Moment) -> bool:
+    return not isinstance(moment, Fire) and moment.communication is Communication.LET
+
+
+def _later(track: Track, behind: Time) -> Track:
+    return replace(track, writes=track.writes + behind) if behind else track
+
+
+def _scaled(track: Track, factor: int) -> Track:
+    return Track(
+        releases=track.releases * factor,
+        reads=track.reads * factor,
+        writes=track.writes * factor,
+        cycle=track.cycle * factor,
+        until=track.until * factor,
+    )
+
+
+def in_picoseconds(value: Fraction | Time, unit: int, is_upper: bool) -> Time:
+    """A time in whole picoseconds, rounded up or down."""
+    return -int(-value // unit) if is_upper else int(value // unit)
