@@ -24,8 +24,10 @@ def arrivals_of(stimulus: perf.Stimulus, system: System) -> Arrivals | None:
             return None if earliest is None or latest is None else Periodic(period, latest - earliest, distance or 0)
         case perf.RelativePeriodic(distance=distance):
             least = lowest(distance)
-            is_fixed = least == highest(distance)
-            return Periodic(least, sporadic=not is_fixed) if least else None
+            longest = highest(distance)
+            if not least:
+                return None
+            return Periodic(least) if least == longest else Periodic(least, sporadic=True, longest=longest)
         case perf.Synthetic(period=period, times=times) if period > 0 and times:
             # Times beyond the period fall into later ones, where they meet those of the next rounds.
             return Pattern(period, tuple(sorted(time % period for time in times)))

@@ -56,12 +56,14 @@ class Periodic(Arrivals):
     Attributes
     ----------
     sporadic : whether arrivals may also stay away; the period is then the least time between two of them
+    longest : the longest time between two of them, if they are sporadic and that is known
     """
 
     period: Time
     jitter: Time = 0
     distance: Time = 0
     sporadic: bool = False
+    longest: Time | None = None
 
     def span(self, count: int) -> Time:
         """See `Arrivals`."""
@@ -82,7 +84,7 @@ class Periodic(Arrivals):
     @property
     def gap(self) -> Time | None:
         """See `Arrivals`."""
-        return None if self.sporadic else self.period + self.jitter
+        return self.longest if self.sporadic else self.period + self.jitter
 
 
 @dataclass(frozen=True)

@@ -29,6 +29,15 @@ SERVERS = {
     Policy.CONSTANT_BANDWIDTH_SERVER,
     Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH,
 }
+#: Other names of policies, in small letters; since AMALTHEA 2.0 a policy is known by nothing else than its name.
+ALIASES = {
+    "fpp": Policy.FIXED_PRIORITY_PREEMPTIVE,
+    "fixed priority preemptive": Policy.FIXED_PRIORITY_PREEMPTIVE,
+    "autosar": Policy.OSEK,
+    "edf": Policy.EARLIEST_DEADLINE_FIRST,
+    "deadline monotonic": Policy.DEADLINE_MONOTONIC,
+    "rate monotonic": Policy.RATE_MONOTONIC,
+}
 #: Names of the parameters of servers: those of the standard definitions, and those of AMALTHEA until 1.2.
 CAPACITY = ("capacity", "maxBudget")
 PERIOD = ("period", "replenishment")
@@ -160,7 +169,7 @@ class Placement:
         if scheduler.name in above:
             raise UnplacedError("its schedulers are below each other in a circle")
         above = (*above, scheduler.name)
-        policy = scheduler.policy
+        policy = self._policy(scheduler)
         if policy == Policy.GROUPING:
             return self._in_group(scheduler, given, above)
         if policy in SERVERS:
@@ -174,7 +183,7 @@ class Placement:
             message = f"the scheduler {scheduler.name!r} names no policy, fixed priorities with preemption are taken"
             self.notes.warning("ANA001", message, scheduler)
         if policy is None or policy in BY_PRIORITY:
-            return self._by_priority(scheduler, given, base)
+            return self._by_priority(scheduler, policy, given, base)
         match policy:
             case Policy.DEADLINE_MONOTONIC:
                 return replace(base, rank=(*base.rank, -_needed(given.deadline, "deadline")))
@@ -187,12 +196,20 @@ class Placement:
         self.notes.warning("ANA002", message, scheduler)
         raise UnplacedError(f"there is no analysis for the policy {policy}")
 
-    def _by_priority(self, scheduler: Scheduler, given: _Given, base: Place) -> Place:
+    def _policy(self, scheduler: Scheduler) -> str | None:
+        """The policy of a scheduler by its standard name."""
+        meant = ALIASES.get((scheduler.policy or "").lower())
+        if meant is None:
+            return scheduler.policy
+        self.notes.assume(f"the policy {scheduler.policy!r} is taken for {meant}")
+        return meant
+
+    def _by_priority(self, scheduler: Scheduler, policy: str | None, given: _Given, base: Place) -> Place:
         place = replace(base, rank=(*base.rank, _needed(given.priority, "priority")))
-        if scheduler.policy == Policy.PRIORITY_BASED_ROUND_ROBIN:
+        if policy == Policy.PRIORITY_BASED_ROUND_ROBIN:
             length = _needed(_time(given.of(scheduler, "timeSliceLength")), "timeSliceLength")
             return replace(place, sharing=Sharing.SLICES, slice=length)
-        group = given.of(scheduler, "taskGroup") if scheduler.policy == Policy.OSEK else None
+        group = given.of(scheduler, "taskGroup") if policy == Policy.OSEK else None
         return place if group is None else replace(place, group=f"{scheduler.name}/{group}")
 
     def _in_group(self, scheduler: Scheduler, given: _Given, above: tuple[str, ...]) -> Place:

@@ -16,8 +16,10 @@ from amalthea_uros.analyze.sensitivity import sensitivity
 from amalthea_uros.analyze.settings import Memory, Settings
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.cli.output import Output, output_option
+from amalthea_uros.perf.software import Communication
 from amalthea_uros.pipeline import system_of
 from amalthea_uros.report.analysis import Extras, write_explanation, write_json, write_text
+from amalthea_uros.report.chains import write_chain
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import Frequency, parse_frequency
 
@@ -69,6 +71,17 @@ class ModeValue(click.ParamType[tuple[str, str]]):
     default=str(Memory.NONE),
     help="What accesses to labels cost: nothing, each its latency, or one copy per job.",
 )
+@click.option("--chain", "chain", metavar="CHAIN", help="Show the values of one event chain, and how they come about.")
+@click.option(
+    "--communication",
+    type=click.Choice(["modelled", *(str(how).lower() for how in Communication)]),
+    default="modelled",
+    help="When labels are read and written; modelled: as the model says, and implicit where it says nothing.",
+)
+@click.option(
+    "--method", type=click.Choice(["auto", "all"]), default="auto", help="Show the tightest values of chains, or all."
+)
+@click.option("--any-phase", is_flag=True, help="Let counters at which chains start begin at any of their occurrences.")
 @click.option("--explain", metavar="PROCESS", help="Show what the response time of a process is made of.")
 @click.option("--sensitivity", "with_sensitivity", is_flag=True, help="Show by how much execution times may grow.")
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
@@ -79,6 +92,10 @@ def command(
     scale: float,
     modes: tuple[tuple[str, str], ...],
     memory: str,
+    chain: str | None,
+    communication: str,
+    method: str,
+    any_phase: bool,
     explain: str | None,
     with_sensitivity: bool,
     with_priorities: bool,
@@ -93,7 +110,15 @@ def command(
     _check_name("core", [core for core, _ in frequencies], system.cores)
     _check_name("mode label", [label for label, _ in modes], [label.name for label in system.software.mode_labels])
     _check_name("process", [explain] if explain is not None else [], system.processes)
-    settings = Settings(dict(frequencies), Fraction(str(scale)), modes=dict(modes), memory=Memory(memory))
+    _check_name("chain", [chain] if chain is not None else [], system.chains)
+    settings = Settings(
+        dict(frequencies),
+        Fraction(str(scale)),
+        modes=dict(modes),
+        memory=Memory(memory),
+        communication=next((how for how in Communication if str(how).lower() == communication), None),
+        any_phase=any_phase,
+    )
     analysis = analyze_system(system, settings)
     extras = Extras(
         sensitivity=sensitivity(system, settings) if with_sensitivity else None,
@@ -102,9 +127,11 @@ def command(
     Terminal(sys.stderr).findings((*findings, *analysis.findings))
     for output in outputs:
         if output.format == "json":
-            output.write(partial(write_json, analysis, extras, paths, findings))
+            output.write(partial(write_json, analysis, extras, paths, findings, method == "all"))
         elif explain is not None:
             output.write(partial(write_explanation, analysis, explain))
+        elif chain is not None:
+            output.write(partial(write_chain, analysis, chain, method == "all"))
         else:
             output.write(partial(write_text, analysis, extras))
     sys.exit(1 if analysis.misses else 0)

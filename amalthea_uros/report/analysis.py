@@ -15,6 +15,7 @@ from amalthea_uros.analyze.assignment import Proposal
 from amalthea_uros.analyze.result import Analysis, ProcessorResult, ProcessResult, RequirementResult, Verdict
 from amalthea_uros.analyze.sensitivity import GREATEST, Sensitivity
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.report.chains import chain_json, write_chains
 from amalthea_uros.report.findings import finding_json
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import Time, frequency_text, time_text
@@ -37,6 +38,7 @@ def write_text(analysis: Analysis, extras: Extras, stream: IO[str]) -> None:
     terminal = Terminal(stream)
     _processors(terminal, analysis)
     _processes(terminal, analysis)
+    write_chains(terminal, analysis.chains)
     _requirements(terminal, analysis)
     _sensitivity(terminal, extras.sensitivity)
     for proposal in extras.proposals or ():
@@ -183,7 +185,14 @@ def write_explanation(analysis: Analysis, name: str, stream: IO[str]) -> None:
     terminal.line(f"  {response.method} ({response.source}), {response.jobs} jobs looked at")
 
 
-def write_json(analysis: Analysis, extras: Extras, paths: Sequence[Path], findings: Sequence[Finding], stream: IO[str]) -> None:
+def write_json(
+    analysis: Analysis,
+    extras: Extras,
+    paths: Sequence[Path],
+    findings: Sequence[Finding],
+    all_methods: bool,
+    stream: IO[str],
+) -> None:
     """The same for programs; times are picoseconds under names that end in `_ps`."""
     result: dict[str, Any] = {
         "amuros": __version__,
@@ -202,7 +211,7 @@ def write_json(analysis: Analysis, extras: Extras, paths: Sequence[Path], findin
             for processor in analysis.processors
         ],
         "processes": [_process_json(process) for process in analysis.processes],
-        "chains": [],
+        "chains": [chain_json(chain, all_methods) for chain in analysis.chains],
         "requirements": [
             {
                 "name": requirement.name,

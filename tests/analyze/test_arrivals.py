@@ -74,7 +74,7 @@ def test_several_arrivals_for_each_of_others():
     [
         (perf.Periodic(name="s", period=10, offset=3), Periodic(10)),
         (perf.Periodic(name="s", period=10, jitter=Uniform(lower=-1, upper=3), min_distance=2), Periodic(10, 4, 2)),
-        (perf.RelativePeriodic(name="s", distance=Uniform(lower=5, upper=9)), Periodic(5, sporadic=True)),
+        (perf.RelativePeriodic(name="s", distance=Uniform(lower=5, upper=9)), Periodic(5, sporadic=True, longest=9)),
         # Offset 5, period 10, length 5, distance 2, count 3: 5, 7, 9, 15, 17, 19 ...
         (perf.Burst(name="s", offset=5, period=10, length=5, distance=2, count=3), Pattern(10, (0, 2, 4))),
         # The third occurrence would lie behind the burst.

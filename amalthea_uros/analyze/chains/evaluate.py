@@ -38,11 +38,17 @@ class Evaluation:
         """One chain."""
         how = str(self.known.settings.communication or "as modelled")
         try:
-            unfolded = unfold(chain, self.known.system)
+            unfolded, left_out = unfold(chain, self.known.system)
             by_events = {events: self.resolver.routes(events) for events in sequences(unfolded)}
         except (UnfoldError, UnresolvedError) as error:
             self.known.notes.warning("CHN001", f"the chain {chain.name!r} is not evaluated: {error}", chain)
             return ChainResult(name=chain.name, communication=how, reason=str(error))
+        for event in left_out:
+            message = f"the chain {chain.name!r} does not start or end with {event!r}, as a part of it does; that is left out"
+            self.known.notes.warning("CHN005", message, chain)
+        for event, guess in self.resolver.guesses.items():
+            message = f"nothing in the model makes the event {event!r} occur; it is taken to do so {guess}"
+            self.known.notes.warning("CHN004", message, self.known.system.events_by_name[event])
         self._note_gaps(chain, [route for found in by_events.values() for route in found])
         told = tuple(_route_text(route) for found in by_events.values() for route in found)
         values: dict[tuple[str, ...], list[Value]] = {}

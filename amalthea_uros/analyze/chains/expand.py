@@ -1,13 +1,14 @@
 """Event chains as sequences of events: containers and references unfolded, alternatives and joins side by side.
 
 Where INCHRON's importer drops or changes a chain, it is taken as it stands here: what is missing inside is left out, and where a
-segment starts elsewhere than the one before ended, both events are kept.
+segment starts elsewhere than the one before ended, both events are kept. Only a first segment that does not start with the chain,
+or a last one that does not end with it, has to give way, which is told.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from amalthea_uros.perf.events import ChainReference, EventChain, EventSet, Parallel, Segment
 from amalthea_uros.perf.events import Sequence as InSequence
@@ -39,19 +40,20 @@ class Fork:
 Unfolded = tuple["str | Fork", ...]
 
 
-def unfold(chain: EventChain, system: System) -> Unfolded:
-    """The events of a chain.
+def unfold(chain: EventChain, system: System) -> tuple[Unfolded, tuple[str, ...]]:
+    """The events of a chain, and those that were left out because the chain starts or ends elsewhere.
 
     Raises
     ------
-    UnfoldError : it is part of itself, refers to something missing, or has no events.
+    UnfoldError : it is part of itself, refers to something missing, or has less than two events.
     """
-    found = _Unfolding(system).item(chain, (chain.name,))
-    if not found:
-        raise UnfoldError("it has no events")
+    unfolding = _Unfolding(system)
+    found = unfolding.item(chain, (chain.name,))
     if routes(found) > MOST_ROUTES:
         raise UnfoldError(f"it has more than {MOST_ROUTES} routes")
-    return found
+    if any(len(events) < 2 for events in sequences(found)):
+        raise UnfoldError("it has no stimulus or no response, and nothing inside that could stand for it")
+    return found, tuple(unfolding.left_out)
 
 
 def routes(unfolded: Unfolded) -> int:
@@ -66,6 +68,7 @@ def routes(unfolded: Unfolded) -> int:
 @dataclass(frozen=True, slots=True)
 class _Unfolding:
     system: System
+    left_out: list[str] = field(default_factory=list)
 
     def item(self, item: EventChain | Segment, above: tuple[str, ...]) -> Unfolded:
         match item.items:
@@ -76,7 +79,21 @@ class _Unfolding:
                 inner = (Fork(branches, min(max(completed, 1), len(branches))),)
             case _:
                 inner = ()
-        return _joined((*self._event(item.stimulus), *inner, *self._event(item.response)))
+        start, end = self._event(item.stimulus), self._event(item.response)
+        if isinstance(item.items, InSequence):
+            inner = self._between(start, inner, end)
+        return _joined((*start, *inner, *end))
+
+    def _between(self, start: Unfolded, inner: Unfolded, end: Unfolded) -> Unfolded:
+        """What is inside, without other ends than the chain has."""
+        first, last = inner[:1], inner[-1:]
+        if start and first and isinstance(first[0], str) and first != start:
+            self.left_out.append(first[0])
+            inner = inner[1:]
+        if end and last and isinstance(last[0], str) and last != end and inner:
+            self.left_out.append(last[0])
+            inner = inner[:-1]
+        return inner
 
     def _part(self, item: ChainReference | Segment, above: tuple[str, ...]) -> Unfolded:
         if isinstance(item, Segment):

@@ -1,7 +1,7 @@
 """Chains that start in every n-th job of a process, where it is not known in which.
 
-A counter stands for something that comes from outside, such as a message every 20 ms to an executor that runs each millisecond. Which of
-the jobs takes it is a matter of chance at the start of the system; here all of them are tried.
+A counter stands for something that comes from outside, such as a message every 20 ms to an executor that runs each millisecond.
+Which of the jobs takes it is a matter of chance at the start of the system; here all of them are tried.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def variants(chain: EventChain, system: System) -> Iterator[System]:
 def _counted_start(chain: EventChain, system: System) -> Place | None:
     """Where a chain starts in some jobs only."""
     try:
-        events = sequences(unfold(chain, system))[0]
+        events = sequences(unfold(chain, system)[0])[0]
         first = stages(Resolver(system).routes(events)[0], None)[0]
     except (UnfoldError, UnresolvedError):
         return None

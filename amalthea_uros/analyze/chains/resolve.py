@@ -129,9 +129,15 @@ class Route:
 
 @dataclass(slots=True)
 class Resolver:
-    """Finds events in the processes of a system."""
+    """Finds events in the processes of a system.
+
+    Attributes
+    ----------
+    guesses : event -> where it is taken to occur, because nothing makes it occur
+    """
 
     system: System
+    guesses: dict[str, str] = field(default_factory=dict)
     _places: dict[str, list[Place]] = field(default_factory=dict)
 
     def routes(self, events: Sequence[str]) -> list[Route]:
@@ -157,10 +163,29 @@ class Resolver:
     # Events
 
     def _spots(self, event: Event) -> list[Spot]:
-        found = list(self._all_spots(event))
+        found = list(self._all_spots(event)) or self._guess(event)
         if not found:
             raise UnresolvedError(f"nothing in the model makes the event {event.name!r} occur")
         return found
+
+    def _guess(self, event: Event) -> list[Spot]:
+        """Where an access should stand of which the model knows no more than the event."""
+        match event:
+            case LabelEvent() | ModeLabelEvent() | ChannelEvent() | SemaphoreEvent():
+                is_read = event.change in (LabelChange.READ, ModeChange.READ, ChannelChange.RECEIVE, SemaphoreChange.LOCK)
+                runs = [
+                    place
+                    for place in self._within(event.process)
+                    if isinstance(place.activity, Call) and place.activity.runnable == event.runnable
+                ]
+                side = "at the start" if is_read else "at the end"
+                if runs:
+                    self.guesses[event.name] = f"{side} of {event.runnable!r}"
+                    return [Spot(place.process, When.BEFORE if is_read else When.BEHIND, place) for place in runs]
+                if event.process is not None and event.runnable is None:
+                    self.guesses[event.name] = f"{side} of {event.process!r}"
+                    return [Spot(p, When.START if is_read else When.END) for p in self._processes(event.process)]
+        return []
 
     def _all_spots(self, event: Event) -> Iterable[Spot]:
         match event:

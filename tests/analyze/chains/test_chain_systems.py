@@ -1,0 +1,490 @@
+"""Chains of whole systems: what carries the effect, when it is read and written, and what is told where nothing is known."""
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+import pytest
+from support import ROOT, SHARED
+from test_methods import cases
+
+from amalthea_uros import Settings, analyze_system, extract, load, pipeline
+from amalthea_uros.analyze.chains.quantities import Quantity
+from amalthea_uros.perf.distributions import Boundaries, Constant
+from amalthea_uros.perf.events import (
+    ChainReference,
+    ChannelChange,
+    ChannelEvent,
+    CustomEvent,
+    EventChain,
+    Events,
+    EventSet,
+    LabelChange,
+    LabelEvent,
+    Parallel,
+    ProcessChange,
+    ProcessEvent,
+    RunnableChange,
+    RunnableEvent,
+    Segment,
+    Sequence,
+    StimulusEvent,
+)
+from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure, StructureKind
+from amalthea_uros.perf.mapping import Mapping, TaskAllocation
+from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
+from amalthea_uros.perf.software import (
+    AccessKind,
+    Call,
+    Communication,
+    Demand,
+    Execute,
+    LabelAccess,
+    RaiseEvent,
+    Receive,
+    Runnable,
+    Send,
+    Software,
+    Task,
+    Trigger,
+)
+from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic, RelativePeriodic, Stimuli
+from amalthea_uros.perf.system import System
+from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import NANOSECOND as NS
+
+
+def ticks(worst, best=None):
+    return Execute(demand=Demand(Constant(worst) if best is None else Boundaries(lower=best, upper=worst)))
+
+
+def read(label):
+    return LabelAccess(label=label, kind=AccessKind.READ)
+
+
+def write(label):
+    return LabelAccess(label=label, kind=AccessKind.WRITE)
+
+
+START, END, ACTIVATION = ProcessChange.START, ProcessChange.TERMINATE, ProcessChange.ACTIVATE
+
+
+def at(process, change):
+    return ProcessEvent(name=f"{process} {change}", process=process, change=change)
+
+
+def system(tasks, events, chains=None, stimuli=(), runnables=(), cores=("core",), controllers=False, unit=US):
+    """Tasks of (name, period or None, activities[, core[, offset]]), the first one first; cores of 1 tick in each unit."""
+    rows = [(*task, *("core", 0)[len(task) - 3 :]) if len(task) < 5 else task for task in tasks]
+    structures = tuple(
+        Structure(name=f"at {core}", kind=StructureKind.ECU if controllers else None, cores=(Core(name=core, clock="clock"),))
+        for core in cores
+    )
+    names = [event.name for event in events]
+    steps = tuple(Segment(stimulus=first, response=then) for first, then in pairwise(names))
+    whole = EventChain(name="chain", stimulus=names[0], response=names[-1], items=Sequence(steps))
+    return System(
+        hardware=Hardware(clocks=(Clock(name="clock", frequency=Fraction(10**12, unit)),), structures=structures),
+        os=Os(
+            systems=(
+                OperatingSystem(
+                    name="OS", schedulers=tuple(Scheduler(name=core, policy=Policy.OSEK, cores=(core,)) for core in cores)
+                ),
+            )
+        ),
+        stimuli=Stimuli(
+            stimuli=(
+                *(
+                    Periodic(name=name, period=period * unit, offset=offset * unit)
+                    for name, period, _, _, offset in rows
+                    if period
+                ),
+                *stimuli,
+            )
+        ),
+        software=Software(
+            tasks=tuple(Task(name=name, stimuli=(name,), activities=tuple(body)) for name, _, body, _, _ in rows),
+            runnables=tuple(runnables),
+        ),
+        mapping=Mapping(
+            tasks=tuple(TaskAllocation(task=row[0], scheduler=row[3], priority=-number) for number, row in enumerate(rows))
+        ),
+        events=Events(events=tuple(events), chains=chains or (whole,)),
+    )
+
+
+def evaluate(built, unit=US, **settings):
+    analysis = analyze_system(built, Settings(**settings))
+    (chain, *_) = analysis.chains
+    values = {value.quantity.value: value.value / unit for value in chain.values}
+    claims = {str(value.claim) for value in chain.values}
+    rules = [finding.rule for finding in analysis.findings if finding.rule.startswith("CHN")]
+    return chain, values, claims, rules
+
+
+@pytest.mark.parametrize("case", cases(lambda case: int(case["id"].split("-")[1]) % 10 == 5 or case["kind"] == "phase"))
+def test_vectors_as_models(case):
+    labels = {name: ([], []) for name in (task["name"] for task in case["tasks"])}
+    for number, (writer, reader) in enumerate(pairwise(case["chain"])):
+        labels[writer][1].append(write(f"L{number}"))
+        labels[reader][0].append(read(f"L{number}"))
+    ordered = sorted(case["tasks"], key=lambda task: task["priority"])
+    tasks = [
+        (
+            task["name"],
+            task["period"],
+            [*labels[task["name"]][0], ticks(task["wcet"], task["bcet"]), *labels[task["name"]][1]],
+            "core",
+            task["offset"],
+        )
+        for task in ordered
+    ]
+    first, last = case["chain"][0], case["chain"][-1]
+    events = [at(first, START), *(at(name, END) for name in case["chain"][1:])]
+    if first == last:
+        events = [at(first, START), at(first, END)]
+    _, values, claims, rules = evaluate(system(tasks, events, unit=NS), NS)
+    assert not rules
+    if case["kind"] == "bcet":
+        assert claims == {"bound"}
+        # Another method may have a tighter bound than the job chains.
+        assert values["max_reaction_time"] <= case["safe_upper_bound"]["guenzel23_mrt"]
+        assert values["max_reaction_time"] >= case["achieved"]["wcet"]["mrt"]
+    else:
+        exact = case["exact"]
+        assert claims == {"exact"}
+        assert values["max_reaction_time"] == exact["mrt"]
+        assert values["max_reduced_reaction_time"] == exact["mrrt"]
+        assert values["max_data_age"] == exact["mda"]
+        assert values["max_reduced_data_age"] == exact["mrda"]
+        first_to_first = case["distribution_one_hyperperiod"]["first_to_first"]
+        assert values["min_first_to_first"] == first_to_first["min"]
+        assert values["mean_first_to_first"] == pytest.approx(first_to_first["sum"] / first_to_first["count"], abs=0.001)
+
+
+class TestTheThesis:
+    """From the start of the executor job that took the message to the end of the first control function that uses it."""
+
+    SAMPLE = ROOT / "samples" / "bodas-test-advanced.yaml"
+
+    def test_over_all_phases_of_the_message(self):
+        system = pipeline.describe(self.SAMPLE).system
+        _, values, claims, _ = evaluate(system, any_phase=True)
+        assert claims == {"exact"}
+        # By hand: taken in the tick of Message_Factor 1000 + 16; taken in the tick behind it, up to the long job 20 ticks later.
+        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (1016, 20029)
+        # Ticks 0 to 19 behind Message_Factor: 20 in steps of one, of which each ends at 16 or, where it meets a message, at 29.
+        assert values["mean_first_to_first"] == pytest.approx(sum(range(1, 21)) * 1000 / 20 + 16 + 13 / 20)
+        assert (values["min_last_to_last"], values["max_reduced_data_age"]) == (1016, 39016)
+
+    @pytest.mark.parametrize(
+        ("start", "end", "least", "most"),
+        [(START, END, 1016, 20029), (END, END, 991, 20004), (END, ACTIVATION, 975, 19975)],
+    )
+    def test_other_end_points(self, start, end, least, most):
+        system = pipeline.describe(self.SAMPLE).system
+        events = (at("Executor_Task", start), at("Message_Factor", END), at("Control_Function", end))
+        segments = tuple(Segment(stimulus=a.name, response=b.name) for a, b in pairwise(events))
+        chain = EventChain(name="c", stimulus=events[0].name, response=events[-1].name, items=Sequence(segments))
+        system = replace(system, events=Events(events=events, chains=(chain,)))
+        _, values, _, _ = evaluate(system, any_phase=True)
+        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (least, most)
+
+    def test_within_five_per_cent_of_what_was_measured(self):
+        _, values, _, _ = evaluate(pipeline.describe(self.SAMPLE).system, any_phase=True)
+        measured = {"min_first_to_first": 970, "mean_first_to_first": 10320, "max_reduced_reaction_time": 19978}
+        for quantity, value in measured.items():
+            assert abs(values[quantity] - value) / value < 0.05
+
+    def test_logical_execution_times(self):
+        _, values, claims, _ = evaluate(pipeline.describe(self.SAMPLE).system, any_phase=True, communication=Communication.LET)
+        assert claims == {"exact"}
+        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (22000, 41000)
+
+
+def producer_and_consumer(*chain, unit=US, **more):
+    """A producer of 2 + 3 that writes behind its 2, each 10; a consumer of 4 + 1 each 20 that reads behind its 4."""
+    runnables = [
+        Runnable(name="make", activities=(ticks(2), write("L"))),
+        Runnable(name="rest", activities=(ticks(3),)),
+        Runnable(name="prepare", activities=(ticks(4),)),
+        Runnable(name="use", activities=(read("L"), ticks(1))),
+    ]
+    tasks = [
+        ("producer", 10, [Call(runnable="make"), Call(runnable="rest")]),
+        ("consumer", 20, [Call(runnable="prepare"), Call(runnable="use")]),
+    ]
+    return system(tasks, chain, runnables=runnables, **more)
+
+
+class TestCommunication:
+    ENDS = (at("producer", START), at("consumer", END))
+
+    def test_implicit(self):
+        # The producer at 0 to 5, the consumer at 5 to 10: it reads what has just been written.
+        _, values, claims, _ = evaluate(producer_and_consumer(*self.ENDS))
+        assert claims == {"exact"}
+        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (10, 20)
+
+    def test_explicit(self):
+        # Written at 2, read at 9; the job of 10 writes at 12 what is read at 29.
+        events = (
+            RunnableEvent(name="made", runnable="make", change=RunnableChange.TERMINATE),
+            RunnableEvent(name="used", runnable="use", change=RunnableChange.START),
+        )
+        _, values, claims, _ = evaluate(producer_and_consumer(*events), communication=Communication.EXPLICIT)
+        assert claims == {"exact"}
+        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (9 - 2, 29 - 12)
+
+    def test_logical(self):
+        _, values, _, _ = evaluate(producer_and_consumer(*self.ENDS), communication=Communication.LET)
+        # The job of 0 writes at 10, read at 20, out at 40; the one of 10 writes at 20.
+        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (30, 40)
+
+    def test_as_the_model_says(self):
+        built = producer_and_consumer(*self.ENDS)
+        runnables = tuple(
+            replace(runnable, activities=tuple(self.logical(activity) for activity in runnable.activities))
+            for runnable in built.software.runnables
+        )
+        _, values, _, _ = evaluate(replace(built, software=replace(built.software, runnables=runnables)))
+        # Written at 10 and 20, read at 20 and out at its end behind the producer, at 30.
+        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (20, 30)
+
+    def logical(self, activity):
+        return replace(activity, communication=Communication.LET) if isinstance(activity, LabelAccess) else activity
+
+    def test_logical_execution_times_need_jobs_that_end_within_their_periods(self):
+        tasks = [("high", 20, [ticks(10), write("L")]), ("low", 10, [read("L"), ticks(4)])]
+        chain, _, _, rules = evaluate(system(tasks, [at("high", START), at("low", END)]), communication=Communication.LET)
+        assert rules == ["CHN003"]
+        assert "does not always end within its period" in chain.reason
+
+
+class TestWhatCarries:
+    def test_within_one_job(self):
+        events = (
+            RunnableEvent(name="prepared", runnable="prepare", change=RunnableChange.START),
+            RunnableEvent(name="used", runnable="use", change=RunnableChange.TERMINATE),
+        )
+        chain, values, _, _ = evaluate(producer_and_consumer(*events))
+        assert chain.routes == ("prepared -[the same job]-> used",)
+        assert values["max_reduced_reaction_time"] == 5
+
+    def test_a_runnable_that_comes_earlier_needs_the_next_job(self):
+        # As in the first chain of the challenge of 2017.
+        runnables = [
+            Runnable(name="first", activities=(read("L"), ticks(1))),
+            Runnable(name="second", activities=(ticks(2), write("L"))),
+        ]
+        events = (
+            RunnableEvent(name="start", runnable="second", change=RunnableChange.START),
+            RunnableEvent(name="end", runnable="first", change=RunnableChange.TERMINATE),
+        )
+        built = system([("T", 10, [Call(runnable="first"), Call(runnable="second")])], events, runnables=runnables)
+        chain, values, _, rules = evaluate(built)
+        assert chain.routes == ("start -[data L]-> end",)
+        assert not rules
+        assert values["max_reduced_reaction_time"] == 10
+        # Two periods from the read, and one of sampling before it.
+        _, values, _, _ = evaluate(built, communication=Communication.LET)
+        assert (values["max_reduced_reaction_time"], values["max_reaction_time"]) == (20, 30)
+
+    def test_a_label_in_between_tells_who_reads_and_writes(self):
+        events = (
+            at("producer", START),
+            LabelEvent(name="written", label="L", change=LabelChange.WRITE),
+            LabelEvent(name="read", label="L", change=LabelChange.READ),
+            at("consumer", END),
+        )
+        chain, values, _, rules = evaluate(producer_and_consumer(*events))
+        assert chain.routes == (
+            "producer start -[the same job]-> written -[data L]-> read -[the same job]-> consumer terminate",
+        )
+        assert not rules
+        assert values["max_reduced_reaction_time"] == 20
+
+    def test_a_channel(self):
+        tasks = [
+            ("sender", 10, [ticks(1), Send(channel="C")]),
+            ("receiver", 10, [Receive(channel="C"), ticks(1)]),
+        ]
+        events = (ChannelEvent(name="sent", channel="C", change=ChannelChange.SEND), at("receiver", END))
+        chain, values, _, _ = evaluate(system(tasks, events))
+        assert chain.routes == ("sent -[data C]-> receiver terminate",)
+        assert values["max_reduced_reaction_time"] == 1
+
+    def test_a_trigger(self):
+        tasks = [
+            ("source", 10, [ticks(2), Trigger(stimulus="go")]),
+            ("sink", None, [ticks(3)]),
+            ("low", 20, [read("L"), ticks(1)]),
+        ]
+        built = system(tasks, [at("source", START), at("sink", END)], stimuli=[InterProcess(name="go")])
+        (sink,) = (task for task in built.software.tasks if task.name == "sink")
+        tasks = tuple(replace(task, stimuli=("go",)) if task is sink else task for task in built.software.tasks)
+        chain, values, claims, _ = evaluate(replace(built, software=replace(built.software, tasks=tasks)))
+        assert chain.routes == ("source start -[a trigger go]-> sink terminate",)
+        assert claims == {"bound"}
+        # 2, and 3 behind another job of the source that may come in between.
+        assert values["max_reduced_reaction_time"] == 2 + 3 + 2
+
+    def test_nothing(self):
+        tasks = [("A", 10, [ticks(1)]), ("B", 10, [ticks(1)])]
+        chain, values, claims, rules = evaluate(system(tasks, [at("A", START), at("B", END)]))
+        assert rules == ["CHN002"]
+        assert chain.routes == ("A start -[nothing]-> B terminate",)
+        assert claims == {"bound"}
+        assert values["max_reduced_reaction_time"] == 2
+
+    def test_a_stimulus_is_the_activation_of_what_it_activates(self):
+        events = (StimulusEvent(name="tick", stimulus="producer"), at("consumer", END))
+        _, values, _, _ = evaluate(producer_and_consumer(*events))
+        assert values["max_reduced_reaction_time"] == 20
+
+    def test_an_event_that_software_raises(self):
+        tasks = [("A", 10, [ticks(2), RaiseEvent(event="done"), ticks(3), write("L")]), ("B", 10, [read("L"), ticks(1)])]
+        _, values, _, _ = evaluate(system(tasks, [CustomEvent(name="done"), at("B", END)]))
+        assert values["max_reduced_reaction_time"] == 3 + 1
+
+    def test_counters_let_only_some_jobs_take_part(self):
+        runnable = Runnable(name="take", activities=(write("L"),))
+        counter = Counter(prescaler=3, offset=2)
+        tasks = [
+            ("A", 10, [ticks(1), Call(runnable="take", counter=counter)]),
+            ("B", 10, [read("L"), ticks(1)]),
+        ]
+        _, values, claims, _ = evaluate(system(tasks, [at("A", START), at("B", END)], runnables=[runnable]))
+        assert claims == {"exact"}
+        assert (values["max_reduced_reaction_time"], values["max_reaction_time"]) == (2, 32)
+        assert values["max_reduced_data_age"] == 22
+
+    def test_several_cores(self):
+        tasks = [
+            ("A", 10, [ticks(4), write("L")], "one"),
+            ("B", 10, [read("L"), ticks(1)], "two"),
+        ]
+        events = [at("A", START), at("B", END)]
+        _, values, claims, _ = evaluate(system(tasks, events, cores=("one", "two")))
+        assert claims == {"exact"}
+        # B reads at 0 and 10, A writes at 4.
+        assert (values["max_reduced_reaction_time"], values["max_reaction_time"]) == (11, 21)
+        _, values, claims, _ = evaluate(system(tasks, events, cores=("one", "two"), controllers=True))
+        assert claims == {"bound"}
+        # Clocks that are not synchronized: a period and a response time at each step.
+        assert values["max_reaction_time"] == 10 + 4 + 10 + 1
+
+
+class TestForms:
+    def evaluate(self, *chains, more=()):
+        events = (at("producer", START), at("producer", END), at("consumer", END), *more)
+        return evaluate(producer_and_consumer(*events, chains=chains))
+
+    def names(self):
+        return "producer start", "producer terminate", "consumer terminate"
+
+    def test_a_single_step(self):
+        start, _, end = self.names()
+        _, values, _, _ = self.evaluate(EventChain(name="c", stimulus=start, response=end))
+        assert values["max_reduced_reaction_time"] == 20
+
+    def test_references(self):
+        start, middle, end = self.names()
+        chains = (
+            EventChain(
+                name="c",
+                stimulus=start,
+                response=end,
+                items=Sequence((ChainReference(chain="one"), ChainReference(chain="two"))),
+            ),
+            EventChain(name="one", stimulus=start, response=middle),
+            EventChain(name="two", stimulus=middle, response=end),
+        )
+        chain, values, _, _ = self.evaluate(*chains)
+        assert chain.routes == (f"{start} -[the same job]-> {middle} -[data L]-> {end}",)
+        assert values["max_reduced_reaction_time"] == 20
+
+    def test_a_circle(self):
+        start, _, end = self.names()
+        chains = (
+            EventChain(name="c", stimulus=start, response=end, items=Sequence((ChainReference(chain="d"),))),
+            EventChain(name="d", items=Sequence((ChainReference(chain="c"),))),
+        )
+        chain, values, _, rules = self.evaluate(*chains)
+        assert chain.reason == "it is part of itself: c -> d -> c"
+        assert rules == ["CHN001", "CHN001"]
+        assert not values
+
+    @pytest.mark.parametrize(("completed", "value"), [(1, 5), (2, 20)])
+    def test_alternatives_and_joins(self, completed, value):
+        start, middle, end = self.names()
+        branches = Parallel(items=(Segment(response=middle), Segment(response=end)), completed=completed)
+        chain, values, _, _ = self.evaluate(EventChain(name="c", stimulus=start, items=branches))
+        assert len(chain.routes) == 2
+        # The branch within the producer takes 5, the one through the consumer up to 20.
+        assert values["max_reduced_reaction_time"] == value
+
+    def test_a_set_is_complete_with_its_last_event(self):
+        start, middle, end = self.names()
+        both = EventSet(name="both", events=(middle, end))
+        _, values, _, _ = self.evaluate(EventChain(name="c", stimulus=start, response="both"), more=(both,))
+        assert values["max_reduced_reaction_time"] == 20
+
+    def test_gaps_between_segments(self):
+        start, middle, end = self.names()
+        read_event = LabelEvent(name="read", label="L", change=LabelChange.READ)
+        items = Sequence((Segment(stimulus=start, response=middle), Segment(stimulus="read", response=end)))
+        chain, values, _, _ = self.evaluate(EventChain(name="c", stimulus=start, response=end, items=items), more=(read_event,))
+        assert chain.routes == (f"{start} -[the same job]-> {middle} -[data L]-> read -[the same job]-> {end}",)
+        assert values["max_reduced_reaction_time"] == 20
+
+    def test_a_part_that_starts_elsewhere_gives_way(self):
+        start, middle, end = self.names()
+        items = Sequence((Segment(stimulus=end, response=middle), Segment(stimulus=middle, response=end)))
+        chain, _, _, rules = self.evaluate(EventChain(name="c", stimulus=start, response=end, items=items))
+        assert rules == ["CHN005"]
+        assert chain.routes == (f"{start} -[the same job]-> {middle} -[data L]-> {end}",)
+
+    @pytest.mark.parametrize("missing", [{"stimulus": None}, {"response": None}, {"response": "unknown"}])
+    def test_what_is_missing_is_told(self, missing):
+        start, _, end = self.names()
+        chain, values, _, rules = self.evaluate(replace(EventChain(name="c", stimulus=start, response=end), **missing))
+        assert rules == ["CHN001"]
+        assert chain.reason
+        assert not values
+
+
+class TestNoFiniteBound:
+    def test_overload(self):
+        tasks = [("A", 10, [ticks(8), write("L")]), ("B", 10, [read("L"), ticks(4)])]
+        chain, values, _, rules = evaluate(system(tasks, [at("A", START), at("B", END)]))
+        assert rules == ["CHN003"]
+        assert "'B' has no bound: the demand up to this priority is 120.0%" in chain.reason
+        assert not values
+
+    def test_what_may_stay_away(self):
+        tasks = [("A", None, [ticks(1), write("L")]), ("B", 10, [read("L"), ticks(4)])]
+        sporadic = RelativePeriodic(name="A", distance=Boundaries(lower=20 * US, upper=50 * US))
+        built = system(tasks, [at("A", START), at("B", END)], stimuli=[sporadic])
+        _, values, claims, _ = evaluate(built)
+        assert claims == {"bound"}
+        # 50 from one to the next; it comes before B, which reads within 10 and takes 4 behind another job of A.
+        assert values["max_reaction_time"] == 50 + 10 + 4 + 1
+
+    def test_hyperperiods_that_are_too_long(self):
+        primes = [9973, 9967, 9949, 9941]
+        tasks = [(f"T{p}", p, [read(f"L{i}"), ticks(1), write(f"L{i + 1}")]) for i, p in enumerate(primes)]
+        events = [at(f"T{primes[0]}", START), *(at(f"T{p}", END) for p in primes[1:])]
+        _, values, claims, _ = evaluate(system(tasks, events))
+        assert claims == {"bound"}
+        assert sum(primes) < values["max_reaction_time"] <= sum(primes) + 4 * 4
+
+
+@pytest.mark.parametrize("path", sorted((SHARED / "vectors" / "am2inc").glob("*chain*.amxmi")), ids=lambda path: path.stem)
+def test_chains_that_the_importer_drops_or_distorts(path):
+    """Each is evaluated, or refused with the reason."""
+    analysis = analyze_system(extract(load(path)).system)
+    assert analysis.chains
+    for chain in analysis.chains:
+        assert chain.reason or chain.value(Quantity.MAX_REACTION_TIME) is not None
+        assert bool(chain.reason) == any(f.rule in ("CHN001", "CHN003") and f.object == chain.name for f in analysis.findings)

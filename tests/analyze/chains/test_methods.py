@@ -1,0 +1,302 @@
+"""Chains against three independent tools, published formulas, and schedules that are played through job by job."""
+
+import json
+from functools import cache
+from itertools import pairwise
+from math import lcm
+from random import Random
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from support import SHARED
+
+from amalthea_uros.analyze import levels, schedule
+from amalthea_uros.analyze.arrivals import Periodic
+from amalthea_uros.analyze.chains import becker, bi, davare, duerr, hamann, job_chains, kloda, logical
+from amalthea_uros.analyze.chains.periodic import Step
+from amalthea_uros.analyze.chains.track import Track
+from amalthea_uros.analyze.cost import Cost
+from amalthea_uros.analyze.schedule import Released
+from amalthea_uros.analyze.task import Task
+
+
+@cache
+def vectors():
+    path = SHARED / "vectors" / "chains.json"
+    return json.loads(path.read_text())["cases"] if path.exists() else []
+
+
+def cases(accept=lambda case: True):
+    found = [pytest.param(case, id=case["id"]) for case in vectors() if accept(case)]
+    return found or [pytest.param(None, marks=pytest.mark.skip("the vectors are not at hand"))]
+
+
+def tasks_of(case):
+    return [
+        Released(
+            name=task["name"],
+            period=task["period"],
+            offset=task["offset"],
+            cost=Cost.constant(task["wcet"], task["bcet"]),
+            priority=-task["priority"],
+        )
+        for task in case["tasks"]
+    ]
+
+
+def follow(tasks, chain):
+    """The job chains through a schedule of all best and all worst cases."""
+    cycle, start = schedule.hyperperiod(tasks), schedule.settled(tasks)
+    until = start + 2 * cycle
+    worst, best = schedule.schedule(tasks, until, Cost.worst_of), schedule.schedule(tasks, until, Cost.best_of)
+    index = {task.name: number for number, task in enumerate(tasks)}
+    tracks = []
+    for position, name in enumerate(chain):
+        task, jobs = tasks[index[name]], worst[index[name]]
+        reader = tasks[index[chain[position + 1]]] if position + 1 < len(chain) else None
+        tracks.append(
+            Track(
+                releases=jobs.releases,
+                reads=best[index[name]].begins,
+                writes=jobs.ends,
+                cycle=cycle,
+                until=until,
+                hurries=reader is not None and task.priority > reader.priority,
+            )
+        )
+    return job_chains.follow(tracks, start + cycle)
+
+
+def distribution(latencies):
+    return {
+        "count": len(latencies),
+        "min": int(latencies.min()),
+        "max": int(latencies.max()),
+        "sum": int(latencies.sum()),
+    }
+
+
+@pytest.mark.parametrize("case", cases())
+def test_job_chains(case):
+    found = follow(tasks_of(case), case["chain"])
+    values = {
+        "mrt": found.reaction_time,
+        "mda": found.data_age,
+        "mrda": int(found.last_to_last.max()),
+        "mrrt": int(found.first_to_first.max()),
+    }
+    if case["kind"] == "bcet":
+        bounds = {name.removeprefix("guenzel23_"): value for name, value in case["safe_upper_bound"].items()}
+        assert {name: values[name] for name in bounds} == bounds
+        for achieved in case["achieved"].values():
+            assert all(achieved[name] <= values[name] for name in achieved)
+    else:
+        assert values == case["exact"]
+        assert distribution(found.first_to_first) == case["distribution_one_hyperperiod"]["first_to_first"]
+        assert distribution(found.last_to_last) == case["distribution_one_hyperperiod"]["last_to_last"]
+
+
+def steps_of(case):
+    tasks, responses = {}, {}
+    for task, response in zip(case["tasks"], case["wcrt"], strict=True):
+        tasks[task["name"]], responses[task["name"]] = task, response
+    chain = case["chain"]
+    return [
+        Step(
+            period=tasks[name]["period"],
+            response=responses[name],
+            offset=tasks[name]["offset"],
+            hurries=then is not None and tasks[name]["priority"] < tasks[then]["priority"],
+        )
+        for name, then in zip(chain, [*chain[1:], None], strict=True)
+    ]
+
+
+@pytest.mark.parametrize("case", cases(lambda case: "bounds" in case))
+def test_published_bounds(case):
+    steps = steps_of(case)
+    assert {
+        "davare07": davare.reaction_time(steps),
+        "duerr19_mrt": duerr.reaction_time(steps),
+        "duerr19_mrda": duerr.reduced_data_age(steps),
+        "kloda18_mrt": kloda.reaction_time(steps),
+        "bi22_mrda": bi.reduced_data_age(steps),
+        "becker17_response_times_mrda": becker.reduced_data_age(steps),
+        "becker17_no_information_mrda": becker.reduced_data_age_without_information(steps),
+        "hamann17_let": hamann.reaction_time(steps),
+    } == case["bounds"]
+
+
+def logically(periods, offsets=None):
+    cycle = lcm(*periods)
+    offsets = offsets or [0] * len(periods)
+    tracks = [logical.track(period, offset, cycle) for period, offset in zip(periods, offsets, strict=True)]
+    return job_chains.follow(tracks, max(offsets))
+
+
+@pytest.mark.parametrize("case", cases())
+def test_logical_execution_times(case):
+    steps = steps_of(case)
+    found = logically([step.period for step in steps], [step.offset for step in steps])
+    assert {"mrt": found.reaction_time, "mda": found.data_age, "mrda": int(found.last_to_last.max())} == case["let"]
+
+
+class TestTheChallengeOf2017:
+    """Three chains of the model, by hand and by the programs of the published solutions; in microseconds."""
+
+    def figures(self):
+        path = SHARED / "vectors" / "waters2017.json"
+        if not path.exists():
+            pytest.skip("the figures of the challenge are not at hand")
+        return {chain["name"]: chain for chain in json.loads(path.read_text())["chains"]}
+
+    def test_logical_execution_times(self):
+        known = {"EffectChain_1": [10000, 10000], "EffectChain_2": [100000, 10000, 2000]}
+        for name, chain in self.figures().items():
+            for variant, expected in chain["LET_exact_us"].items():
+                _, _, period = variant.partition("=")
+                periods = known.get(name) or [int(period), 2000, 50000]
+                found = logically(periods)
+                assert expected == {
+                    "max_reaction": found.reaction_time,
+                    "max_reaction_without_sampling": found.first_to_first.max(),
+                    "max_data_age_L2L": found.last_to_last.max(),
+                    "max_data_age_until_replaced": found.data_age,
+                    "min_forward": found.first_to_first.min(),
+                }, (name, variant)
+
+
+# Brute force: jobs with random execution times, played through moment by moment.
+
+ROWS = st.lists(
+    st.tuples(st.sampled_from([4, 6, 8, 12]), st.integers(1, 3), st.integers(0, 2), st.integers(0, 7)), min_size=2, max_size=4
+)
+
+
+def drawn(rows):
+    tasks = [
+        Released(name=str(index), period=period, offset=offset, cost=Cost.constant(cost, max(1, cost - less)), priority=-index)
+        for index, (period, cost, less, offset) in enumerate(rows)
+    ]
+    assume(sum(task.cost.mean_worst / task.period for task in tasks) <= 1)
+    return tasks
+
+
+def observe(tasks, chain, until, random):
+    """The latencies of a chain in one run: reads and writes of all jobs, then each value followed on its way."""
+    costs = {}
+
+    def cost_of(cost, job):
+        return costs.setdefault((id(cost), job), random.randint(cost.best, cost.worst))
+
+    waiting, found = [], {task.name: [] for task in tasks}
+    for now in range(until):
+        for task in tasks:
+            if now >= task.offset and (now - task.offset) % task.period == 0:
+                number = (now - task.offset) // task.period
+                waiting.append([-task.priority, now, task.name, cost_of(task.cost, number), None])
+        if waiting:
+            job = min(waiting, key=lambda job: job[:2])
+            job[4] = now if job[4] is None else job[4]
+            job[3] -= 1
+            if not job[3]:
+                waiting.remove(job)
+                found[job[2]].append((job[4], now + 1))
+    tracks = [found[name] for name in chain]
+    return forward(tracks), backward(tracks)
+
+
+def forward(tracks):
+    """(read before, read, end) of each job of the first task."""
+    first, *others = tracks
+    for (before, _), (read, written) in pairwise(first):
+        end = written
+        for track in others:
+            end = next((write for start, write in track if start >= end), None)
+            if end is None:
+                break
+        if end is not None:
+            yield before, read, end
+
+
+def backward(tracks):
+    """(read, write, next write) of each job of the last task."""
+    *others, last = tracks
+    for (read, write), (_, behind) in pairwise(last):
+        start = read
+        for track in reversed(others):
+            start = next((begin for begin, end in reversed(track) if end <= start), None)
+            if start is None:
+                break
+        if start is not None:
+            yield start if others else read, write, behind
+
+
+@settings(max_examples=150)
+@given(rows=ROWS, data=st.data())
+def test_no_run_is_worse_than_a_bound(rows, data):
+    tasks = drawn(rows)
+    names = [task.name for task in tasks]
+    chain = data.draw(st.permutations(names).map(lambda order: order[: data.draw(st.integers(1, len(names)))]))
+    found = follow(tasks, chain)
+    responses = levels.response_times(
+        [Task(name=t.name, arrivals=Periodic(t.period), cost=t.cost, priority=t.priority) for t in tasks]
+    )
+    by_name = {task.name: (task, response.worst) for task, response in zip(tasks, responses, strict=True)}
+    steps = [
+        Step(
+            period=by_name[name][0].period,
+            response=by_name[name][1],
+            offset=by_name[name][0].offset,
+            hurries=then is not None and by_name[name][0].priority > by_name[then][0].priority,
+        )
+        for name, then in zip(chain, [*chain[1:], None], strict=True)
+    ]
+    reactions = [found.reaction_time, davare.reaction_time(steps)]
+    ages = [int(found.last_to_last.max())]
+    if all(step.response <= step.period for step in steps):
+        reactions += [duerr.reaction_time(steps), kloda.reaction_time(steps)]
+        ages += [duerr.reduced_data_age(steps), becker.reduced_data_age(steps)]
+        if len({step.offset for step in steps}) == 1:
+            ages.append(bi.reduced_data_age(steps))
+    for seed in range(3):
+        reacting, ageing = observe(tasks, chain, 150, Random(seed))
+        settled = max(task.offset + task.period for task in tasks)
+        for before, read, end in reacting:
+            if before >= settled:
+                assert end - before <= min(reactions)
+                assert end - read <= found.first_to_first.max()
+        for read, write, behind in ageing:
+            if read >= settled:
+                assert behind - read <= found.data_age
+                assert write - read <= min(ages)
+
+
+@given(rows=ROWS, data=st.data())
+def test_constant_execution_times_are_exact(rows, data):
+    tasks = drawn([(period, cost, 0, offset) for period, cost, _, offset in rows])
+    names = [task.name for task in tasks]
+    chain = data.draw(st.permutations(names).map(lambda order: order[: data.draw(st.integers(1, len(names)))]))
+    found = follow(tasks, chain)
+    reacting, ageing = observe(tasks, chain, 400, Random(0))
+    reacting = [(before, read, end) for before, read, end in reacting if before >= 100]
+    ageing = [(read, write, behind) for read, write, behind in ageing if read >= 100]
+    assert found.reaction_time == max(end - before for before, _, end in reacting)
+    assert found.data_age == max(behind - read for read, _, behind in ageing)
+    # Reaction time and data age are the same, whatever the schedule (Günzel and others 2023).
+    assert found.reaction_time == found.data_age
+    assert {*found.first_to_first.tolist()} == {end - read for _, read, end in reacting}
+    assert {*found.last_to_last.tolist()} == {write - read for read, write, _ in ageing}
+    outputs = {}
+    for read, write, _ in ageing:
+        outputs.setdefault(read, []).append(write)
+    inputs = sorted(outputs)[1:-2]
+    assert {*found.inputs.last_to_first.tolist()} == {outputs[read][0] - read for read in inputs}
+    before = dict(zip(sorted(outputs)[1:], sorted(outputs), strict=False))
+    assert {*found.inputs.first_to_last.tolist()} == {outputs[read][-1] - before[read] for read in inputs}
+    # Events that come at any moment alike: the mean over many of them.
+    moments = np.linspace(reacting[0][0], reacting[0][0] + 2 * schedule.hyperperiod(tasks), 4001)[:-1] + 1e-9
+    reactions = [next(end for before, read, end in reacting if before < moment <= read) - moment for moment in moments]
+    assert found.mean_reaction_time == pytest.approx(np.mean(reactions), rel=1e-3)
