@@ -60,20 +60,27 @@ class ProcessResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RequirementResult:
-    """A requirement with what became of it; the margin is positive if it is met."""
+    """A requirement or a constraint with what became of it; the margin is positive if it is met.
+
+    Attributes
+    ----------
+    limit : None where something else than a time is demanded
+    reason : why it is unknown
+    """
 
     name: str
     object: str
     quantity: str
     is_upper: bool
-    limit: Time
+    limit: Time | None
     value: Time | None
     verdict: Verdict
+    reason: str = ""
 
     @property
     def margin(self) -> Time | None:
         """How much is left; negative: how much is too much."""
-        if self.value is None:
+        if self.value is None or self.limit is None:
             return None
         return self.limit - self.value if self.is_upper else self.value - self.limit
 

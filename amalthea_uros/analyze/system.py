@@ -8,6 +8,7 @@ from fractions import Fraction
 from amalthea_uros.analyze.blocking import preemption
 from amalthea_uros.analyze.chains import phases
 from amalthea_uros.analyze.chains.evaluate import Evaluation
+from amalthea_uros.analyze.chains.judge import Judge
 from amalthea_uros.analyze.chains.result import ChainResult
 from amalthea_uros.analyze.core import responses_on
 from amalthea_uros.analyze.known import Known
@@ -33,8 +34,10 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     _note_left_out(known, responses)
     limits = upper_response_limits(system)
     processes = tuple(_process(name, known, responses.get(name), limits) for name in system.processes)
-    chains = tuple(_chains(known, responses))
-    requirements = tuple(judge(system, {process.name: process for process in processes}, known.notes))
+    evaluation = Evaluation(known, responses)
+    chains = tuple(_chains(evaluation))
+    judged = judge(system, {process.name: process for process in processes}, known.notes)
+    requirements = (*judged, *Judge(evaluation, {chain.name: chain for chain in chains}).all())
     return Analysis(
         processors=tuple(_processors(known)),
         processes=processes,
@@ -45,9 +48,9 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     )
 
 
-def _chains(known: Known, responses: Mapping[str, Response]) -> Iterator[ChainResult]:
+def _chains(evaluation: Evaluation) -> Iterator[ChainResult]:
     """The chains, with all phases of the counters at which they start, if that is wanted."""
-    evaluation = Evaluation(known, responses)
+    known = evaluation.known
     for chain in known.system.events.chains:
         found = evaluation.chain(chain)
         if known.settings.any_phase and found.values:

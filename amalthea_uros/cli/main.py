@@ -12,8 +12,9 @@ from amalthea_uros import __version__
 
 #: Command -> what `amuros --help` says of it; the module of the same name holds the rest.
 COMMANDS = {
-    "analyze": "Compute response times, loads and verdicts.",
+    "analyze": "Compute response times, loads, latencies of chains, and verdicts.",
     "build": "Build a model from an app.yaml.",
+    "chains": "List the paths from one process to another, with their latencies.",
     "diff": "Compare two models by meaning.",
     "fmt": "Rewrite models in canonical form.",
     "info": "Show what is in a model.",

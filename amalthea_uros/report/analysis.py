@@ -119,8 +119,8 @@ def _requirements(terminal: Terminal, analysis: Analysis) -> None:
     rows = [
         (
             requirement.name,
-            f"{requirement.quantity} of {requirement.object}",
-            ("at most " if requirement.is_upper else "at least ") + time_text(requirement.limit),
+            f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity,
+            _limit(requirement),
             _time(requirement.value),
             requirement.verdict,
             _margin(requirement),
@@ -130,8 +130,14 @@ def _requirements(terminal: Terminal, analysis: Analysis) -> None:
     terminal.table(("requirement", "what", "limit", "value", "verdict", "margin"), rows, right=(3, 5))
 
 
+def _limit(requirement: RequirementResult) -> str:
+    if requirement.limit is None:
+        return "-"
+    return ("at most " if requirement.is_upper else "at least ") + time_text(requirement.limit)
+
+
 def _margin(requirement: RequirementResult) -> str:
-    return "" if requirement.margin is None else time_text(requirement.margin)
+    return requirement.reason if requirement.margin is None else time_text(requirement.margin)
 
 
 def _sensitivity(terminal: Terminal, found: Sensitivity | None) -> None:
@@ -221,6 +227,7 @@ def write_json(
                 "value_ps": requirement.value,
                 "margin_ps": requirement.margin,
                 "verdict": requirement.verdict,
+                "reason": requirement.reason,
             }
             for requirement in analysis.requirements
         ],

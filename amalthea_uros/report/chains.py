@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import IO, Any
 
+from amalthea_uros.analyze.chains.paths import Path
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
 from amalthea_uros.analyze.chains.result import ChainResult
 from amalthea_uros.analyze.result import Analysis
@@ -75,3 +76,18 @@ def chain_json(chain: ChainResult, all_methods: bool) -> dict[str, Any]:
             for value in (chain.everything if all_methods else chain.values)
         ],
     }
+
+
+def write_paths(paths: Sequence[Path], chains: Sequence[ChainResult], stream: IO[str]) -> None:
+    """Paths with their numbers and latencies."""
+    terminal = Terminal(stream)
+    rows = []
+    for number, (path, chain) in enumerate(zip(paths, chains, strict=True), start=1):
+        first, *others = path.processes
+        text = first + "".join(
+            f" -[{', '.join(carriers)}]-> {process}" for carriers, process in zip(path.carriers, others, strict=True)
+        )
+        values = [chain.value(_COLUMNS[column]) for column in ("min", "max", "data age")]
+        claims = dict.fromkeys(str(value.claim) for value in values if value is not None)
+        rows.append((number, *map(_time, values), chain.reason or ", ".join(claims), text))
+    terminal.table(("", "min", "max", "data age", "", "path"), rows, right=(0, 1, 2, 3))

@@ -34,8 +34,23 @@ def test_the_machine_readable_result(path, tmp_path):
             "value_ps": 29_000_000,
             "margin_ps": 971_000_000,
             "verdict": "met",
-        }
+            "reason": "",
+        },
+        {
+            "name": "factor-to-output_reaction",
+            "object": "factor-to-output",
+            "quantity": "reaction",
+            "limit_ps": 25 * 10**9,
+            "value_ps": 2_016_000_000,
+            "margin_ps": 22_984_000_000,
+            "verdict": "met",
+            "reason": "",
+        },
     ]
+    (chain,) = result["chains"]
+    assert (chain["name"], chain["communication"]) == ("factor-to-output", "as modelled")
+    values = {value["quantity"]: (value["value_ps"], value["claim"]) for value in chain["values"]}
+    assert values["max_reduced_reaction_time"] == (2_016_000_000, "exact")
 
 
 def test_a_missed_requirement(tmp_path):
@@ -43,7 +58,7 @@ def test_a_missed_requirement(tmp_path):
     path.write_text(ADVANCED.read_text().replace("response_time: 1 ms", "response_time: 20 us"))
     run = amuros("analyze", path)
     assert run.returncode == 1
-    assert "at most 20 us  29 us  missed    -9 us" in run.stdout
+    assert "at most 20 us     29 us  missed       -9 us" in run.stdout
     # What is missed comes first.
     assert run.stdout.index("Control_Function  Core_0") < run.stdout.index("Executor_Task")
 
@@ -119,3 +134,23 @@ def test_proposed_priorities(tmp_path):
     run = amuros("analyze", path, "--assign-priorities")
     assert run.returncode == 1
     assert "  Fast    1         2\n  Slow    2         1\n" in run.stdout, run.stdout + run.stderr
+
+
+def test_a_chain():
+    run = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--any-phase")
+    assert run.returncode == 0
+    assert "Executor_Task_start -[data memory_1]-> Message_Factor_finish -[data memory_2]->" in run.stdout
+    assert "max reduced reaction time    20.029 ms  exact" in run.stdout
+    assert "Davare" not in run.stdout
+    every = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--method", "all")
+    assert "sum of periods and response times (Davare and others 2007)" in every.stdout
+    assert "there is no chain 'x'" in amuros("analyze", ADVANCED, "--chain", "x").stderr
+
+
+def test_a_chain_that_is_too_slow(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text(ADVANCED.read_text().replace("reaction: 25 ms", "reaction: 2 ms"))
+    run = amuros("analyze", path)
+    assert run.returncode == 1
+    assert "reaction of factor-to-output" in run.stdout
+    assert "missed" in run.stdout

@@ -14,7 +14,7 @@ from amalthea_uros.analyze.chains.stages import Stage, hop_text, stages
 from amalthea_uros.analyze.chains.timing import Timed, Timing, UntimedError
 from amalthea_uros.analyze.known import Known
 from amalthea_uros.analyze.task import Claim, Response
-from amalthea_uros.perf.events import EventChain
+from amalthea_uros.perf.events import Event, EventChain
 from amalthea_uros.perf.hardware import StructureKind
 from amalthea_uros.perf.system import System
 
@@ -37,9 +37,12 @@ class Evaluation:
     def chain(self, chain: EventChain) -> ChainResult:
         """One chain."""
         how = str(self.known.settings.communication or "as modelled")
+        known_events = self.known.system.events_by_name
         try:
             unfolded, left_out = unfold(chain, self.known.system)
-            by_events = {events: self.resolver.routes(events) for events in sequences(unfolded)}
+            by_events = {
+                events: self.resolver.routes([known_events[name] for name in events]) for events in sequences(unfolded)
+            }
         except (UnfoldError, UnresolvedError) as error:
             self.known.notes.warning("CHN001", f"the chain {chain.name!r} is not evaluated: {error}", chain)
             return ChainResult(name=chain.name, communication=how, reason=str(error))
@@ -68,6 +71,16 @@ class Evaluation:
         return ChainResult(
             name=chain.name, communication=how, routes=told, values=tightest, everything=tuple(everything), reason=reason
         )
+
+    def pair(self, first: Event, then: Event) -> tuple[Value, ...]:
+        """The tightest values from one event to another, whether there is a chain between them or not.
+
+        Raises
+        ------
+        UnresolvedError, UntimedError : nothing is known of them.
+        """
+        found = self.resolver.routes([first, then])
+        return _tightest(_worst_of([self._route(route) for route in found]))
 
     def _note_gaps(self, chain: EventChain, routes: Sequence[Route]) -> None:
         for route in routes:

@@ -136,7 +136,7 @@ def _inputs(tracks: Sequence[Track], start: Time, cycle: Time, length: Time) -> 
     first_outputs = outputs[first_of]
     reads = first.reads[jobs]
     # Without the ones at both ends, of which not all outputs are there.
-    here = np.flatnonzero((reads[1:-1] >= start - length // 2) & (reads[1:-1] < start - length // 2 + cycle)) + 1
+    here = np.flatnonzero((reads[1:-1] >= start) & (reads[1:-1] < start + cycle)) + 1
     return Inputs(
         reads=reads[here],
         reads_before=reads[here - 1],

@@ -41,7 +41,8 @@ def _counted_start(chain: EventChain, system: System) -> Place | None:
     """Where a chain starts in some jobs only."""
     try:
         events = sequences(unfold(chain, system)[0])[0]
-        first = stages(Resolver(system).routes(events)[0], None)[0]
+        routes = Resolver(system).routes([system.events_by_name[name] for name in events])
+        first = stages(routes[0], None)[0]
     except (UnfoldError, UnresolvedError):
         return None
     for place in first.places:

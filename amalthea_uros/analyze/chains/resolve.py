@@ -140,20 +140,21 @@ class Resolver:
     guesses: dict[str, str] = field(default_factory=dict)
     _places: dict[str, list[Place]] = field(default_factory=dict)
 
-    def routes(self, events: Sequence[str]) -> list[Route]:
+    def routes(self, events: Sequence[Event]) -> list[Route]:
         """The ways that a sequence of events can mean, those with the fewest gaps.
 
         Raises
         ------
         UnresolvedError : an event is not found, or there is no analysis for it.
         """
-        choices = [self._spots(self.system.events_by_name[name]) for name in events]
+        choices = [self.spots(event) for event in events]
         count = 1
         for choice in choices:
             count *= len(choice)
         if count > MOST_CANDIDATES:
             raise UnresolvedError("its events fit too many processes; they should name theirs")
-        found = [self._route(tuple(events), spots) for spots in product(*choices)]
+        names = tuple(event.name for event in events)
+        found = [self._route(names, spots) for spots in product(*choices)]
         fewest = min(route.gaps for route in found)
         return [route for route in found if route.gaps == fewest]
 
@@ -162,7 +163,13 @@ class Resolver:
 
     # Events
 
-    def _spots(self, event: Event) -> list[Spot]:
+    def spots(self, event: Event) -> list[Spot]:
+        """Where an event occurs.
+
+        Raises
+        ------
+        UnresolvedError : it is not found, or there is no analysis for it.
+        """
         found = list(self._all_spots(event)) or self._guess(event)
         if not found:
             raise UnresolvedError(f"nothing in the model makes the event {event.name!r} occur")

@@ -1,0 +1,67 @@
+"""A chain added to a model that was read, without touching the rest of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypeVar
+
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.model import Model
+from amalthea_uros.perf.events import Event, EventChain, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent, Segment
+from amalthea_uros.perf.events import Sequence as InSequence
+
+_PROCESS = {
+    ProcessChange.START: am.ProcessEventType.START,
+    ProcessChange.TERMINATE: am.ProcessEventType.TERMINATE,
+}
+_RUNNABLE = {
+    RunnableChange.START: am.RunnableEventType.START,
+    RunnableChange.TERMINATE: am.RunnableEventType.TERMINATE,
+}
+
+T = TypeVar("T", bound=am.BaseObject)
+
+
+def add_chain(model: Model, chain: EventChain, events: Sequence[Event]) -> None:
+    """Add a sequence of events of processes and runnables; events that the model has already are used.
+
+    Raises
+    ------
+    ValueError : the model has a chain of that name.
+    """
+    if model.find(am.EventChain, chain.name) is not None:
+        raise ValueError(f"the model has a chain {chain.name!r} already")
+    root = model.root
+    if root.event_model is None:
+        root.event_model = am.EventModel()
+    if root.constraints_model is None:
+        root.constraints_model = am.ConstraintsModel()
+    found: dict[str, am.Event] = {}
+    for event in events:
+        known = model.find(am.Event, event.name)
+        if known is None:
+            known = _event(model, event)
+            root.event_model.events.append(known)
+        found[event.name] = known
+    made = am.EventChain(name=chain.name, stimulus=found[chain.stimulus or ""], response=found[chain.response or ""])
+    if isinstance(chain.items, InSequence):
+        made.item_type = am.EventChainItemType.SEQUENCE
+        for item in chain.items.items:
+            assert isinstance(item, Segment)
+            part = am.SubEventChain(stimulus=found[item.stimulus or ""], response=found[item.response or ""])
+            made.items.append(am.EventChainContainer(event_chain=part))
+    root.constraints_model.event_chains.append(made)
+
+
+def _event(model: Model, event: Event) -> am.Event:
+    match event:
+        case ProcessEvent(name=name, process=str(process), change=change) if change in _PROCESS:
+            return am.ProcessEvent(name=name, entity=model[am.Process, process], event_type=_PROCESS[change])
+        case RunnableEvent(name=name, runnable=str(runnable), change=change, process=str(process)) if change in _RUNNABLE:
+            return am.RunnableEvent(
+                name=name,
+                entity=model[am.Runnable, runnable],
+                event_type=_RUNNABLE[change],
+                process=model[am.Process, process],
+            )
+    raise AssertionError(f"no event of a path: {event}")
