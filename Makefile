@@ -12,6 +12,7 @@ demo: $(READY)
 	$(BIN)/amuros build samples/bodas-test-advanced.yaml -o build/app.amxmi
 	$(BIN)/amuros info --schema build/app.amxmi
 	$(BIN)/amuros analyze build/app.amxmi
+	$(BIN)/amuros analyze build/app.amxmi --chain factor-to-output --any-phase
 	sed 's/rate: 50 Hz/rate: 100 Hz/' samples/bodas-test-advanced.yaml > build/faster.yaml
 	$(BIN)/amuros build build/faster.yaml -o build/faster.amxmi
 	$(BIN)/amuros diff build/app.amxmi build/faster.amxmi || true
@@ -34,12 +35,14 @@ gen: $(READY)
 	for sample in samples/*.yaml; do $(BIN)/amuros build $$sample --output json=/dev/null; done
 	$(BIN)/python tools/draw_terminal.py docs/images/info.svg info executor.amxmi
 	$(BIN)/python tools/draw_terminal.py docs/images/build.svg build bodas-test-advanced.yaml
+	$(BIN)/python tools/draw_quantities.py docs/images
 
 bench: $(READY)
 	$(BIN)/python -m pip install --quiet --editable '.[bench]'
 	$(BIN)/python benchmarks/load_save.py
 	$(BIN)/python benchmarks/build.py
 	$(BIN)/python benchmarks/response_times.py
+	$(BIN)/python benchmarks/chains.py
 
 # The pages are Markdown; their examples are executed and their output is compared.
 docs: $(READY)

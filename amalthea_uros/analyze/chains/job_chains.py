@@ -103,8 +103,8 @@ class Followed:
         return self.writes - self.starts
 
 
-def follow(tracks: Sequence[Track], settled: Time) -> Followed:
-    """Follow all jobs of one cycle.
+def follow(tracks: Sequence[Track], settled: Time) -> Followed | None:
+    """Follow all jobs of one cycle; None if that is too much work.
 
     Parameters
     ----------
@@ -114,7 +114,10 @@ def follow(tracks: Sequence[Track], settled: Time) -> Followed:
     cycle, length = lcm(*(track.cycle for track in tracks)), reach(tracks)
     # A cycle so far behind the settled time that chains which end in it, and those which end a little before, start behind that.
     start = settled + 2 * length
-    whole = [track.extended(start + cycle + 2 * length) for track in tracks]
+    until = start + cycle + 2 * length
+    if sum(len(track.releases) * (until // track.until) for track in tracks) > MOST_JOBS:
+        return None
+    whole = [track.extended(until) for track in tracks]
     first, last = whole[0], whole[-1]
     begin = _jobs_in(first, start, start + cycle)
     end = _jobs_in(last, start, start + cycle)
@@ -143,13 +146,6 @@ def _inputs(tracks: Sequence[Track], start: Time, cycle: Time, length: Time) -> 
         first_writes=last.writes[first_outputs[here]],
         last_writes=last.writes[first_outputs[here + 1] - 1],
     )
-
-
-def worth(tracks: Sequence[Track], settled: Time) -> bool:
-    """Whether following is not too much work."""
-    cycle, length = lcm(*(track.cycle for track in tracks)), reach(tracks)
-    time = settled + cycle + 4 * length
-    return sum(len(track.releases) * time // track.until for track in tracks) <= MOST_JOBS
 
 
 def _jobs_in(track: Track, begin: Time, end: Time) -> Numbers:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from amalthea_uros.analyze.chains import becker, bi, davare, duerr, job_chains, kloda
+from amalthea_uros.analyze.chains import becker, bi, davare, duerr, hamann, job_chains, kloda
 from amalthea_uros.analyze.chains.periodic import Step
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
 from amalthea_uros.analyze.chains.timing import Timed, in_picoseconds
@@ -45,6 +45,9 @@ class Methods:
         yield from self._followed()
         steps = [timed.step for part in self.parts for timed in part]
         yield from self._of_periods(steps)
+        if all(timed.is_logical for part in self.parts for timed in part):
+            time = hamann.reaction_time(steps)
+            yield from self._reactions(time, steps[0], "two periods for each step", hamann.SOURCE)
         if len(self.parts) == 1:
             yield from self._of_releases(steps)
 
@@ -158,4 +161,4 @@ def _follow(part: Sequence[Timed], widest: bool) -> Followed | None:
             return None
         tracks.append(track)
     settled = max(timed.settled for timed in part)
-    return job_chains.follow(tracks, settled) if job_chains.worth(tracks, settled) else None
+    return job_chains.follow(tracks, settled)

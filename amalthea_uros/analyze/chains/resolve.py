@@ -139,6 +139,7 @@ class Resolver:
     system: System
     guesses: dict[str, str] = field(default_factory=dict)
     _places: dict[str, list[Place]] = field(default_factory=dict)
+    _named: dict[tuple[str, _NameOf], dict[str, list[Place]]] = field(default_factory=dict)
 
     def routes(self, events: Sequence[Event]) -> list[Route]:
         """The ways that a sequence of events can mean, those with the fewest gaps.
@@ -274,10 +275,24 @@ class Resolver:
                             return Hop(Carrier.TRIGGER, (name,), place)
         return None
 
+    def _accesses(self, spot: Spot, name_of: _NameOf) -> dict[str, list[Place]]:
+        """What is written or read where an event occurs: by the access itself, in its runnable, or anywhere in the process."""
+        key = (spot.process.name, name_of)
+        if key not in self._named:
+            self._named[key] = _by_name(self.places(spot.process.name), name_of)
+        everything = self._named[key]
+        if spot.place is None:
+            return everything
+        if (own := name_of(spot.place)) is not None:
+            return {own: [spot.place]}
+        runnable = spot.place.activity.runnable if isinstance(spot.place.activity, Call) else spot.place.runnable
+        within = [place for place in self.places(spot.process.name) if place.runnable == runnable]
+        return _by_name(within, name_of) or everything
+
     def _data(self, first: Spot, then: Spot) -> Hop | None:
         """The labels and channels that one process writes, behind an event if it can be, and the other one reads."""
-        written = _by_name(_near(first, self.places(first.process.name), _written))
-        read = _by_name(_near(then, self.places(then.process.name), _read))
+        written = self._accesses(first, _written)
+        read = self._accesses(then, _read)
         names = tuple(name for name in written if name in read)
         if not names:
             return None
@@ -331,19 +346,9 @@ def _read(place: Place) -> str | None:
     return None
 
 
-def _near(spot: Spot, within: Sequence[Place], name_of: _NameOf) -> list[tuple[str, Place]]:
-    """What is written or read where an event occurs: by the access itself, in its runnable, or anywhere in the process."""
-    found = [(name, place) for place in within if (name := name_of(place)) is not None]
-    if spot.place is None:
-        return found
-    if (own := name_of(spot.place)) is not None:
-        return [(own, spot.place)]
-    runnable = spot.place.activity.runnable if isinstance(spot.place.activity, Call) else spot.place.runnable
-    return [(name, place) for name, place in found if place.runnable == runnable] or found
-
-
-def _by_name(found: Iterable[tuple[str, Place]]) -> dict[str, list[Place]]:
+def _by_name(within: Iterable[Place], name_of: _NameOf) -> dict[str, list[Place]]:
     by_name: dict[str, list[Place]] = {}
-    for name, place in found:
-        by_name.setdefault(name, []).append(place)
+    for place in within:
+        if (name := name_of(place)) is not None:
+            by_name.setdefault(name, []).append(place)
     return by_name

@@ -6,7 +6,7 @@ bound every other one. Otherwise by releases and response times. Where releases 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -15,18 +15,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze import schedule
-from amalthea_uros.analyze.chains import progress
+from amalthea_uros.analyze.chains import logical
+from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
+from amalthea_uros.analyze.chains.moments import Moments, is_inside, is_logical, kind
 from amalthea_uros.analyze.chains.periodic import Step
-from amalthea_uros.analyze.chains.places import Place
 from amalthea_uros.analyze.chains.resolve import When
-from amalthea_uros.analyze.chains.stages import At, Fire, Moment, Read, Stage, Write
+from amalthea_uros.analyze.chains.stages import At, Fire, Moment, Read, Stage
 from amalthea_uros.analyze.chains.track import Track
 from amalthea_uros.analyze.core import known_releases, released_on
 from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.demand import MOST_GRAINS
 from amalthea_uros.analyze.known import Known
-from amalthea_uros.analyze.schedule import Jobs, Released
 from amalthea_uros.analyze.task import Response
 from amalthea_uros.perf.software import Communication, Process, Trigger
 from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic
@@ -50,6 +49,7 @@ class Timed:
     narrowest : latest reads and earliest writes
     settled : time behind which both repeat
     is_exact : whether both are what happens
+    is_logical : whether only releases and periods decide
     reason : why releases are not known
     """
 
@@ -58,29 +58,8 @@ class Timed:
     narrowest: Track | None = None
     settled: Time = 0
     is_exact: bool = False
+    is_logical: bool = False
     reason: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class CoreSchedule:
-    """The schedules of a core for all worst and all best cases.
-
-    Attributes
-    ----------
-    is_constant : whether both are the same, so that it is what happens
-    """
-
-    tasks: Mapping[str, Released]
-    worst: Mapping[str, Jobs]
-    best: Mapping[str, Jobs]
-    settled: Time
-    cycle: Time
-    is_constant: bool
-
-    @property
-    def until(self) -> Time:
-        """The end of the time that is covered; its last cycle repeats."""
-        return self.settled + self.cycle
 
 
 @dataclass(slots=True)
@@ -90,9 +69,10 @@ class Timing:
     known: Known
     responses: Mapping[str, Response]
     unit: int = field(init=False)
-    _schedules: dict[tuple[str, bool], CoreSchedule | None] = field(default_factory=dict)
+    schedules: CoreSchedules = field(init=False)
 
     def __post_init__(self) -> None:
+        self.schedules = CoreSchedules(self.known)
         unit = lcm(*(self.known.demands.grains(core) for core in self.known.system.cores))
         self.unit = unit if unit <= MOST_GRAINS else 1
 
@@ -117,7 +97,10 @@ class Timing:
             return Timed(step=step, reason=f"the releases of {base.process.name!r} are not known")
         if len(counters) > 1:
             return Timed(step=step, reason=f"it is not known which jobs of {base.process.name!r} take part")
-        timed = self._by_schedule(base, releases) or self._by_response(base, releases)
+        if is_logical(base.enter) and is_logical(base.leave):
+            timed = self._logical(releases)
+        else:
+            timed = self._by_schedule(base, releases) or self._by_response(base, releases)
         assert timed.widest is not None
         assert timed.narrowest is not None
         return replace(
@@ -177,7 +160,7 @@ class Timing:
                 offset += ((counter.offset or counter.prescaler) - 1) * releases.period * self.unit
             period *= counter.prescaler
         response = self._worst(base.process)
-        if _is_logical(base.leave):
+        if is_logical(base.leave):
             if releases is None or response > releases.period * self.unit:
                 raise UntimedError(f"{name!r} does not always end within its period, which logical execution times need")
             response = releases.period * self.unit
@@ -192,7 +175,7 @@ class Timing:
 
     def _hurries(self, base: Stage, follower: Stage | None) -> bool:
         """Whether the jobs of a stage come before those of the next one, which cannot read while they wait or run."""
-        if follower is None or isinstance(base.leave, Fire) or _is_logical(base.leave) or _is_logical(follower.enter):
+        if follower is None or isinstance(base.leave, Fire) or is_logical(base.leave) or is_logical(follower.enter):
             return False
         first, then = self.known.placed.get(base.process.name), self.known.placed.get(follower.process.name)
         if first is None or then is None or first.core != then.core or first.server or then.server or first.rank <= then.rank:
@@ -203,16 +186,21 @@ class Timing:
 
     # Tracks
 
+    def _logical(self, releases: Periodic) -> Timed:
+        period, offset = releases.period * self.unit, releases.offset * self.unit
+        track = logical.track(period, offset, period)
+        return Timed(step=_NO_STEP, widest=track, narrowest=track, settled=offset, is_exact=True, is_logical=True)
+
     def _by_schedule(self, stage: Stage, releases: Periodic) -> Timed | None:
         placed = self.known.placed.get(stage.process.name)
         if placed is None:
             return None
-        found = self._schedule(placed.core, any(map(_is_inside, (stage.enter, stage.leave))))
+        found = self.schedules.of(placed.core, any(map(is_inside, (stage.enter, stage.leave))))
         if found is None:
             return None
         name, period = stage.process.name, found.tasks[stage.process.name].period
-        early = _Moments(self, stage, found.best[name], period, Cost.best_of)
-        late = _Moments(self, stage, found.worst[name], period, Cost.worst_of)
+        early = Moments(self.known, stage, found.best[name], period, Cost.best_of)
+        late = Moments(self.known, stage, found.worst[name], period, Cost.worst_of)
         grains = self.known.demands.grains(placed.core)
 
         def track(reads: Numbers, writes: Numbers) -> Track:
@@ -221,54 +209,26 @@ class Timing:
                 grains,
             )
 
-        is_logical = _is_logical(stage.enter) and _is_logical(stage.leave)
-        certain = all(place.is_certain for place in stage.places) or not any(map(_is_inside, (stage.enter, stage.leave)))
+        certain = all(place.is_certain for place in stage.places) or not any(map(is_inside, (stage.enter, stage.leave)))
         return Timed(
             step=_NO_STEP,
             widest=track(early.at(stage.enter, False), late.at(stage.leave, True)),
             narrowest=track(late.at(stage.enter, True), early.at(stage.leave, False)),
             settled=found.settled * self.unit // grains,
-            is_exact=(found.is_constant or is_logical) and certain,
+            is_exact=found.is_constant and certain,
         )
 
     def _unified(self, track: Track, grains: int) -> Track:
         """A track in the unit that all cores share; rounded outwards where that is too fine."""
         if self.unit % grains == 0:
             factor = self.unit // grains
-            return track if factor == 1 else _scaled(track, factor)
+            return track if factor == 1 else track.scaled(factor)
         return Track(
             releases=track.releases // grains,
             reads=track.reads // grains,
             writes=-(-track.writes // grains),
             cycle=track.cycle // grains,
             until=track.until // grains,
-        )
-
-    def _schedule(self, core: str, with_pieces: bool) -> CoreSchedule | None:
-        key = (core, with_pieces)
-        if key not in self._schedules:
-            self._schedules[key] = self._new_schedule(core, with_pieces)
-        return self._schedules[key]
-
-    def _new_schedule(self, core: str, with_pieces: bool) -> CoreSchedule | None:
-        tasks = released_on(core, self.known)
-        if not tasks:
-            return None
-        cycle, start = schedule.hyperperiod(tasks), schedule.settled(tasks)
-        if not schedule.fits(tasks, start + 2 * cycle):
-            return None
-        watched = [with_pieces] * len(tasks)
-        worst = schedule.schedule(tasks, start + 2 * cycle, Cost.worst_of, watched)
-        is_constant = all(part.worst == part.best for task in tasks for part in task.cost.parts)
-        best = worst if is_constant else schedule.schedule(tasks, start + 2 * cycle, Cost.best_of, watched)
-        names = [task.name for task in tasks]
-        return CoreSchedule(
-            tasks=dict(zip(names, tasks, strict=True)),
-            worst=dict(zip(names, worst, strict=True)),
-            best=dict(zip(names, best, strict=True)),
-            settled=start + cycle,
-            cycle=cycle,
-            is_constant=is_constant,
         )
 
     def _by_response(self, stage: Stage, releases: Periodic) -> Timed:
@@ -282,7 +242,7 @@ class Timing:
         start = max(0, worst - cost.best * self.unit // grains)
 
         def at(moment: Moment, is_late: bool) -> Numbers:
-            match _kind(moment):
+            match kind(moment):
                 case When.ACTIVATION:
                     return times
                 case When.START:
@@ -301,7 +261,6 @@ class Timing:
             widest=track(at(stage.enter, False), at(stage.leave, True)),
             narrowest=track(at(stage.enter, True), at(stage.leave, False)),
             settled=offset,
-            is_exact=_is_logical(stage.enter) and _is_logical(stage.leave),
         )
 
     def _part(self, track: Track, counters: Sequence[Counter], releases: Periodic, hurries: bool, settled: Time) -> Track:
@@ -326,92 +285,8 @@ class Timing:
 _NO_STEP = Step(period=0, response=0)
 
 
-@dataclass(frozen=True, slots=True)
-class _Moments:
-    """The moments of the jobs of a stage in a schedule."""
-
-    timing: Timing
-    stage: Stage
-    jobs: Jobs
-    period: Time
-    cost_of: Callable[[Cost, int], Time]
-
-    def at(self, moment: Moment, is_late: bool) -> Numbers:
-        jobs = self.jobs
-        match _kind(moment):
-            case When.ACTIVATION:
-                return jobs.releases
-            case When.START:
-                return jobs.begins
-            case When.END:
-                return jobs.ends
-            case None:
-                return jobs.releases + self.period
-        place = moment.spot.place if isinstance(moment, At) else moment.place
-        assert place is not None
-        if not place.is_certain:
-            return jobs.ends if is_late else jobs.begins
-        if _kind(moment) is When.BEFORE:
-            return progress.before(jobs, self._executed(place, with_place=False))
-        return progress.behind(jobs, self._executed(place, with_place=True))
-
-    def _executed(self, place: Place, with_place: bool) -> Numbers:
-        """How much each job has executed before a place, or behind it."""
-        process, known = self.stage.process, self.timing.known
-        core = known.placed[process.name].core
-        before = (*place.before, place.activity) if with_place else place.before
-        cost = known.demands.piece(process, before, core)
-        table = schedule.table(cost, self.cost_of)
-        lead = len(table) - schedule.cycle(cost)
-        index = np.arange(len(self.jobs.releases))
-        at = np.where(index < lead, index, lead + (index - lead) % schedule.cycle(cost))
-        found: Numbers = np.array(table, dtype=np.int64)[at]
-        return found
-
-
-def _kind(moment: Moment) -> When | None:
-    """At what a moment is; None: at the end of the period."""
-    match moment:
-        case Read(communication=Communication.LET):
-            return When.ACTIVATION
-        case Read(communication=Communication.EXPLICIT, place=Place()):
-            return When.BEFORE
-        case Read():
-            return When.START
-        case Write(communication=Communication.LET):
-            return None
-        case Write(communication=Communication.EXPLICIT, place=Place()) | Fire(place=Place()):
-            return When.BEHIND
-        case Write() | Fire():
-            return When.END
-        case At(communication=Communication.LET, is_end=is_end):
-            return None if is_end else When.ACTIVATION
-        case At(spot=spot):
-            return spot.when
-    return When.END
-
-
-def _is_inside(moment: Moment) -> bool:
-    """Whether a moment lies within a job, where only its pieces tell when that is."""
-    return _kind(moment) in (When.BEFORE, When.BEHIND)
-
-
-def _is_logical(moment: Moment) -> bool:
-    return not isinstance(moment, Fire) and moment.communication is Communication.LET
-
-
 def _later(track: Track, behind: Time) -> Track:
     return replace(track, writes=track.writes + behind) if behind else track
-
-
-def _scaled(track: Track, factor: int) -> Track:
-    return Track(
-        releases=track.releases * factor,
-        reads=track.reads * factor,
-        writes=track.writes * factor,
-        cycle=track.cycle * factor,
-        until=track.until * factor,
-    )
 
 
 def in_picoseconds(value: Fraction | Time, unit: int, is_upper: bool) -> Time:

@@ -37,6 +37,17 @@ class Track:
     until: Time
     hurries: bool = False
 
+    def scaled(self, factor: int) -> Track:
+        """The same in a unit of time that is smaller by a factor."""
+        return Track(
+            releases=self.releases * factor,
+            reads=self.reads * factor,
+            writes=self.writes * factor,
+            cycle=self.cycle * factor,
+            until=self.until * factor,
+            hurries=self.hurries,
+        )
+
     def extended(self, until: Time) -> Track:
         """The same for a longer time."""
         rounds = -(-(until - self.until) // self.cycle)

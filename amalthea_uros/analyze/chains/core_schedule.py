@@ -1,0 +1,76 @@
+"""The schedules of the cores of a system, each constructed once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from amalthea_uros.analyze import schedule
+from amalthea_uros.analyze.core import released_on
+from amalthea_uros.analyze.cost import Cost
+from amalthea_uros.analyze.known import Known
+from amalthea_uros.analyze.schedule import Jobs, Released
+from amalthea_uros.units import Time
+
+
+@dataclass(frozen=True, slots=True)
+class CoreSchedule:
+    """The schedules of a core for all worst and all best cases.
+
+    Attributes
+    ----------
+    is_constant : whether both are the same, so that it is what happens
+    """
+
+    tasks: Mapping[str, Released]
+    worst: Mapping[str, Jobs]
+    best: Mapping[str, Jobs]
+    settled: Time
+    cycle: Time
+    is_constant: bool
+
+    @property
+    def until(self) -> Time:
+        """The end of the time that is covered; its last cycle repeats."""
+        return self.settled + self.cycle
+
+
+@dataclass(slots=True)
+class CoreSchedules:
+    """The schedules of all cores."""
+
+    known: Known
+    _found: dict[tuple[str, bool], CoreSchedule | None] = field(default_factory=dict)
+
+    def of(self, core: str, with_pieces: bool) -> CoreSchedule | None:
+        """That of a core; None if it is not known, or too long.
+
+        Parameters
+        ----------
+        with_pieces : whether the pieces of jobs are needed
+        """
+        key = (core, with_pieces)
+        if key not in self._found:
+            self._found[key] = self._new(core, with_pieces)
+        return self._found[key]
+
+    def _new(self, core: str, with_pieces: bool) -> CoreSchedule | None:
+        tasks = released_on(core, self.known)
+        if not tasks:
+            return None
+        cycle, start = schedule.hyperperiod(tasks), schedule.settled(tasks)
+        if not schedule.fits(tasks, start + 2 * cycle):
+            return None
+        watched = [with_pieces] * len(tasks)
+        worst = schedule.schedule(tasks, start + 2 * cycle, Cost.worst_of, watched)
+        is_constant = all(part.worst == part.best for task in tasks for part in task.cost.parts)
+        best = worst if is_constant else schedule.schedule(tasks, start + 2 * cycle, Cost.best_of, watched)
+        names = [task.name for task in tasks]
+        return CoreSchedule(
+            tasks=dict(zip(names, tasks, strict=True)),
+            worst=dict(zip(names, worst, strict=True)),
+            best=dict(zip(names, best, strict=True)),
+            settled=start + cycle,
+            cycle=cycle,
+            is_constant=is_constant,
+        )
