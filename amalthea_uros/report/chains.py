@@ -46,8 +46,8 @@ def write_chain(analysis: Analysis, name: str, all_methods: bool, stream: IO[str
     terminal.line(f"{terminal.style(name, '1')}, communication {chain.communication}")
     for route in chain.routes:
         terminal.line(f"  {route}")
-    if chain.reason:
-        terminal.line(f"  {chain.reason}")
+    for sentence in filter(None, (chain.why, chain.reason)):
+        terminal.line(f"  {sentence}")
     values = chain.everything if all_methods else chain.values
     if values:
         ordered = sorted(values, key=lambda value: list(Quantity).index(value.quantity))
@@ -64,6 +64,7 @@ def chain_json(chain: ChainResult, all_methods: bool) -> dict[str, Any]:
         "name": chain.name,
         "communication": chain.communication,
         "routes": list(chain.routes),
+        "why": chain.why,
         "reason": chain.reason,
         "values": [
             {

@@ -48,7 +48,7 @@ def test_the_machine_readable_result(path, tmp_path):
         },
     ]
     (chain,) = result["chains"]
-    assert (chain["name"], chain["communication"]) == ("factor-to-output", "as modelled")
+    assert (chain["name"], chain["communication"]) == ("factor-to-output", "implicit")
     values = {value["quantity"]: (value["value_ps"], value["claim"]) for value in chain["values"]}
     assert values["max_reduced_reaction_time"] == (2_016_000_000, "exact")
 

@@ -10,7 +10,7 @@ from amalthea_uros.analyze.chains.methods import Methods
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
 from amalthea_uros.analyze.chains.resolve import Carrier, Resolver, Route, UnresolvedError
 from amalthea_uros.analyze.chains.result import ChainResult
-from amalthea_uros.analyze.chains.stages import Stage, hop_text, stages
+from amalthea_uros.analyze.chains.stages import Stage, communication_of, hop_text, stages
 from amalthea_uros.analyze.chains.timing import Timed, Timing, UntimedError
 from amalthea_uros.analyze.known import Known
 from amalthea_uros.analyze.task import Claim, Response
@@ -36,7 +36,6 @@ class Evaluation:
 
     def chain(self, chain: EventChain) -> ChainResult:
         """One chain."""
-        how = str(self.known.settings.communication or "as modelled")
         known_events = self.known.system.events_by_name
         try:
             unfolded, left_out = unfold(chain, self.known.system)
@@ -45,7 +44,7 @@ class Evaluation:
             }
         except (UnfoldError, UnresolvedError) as error:
             self.known.notes.warning("CHN001", f"the chain {chain.name!r} is not evaluated: {error}", chain)
-            return ChainResult(name=chain.name, communication=how, reason=str(error))
+            return ChainResult(name=chain.name, communication="", reason=str(error))
         for event in left_out:
             message = f"the chain {chain.name!r} does not start or end with {event!r}, as a part of it does; that is left out"
             self.known.notes.warning("CHN005", message, chain)
@@ -53,12 +52,16 @@ class Evaluation:
             message = f"nothing in the model makes the event {event!r} occur; it is taken to do so {guess}"
             self.known.notes.warning("CHN004", message, self.known.system.events_by_name[event])
         self._note_gaps(chain, [route for found in by_events.values() for route in found])
+        every = [route for found in by_events.values() for route in found]
+        how = communication_of(stage for route in every for stage in stages(route, self.known.settings.communication))
         told = tuple(_route_text(route) for found in by_events.values() for route in found)
         values: dict[tuple[str, ...], list[Value]] = {}
-        reason = ""
+        reason = why = ""
         for events, found in by_events.items():
             try:
-                values[events] = _worst_of([self._route(route) for route in found])
+                methods = [self._methods(route) for route in found]
+                values[events] = _worst_of([list(method.values()) for method in methods])
+                why = why or methods[0].why
             except UntimedError as error:
                 reason = str(error)
                 values[events] = []
@@ -69,7 +72,13 @@ class Evaluation:
         if reason:
             self.known.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {reason}", chain)
         return ChainResult(
-            name=chain.name, communication=how, routes=told, values=tightest, everything=tuple(everything), reason=reason
+            name=chain.name,
+            communication=how,
+            routes=told,
+            values=tightest,
+            everything=tuple(everything),
+            why=why,
+            reason=reason,
         )
 
     def pair(self, first: Event, then: Event) -> tuple[Value, ...]:
@@ -80,7 +89,7 @@ class Evaluation:
         UnresolvedError, UntimedError : nothing is known of them.
         """
         found = self.resolver.routes([first, then])
-        return _tightest(_worst_of([self._route(route) for route in found]))
+        return _tightest(_worst_of([list(self._methods(route).values()) for route in found]))
 
     def _note_gaps(self, chain: EventChain, routes: Sequence[Route]) -> None:
         for route in routes:
@@ -92,7 +101,7 @@ class Evaluation:
                     )
                     self.known.notes.warning("CHN002", message, chain)
 
-    def _route(self, route: Route) -> list[Value]:
+    def _methods(self, route: Route) -> Methods:
         found = stages(route, self.known.settings.communication)
         timed = [self.timing.group(group, follower) for group, follower in _with_followers(_groups(found))]
         parts: list[list[Timed]] = []
@@ -103,7 +112,7 @@ class Evaluation:
                 parts.append([])
             parts[-1].append(each)
             before = controller
-        return list(Methods(parts, self.timing.unit, route.gaps == 0).values())
+        return Methods(parts, self.timing.unit, route.gaps == 0)
 
     def _controller(self, stage: Stage) -> str:
         placed = self.known.placed.get(stage.process.name)

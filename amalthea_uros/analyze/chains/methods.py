@@ -40,6 +40,22 @@ class Methods:
     unit: int
     is_certain: bool
 
+    @property
+    def why(self) -> str:
+        """Why the tightest values are what they are."""
+        everything = [timed for part in self.parts for timed in part]
+        reason = next((timed.reason for timed in everything if timed.reason), "")
+        if reason:
+            return f"bounds: {reason}"
+        if len(self.parts) > 1:
+            return "bounds: the clocks of the controllers are not synchronized"
+        if not self.is_certain:
+            return "bounds: nothing carries the effect at some point"
+        varying = next((timed.step.name for timed in everything if not timed.is_exact), None)
+        if varying is not None:
+            return f"bounds: execution times around {varying!r} vary, or it is not certain when it is served"
+        return "exact: all releases are known, and execution times are constant or do not matter"
+
     def values(self) -> Iterator[Value]:
         """All of them."""
         yield from self._followed()

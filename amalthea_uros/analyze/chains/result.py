@@ -16,6 +16,7 @@ class ChainResult:
     routes : for people: events, and what carries the effect between them
     values : the tightest of each quantity
     everything : those of all methods
+    why : why they are exact, or bounds
     reason : why there are no values, or some are missing
     """
 
@@ -24,6 +25,7 @@ class ChainResult:
     routes: tuple[str, ...] = ()
     values: tuple[Value, ...] = ()
     everything: tuple[Value, ...] = ()
+    why: str = ""
     reason: str = ""
 
     def value(self, quantity: Quantity) -> Value | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.places import Place
@@ -98,6 +99,15 @@ def _stated(place: Place | None, communication: Communication | None) -> Communi
     access = place.activity if place is not None else None
     stated = access.communication if isinstance(access, LabelAccess) else None
     return communication or stated or Communication.IMPLICIT
+
+
+def communication_of(found: Iterable[Stage]) -> str:
+    """How stages communicate, in a word."""
+    moments = [moment for stage in found for moment in (stage.enter, stage.leave)]
+    stated = {moment.communication for moment in moments if isinstance(moment, Read | Write)}
+    ends = {moment.communication for moment in moments if isinstance(moment, At)}
+    kinds = stated or ends
+    return str(next(iter(kinds))).lower() if len(kinds) == 1 else "mixed"
 
 
 def hop_text(hop: Hop) -> str:

@@ -22,7 +22,7 @@ from amalthea_uros.analyze.chains.periodic import Step
 from amalthea_uros.analyze.chains.resolve import When
 from amalthea_uros.analyze.chains.stages import At, Fire, Moment, Read, Stage
 from amalthea_uros.analyze.chains.track import Track
-from amalthea_uros.analyze.core import known_releases, released_on
+from amalthea_uros.analyze.core import known_releases
 from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.demand import MOST_GRAINS
 from amalthea_uros.analyze.known import Known
@@ -91,7 +91,10 @@ class Timing:
         behind = sum(self._worst(stage.process) for stage in triggered)
         least = sum(self._least(stage) for stage in triggered)
         counters = self._counters(stages)
-        step = self._step(base, behind, counters, self._hurries(base, follower) and not triggered)
+        hurries = self._hurries(base, follower) and not triggered
+        step = self._step(base, behind, counters, hurries)
+        # A job does not read what it is still to write itself, although it is released before it reads.
+        hurries = hurries and follower is not None and follower.process.name != base.process.name
         releases = known_releases(base.process, self.known.system)
         if releases is None:
             return Timed(step=step, reason=f"the releases of {base.process.name!r} are not known")
@@ -106,7 +109,7 @@ class Timing:
         return replace(
             timed,
             step=step,
-            widest=self._part(_later(timed.widest, behind), counters, releases, step.hurries, timed.settled),
+            widest=self._part(_later(timed.widest, behind), counters, releases, hurries, timed.settled),
             narrowest=self._part(_later(timed.narrowest, least), counters, releases, False, timed.settled),
             is_exact=timed.is_exact and not triggered,
         )
@@ -178,11 +181,12 @@ class Timing:
         if follower is None or isinstance(base.leave, Fire) or is_logical(base.leave) or is_logical(follower.enter):
             return False
         first, then = self.known.placed.get(base.process.name), self.known.placed.get(follower.process.name)
+        if base.process.name == follower.process.name:
+            return True  # the next job reads when this one has ended
         if first is None or then is None or first.core != then.core or first.server or then.server or first.rank <= then.rank:
             return False
-        # Where the reader cannot always be interrupted, it may have started before, and read while the writer waits.
-        reads_at_start = isinstance(follower.enter, Read) and follower.enter.communication is Communication.IMPLICIT
-        return reads_at_start or bool(released_on(first.core, self.known))
+        # Elsewhere than at its start a reader may be about to read just when the writer is released.
+        return isinstance(follower.enter, Read) and follower.enter.communication is Communication.IMPLICIT
 
     # Tracks
 
