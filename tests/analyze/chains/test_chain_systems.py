@@ -27,6 +27,8 @@ from amalthea_uros.perf.events import (
     RunnableChange,
     RunnableEvent,
     Segment,
+    SemaphoreChange,
+    SemaphoreEvent,
     Sequence,
     StimulusEvent,
 )
@@ -40,9 +42,12 @@ from amalthea_uros.perf.software import (
     Demand,
     Execute,
     LabelAccess,
+    Preemption,
     RaiseEvent,
     Receive,
     Runnable,
+    SemaphoreAccess,
+    SemaphoreOperation,
     Send,
     Software,
     Task,
@@ -329,6 +334,39 @@ class TestWhatCarries:
         # 2, and 3 behind another job of the source that may come in between.
         assert values["max_reduced_reaction_time"] == 2 + 3 + 2
 
+    def test_a_frame_on_a_bus(self):
+        # A bus is a core whose frames are tasks that nothing interrupts: the frame waits for a longer one of lower priority.
+        tasks = [
+            ("sensor", 10, [ticks(1), write("raw")], "one"),
+            ("frame", 10, [read("raw"), ticks(2), write("received")], "bus"),
+            ("other frame", 20, [ticks(5)], "bus"),
+            ("actuator", 10, [read("received"), ticks(1)], "two"),
+        ]
+        built = system(tasks, [at("sensor", START), at("frame", END), at("actuator", END)], cores=("one", "bus", "two"))
+        frames = tuple(
+            replace(task, preemption=Preemption.NON_PREEMPTIVE) if "frame" in task.name else task
+            for task in built.software.tasks
+        )
+        chain, values, claims, _ = evaluate(replace(built, software=replace(built.software, tasks=frames)))
+        assert chain.routes == ("sensor start -[data raw]-> frame terminate -[data received]-> actuator terminate",)
+        assert claims == {"bound"}
+        # Written at 1; read by the frame of 10, which is there by 17; used by the actuator of 20, out at 21.
+        assert values["max_reduced_reaction_time"] == 21
+
+    def test_a_critical_section(self):
+        section = [
+            SemaphoreAccess(semaphore="S", operation=SemaphoreOperation.REQUEST),
+            ticks(2),
+            SemaphoreAccess(semaphore="S", operation=SemaphoreOperation.RELEASE),
+        ]
+        events = (
+            SemaphoreEvent(name="locked", semaphore="S", change=SemaphoreChange.LOCK),
+            SemaphoreEvent(name="unlocked", semaphore="S", change=SemaphoreChange.UNLOCK),
+        )
+        chain, values, _, _ = evaluate(system([("A", 10, [ticks(1), *section])], events))
+        assert chain.routes == ("locked -[the same job]-> unlocked",)
+        assert 2 <= values["max_reduced_reaction_time"] <= 3
+
     def test_nothing(self):
         tasks = [("A", 10, [ticks(1)]), ("B", 10, [ticks(1)])]
         chain, values, claims, rules = evaluate(system(tasks, [at("A", START), at("B", END)]))
@@ -428,6 +466,18 @@ class TestForms:
         start, middle, end = self.names()
         both = EventSet(name="both", events=(middle, end))
         _, values, _, _ = self.evaluate(EventChain(name="c", stimulus=start, response="both"), more=(both,))
+        assert values["max_reduced_reaction_time"] == 20
+
+    def test_a_set_at_the_start_and_in_between(self):
+        start, middle, end = self.names()
+        both = EventSet(name="both", events=(start, middle))
+        chain, values, _, _ = self.evaluate(EventChain(name="c", stimulus="both", response=end), more=(both,))
+        # Once both have occurred it cannot take longer than from the first one.
+        assert len(chain.routes) == 2
+        assert values["max_reduced_reaction_time"] == 20
+        items = Sequence((Segment(stimulus=start, response="both"), Segment(stimulus="both", response=end)))
+        inner, values, _, _ = self.evaluate(EventChain(name="c", stimulus=start, response=end, items=items), more=(both,))
+        assert inner.routes
         assert values["max_reduced_reaction_time"] == 20
 
     def test_gaps_between_segments(self):

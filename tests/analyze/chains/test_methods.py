@@ -167,6 +167,29 @@ class TestTheChallengeOf2017:
                     "min_forward": found.first_to_first.min(),
                 }, (name, variant)
 
+    def test_bounds(self):
+        path = SHARED / "vectors" / "waters2017.json"
+        chains = self.figures()
+        tasks = {task["name"]: task for task in json.loads(path.read_text())["tasks"]}
+        variant = "unimore_300MHz_nomem"
+        for chain in chains.values():
+            names = chain["task_sequence_for_analysis"]
+            steps = [
+                Step(
+                    period=round(tasks[name]["max_interarrival_us"] * 1000),
+                    response=round(tasks[name]["wcrt_us"][variant] * 1000),
+                    # A task comes before its own next job, and before those of lower priority on its core.
+                    hurries=then is not None
+                    and tasks[name]["core"] == tasks[then]["core"]
+                    and tasks[name]["priority"] >= tasks[then]["priority"],
+                )
+                for name, then in zip(names, [*names[1:], None], strict=True)
+            ]
+            expected = chain["implicit_bounds"][variant]
+            assert davare.reaction_time(steps) == pytest.approx(expected["davare2007_us"] * 1000, abs=1)
+            assert duerr.reaction_time(steps) == pytest.approx(expected["duerr2019_max_reaction_us"] * 1000, abs=1)
+            assert duerr.reduced_data_age(steps) == pytest.approx(expected["duerr2019_max_data_age_us"] * 1000, abs=1)
+
 
 # Brute force: jobs with random execution times, played through moment by moment.
 
