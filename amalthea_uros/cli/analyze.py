@@ -12,6 +12,7 @@ from typing import Any
 import click
 
 from amalthea_uros.analyze.assignment import propose
+from amalthea_uros.analyze.explanation import shares
 from amalthea_uros.analyze.sensitivity import sensitivity
 from amalthea_uros.analyze.settings import Memory, Settings
 from amalthea_uros.analyze.system import analyze_system
@@ -129,7 +130,7 @@ def command(
         if output.format == "json":
             output.write(partial(write_json, analysis, extras, paths, findings, method == "all"))
         elif explain is not None:
-            output.write(partial(write_explanation, analysis, explain))
+            output.write(partial(write_explanation, analysis, explain, shares(system, settings, explain)))
         elif chain is not None:
             output.write(partial(write_chain, analysis, chain, method == "all"))
         else:

@@ -12,6 +12,7 @@ from typing import IO, Any
 
 from amalthea_uros import __version__
 from amalthea_uros.analyze.assignment import Proposal
+from amalthea_uros.analyze.explanation import Share
 from amalthea_uros.analyze.result import Analysis, ProcessorResult, ProcessResult, RequirementResult, Verdict
 from amalthea_uros.analyze.sensitivity import GREATEST, Sensitivity
 from amalthea_uros.diagnostics import Finding
@@ -174,8 +175,8 @@ def _methods(terminal: Terminal, analysis: Analysis) -> None:
             terminal.line(f"  {method}")
 
 
-def write_explanation(analysis: Analysis, name: str, stream: IO[str]) -> None:
-    """What the response time of a process is made of."""
+def write_explanation(analysis: Analysis, name: str, shares: Sequence[Share], stream: IO[str]) -> None:
+    """What the response time of a process is made of, and whose jobs interfere."""
     terminal = Terminal(stream)
     process = next(process for process in analysis.processes if process.name == name)
     response = process.response
@@ -188,6 +189,9 @@ def write_explanation(analysis: Analysis, name: str, stream: IO[str]) -> None:
     terminal.line(f"{terminal.style(name, '1')}: worst-case response time {time_text(response.worst)} ({response.claim})")
     terms = [(term, time_text(value)) for term, value in response.terms.items() if value]
     terminal.table(("made of", ""), [*terms, ("sum", time_text(response.worst))], right=(1,))
+    if shares:
+        rows = [(share.name, share.jobs, time_text(share.time)) for share in shares]
+        terminal.table(("interference by", "jobs", "time"), rows, right=(1, 2))
     terminal.line(f"  {response.method} ({response.source}), {response.jobs} jobs looked at")
 
 

@@ -154,3 +154,15 @@ def test_a_chain_that_is_too_slow(tmp_path):
     assert run.returncode == 1
     assert "reaction of factor-to-output" in run.stdout
     assert "missed" in run.stdout
+
+
+def test_whose_jobs_interfere():
+    run = amuros("analyze", ROOT / "samples" / "drive-and-lift.yaml", "--explain", "Control_Speed")
+    lines = {line.split()[0]: line.split()[1:] for line in run.stdout.splitlines() if line.startswith("  ") and line.split()}
+    # What the processes above it take adds up to the interference.
+    assert lines["own"] == ["140", "us"]
+    shares = {name: lines[name] for name in ("Executor_Task", "Task_5ms", "CAN_Receive", "Wheel_Pulse")}
+    times = [float(text) for _, text, _ in shares.values()]
+    assert round(sum(times), 1) == float(lines["interference"][0])
+    exact = amuros("analyze", ADVANCED, "--explain", "Control_Function")
+    assert "  Executor_Task       1  25 us" in exact.stdout
