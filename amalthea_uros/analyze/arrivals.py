@@ -265,10 +265,21 @@ class Behind(Arrivals):
         if count < 2:
             return 0
         if count not in self._spans:
-            ends = enumerate(self.completions, start=1)
-            earliest = min(self.arrivals.span(job + count - 1) - end for job, end in ends) + self.least
-            self._spans[count] = max((count - 1) * self.least, earliest)
+            self._spans[count] = max((count - 1) * self.least, self._earliest(count) + self.least)
         return self._spans[count]
+
+    def _earliest(self, count: int) -> Time:
+        """The least time from the latest end of a job to the earliest arrival of the one that is so many behind."""
+        if isinstance(self.arrivals, Periodic) and not self.arrivals.jitter:
+            # All distances are the same.
+            return self.arrivals.span(count) - self._latest
+        ends = enumerate(self.completions, start=1)
+        return min(self.arrivals.span(job + count - 1) - end for job, end in ends)
+
+    @cached_property
+    def _latest(self) -> Time:
+        """The longest response time."""
+        return max(end - self.arrivals.span(job) for job, end in enumerate(self.completions, start=1))
 
     @cached_property
     def _spans(self) -> dict[int, Time]:

@@ -9,7 +9,7 @@ the first jobs of a system may run before others have started.
 from __future__ import annotations
 
 from amalthea_uros.analyze.busy_window import Interference
-from amalthea_uros.analyze.kernel import least_response
+from amalthea_uros.analyze.kernel import LIMIT, least_response
 from amalthea_uros.analyze.task import Task
 from amalthea_uros.units import Time
 
@@ -21,4 +21,6 @@ def best_response(task: Task, higher: Interference) -> Time:
         return own
     # No fixed point lies above: there R is at most C + rate * R.
     start = int(own / (1 - higher.best_rate)) + 1
+    if start > LIMIT:
+        return own
     return least_response(own, start, rows.periods, rows.best, higher.count)

@@ -63,7 +63,8 @@ def _rows(task: Task) -> list[tuple[tuple[int, int, int], int, int]]:
     is_certain = not arrivals.jitter and not arrivals.sporadic
     return [
         (
-            (arrivals.period * part.prescaler, arrivals.jitter, arrivals.distance * part.prescaler),
+            # Beyond the limit there are no windows; to take arrivals for closer than they are is safe.
+            (min(arrivals.period * part.prescaler, LIMIT), arrivals.jitter, min(arrivals.distance * part.prescaler, LIMIT)),
             part.worst,
             part.best if is_certain else 0,
         )

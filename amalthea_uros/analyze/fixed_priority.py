@@ -12,6 +12,7 @@ For tasks that cannot be interrupted see `non_preemptive`.
 
 from __future__ import annotations
 
+from amalthea_uros.analyze.arrivals import Periodic
 from amalthea_uros.analyze.best_case import best_response
 from amalthea_uros.analyze.busy_window import Interference, demand_rate
 from amalthea_uros.analyze.task import Claim, Response, Task
@@ -21,6 +22,8 @@ METHOD = "busy window, fixed priorities, preemptive"
 SOURCE = "Lehoczky 1990; Tindell, Burns, Wellings 1994"
 #: Busy windows with more jobs are given up; the load is then so near to 1 that the result would mean nothing.
 MOST_JOBS = 20_000
+#: Where arrivals are irregular each job is more work, and longer windows make what they trigger still more irregular.
+MOST_IRREGULAR_JOBS = 1000
 
 
 def response_time(
@@ -38,7 +41,8 @@ def response_time(
     worst, worst_window, worst_job = -1, 0, 0
     window = 0
     completions: list[Time] = []
-    for job in range(1, MOST_JOBS):
+    most = most_jobs(task)
+    for job in range(1, most):
         found = higher.window(blocking + task.cost.most(job), window if job > 1 else start)
         if found is None:
             break
@@ -66,8 +70,13 @@ def response_time(
                 },
             )
             return response, completions[0]
-    reason = f"its busy window has more than {MOST_JOBS:,} jobs: the demand up to this priority fills the processor"
+    reason = f"its busy window has more than {most:,} jobs: the demand up to this priority fills the processor"
     return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason), start
+
+
+def most_jobs(*tasks: Task) -> int:
+    """How many jobs of busy windows are looked at."""
+    return MOST_JOBS if all(isinstance(task.arrivals, Periodic) for task in tasks) else MOST_IRREGULAR_JOBS
 
 
 def unbounded(best: Time, higher: Interference, task: Task, method: str, source: str) -> Response:

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from amalthea_uros.analyze.busy_window import Interference
-from amalthea_uros.analyze.fixed_priority import unbounded
+from amalthea_uros.analyze.fixed_priority import most_jobs, unbounded
 from amalthea_uros.analyze.kernel import LIMIT, MOST_STEPS
 from amalthea_uros.analyze.task import Claim, Response, Sharing, Task
 from amalthea_uros.units import Time
@@ -24,8 +24,6 @@ METHODS = {
     Sharing.DEADLINE: "busy window, earliest deadline first",
 }
 SOURCE = "Spuri 1996"
-#: Longer busy windows are given up.
-MOST_ARRIVALS = 20_000
 
 
 def response_time(task: Task, others: Sequence[Task], higher: Interference, blocking: Time = 0) -> Response:
@@ -41,9 +39,10 @@ def response_time(task: Task, others: Sequence[Task], higher: Interference, bloc
     if together.overloads_with(task):
         return unbounded(task.cost.best, together, task, method, SOURCE)
     window = Interference.of([*higher.tasks, *level], higher.supply).window(blocking, 0)
-    arrivals = sorted(set(_arrivals(task, level, window))) if window is not None else []
-    if not arrivals or len(arrivals) > MOST_ARRIVALS:
-        reason = f"more than {MOST_ARRIVALS:,} arrivals in its busy window: the demand fills the processor"
+    most = most_jobs(*level)
+    arrivals = sorted(set(_arrivals(task, level, window, most))) if window is not None else []
+    if not arrivals or len(arrivals) > most:
+        reason = f"more than {most:,} arrivals in its busy window: the demand fills the processor"
         return Response(worst=None, best=task.cost.best, method=method, source=SOURCE, reason=reason)
     ends = [(_end(task, arrival, others, higher, blocking), arrival) for arrival in arrivals]
     if any(end > LIMIT for end, _ in ends):
@@ -63,12 +62,12 @@ def response_time(task: Task, others: Sequence[Task], higher: Interference, bloc
     )
 
 
-def _arrivals(task: Task, level: Iterable[Task], window: Time) -> Iterator[Time]:
+def _arrivals(task: Task, level: Iterable[Task], window: Time, most: int) -> Iterator[Time]:
     """Where in the busy window an arrival of the task may be the worst one."""
     yield 0
     for other in level:
         later = other.deadline - task.deadline
-        for count in range(1, MOST_ARRIVALS + 2):
+        for count in range(1, most + 2):
             arrival = other.arrivals.span(count) + later
             if arrival >= window:
                 break

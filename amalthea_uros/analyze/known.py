@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import groupby
 
-from amalthea_uros.analyze.arrivals import Arrivals
+from amalthea_uros.analyze.arrivals import Arrivals, Periodic
 from amalthea_uros.analyze.blocking import semaphores_of
 from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.demand import Demands
+from amalthea_uros.analyze.kernel import LIMIT
 from amalthea_uros.analyze.notes import Notes, UnknownDemandError
 from amalthea_uros.analyze.placement import Placed, Placement, Server, UnplacedError
 from amalthea_uros.analyze.propagation import Propagation, UnknownArrivalsError
@@ -19,6 +20,9 @@ from amalthea_uros.analyze.settings import Settings
 from amalthea_uros.analyze.task import Response
 from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.system import System
+
+#: Sums of some such times still fit into 64 bits.
+LONGEST = LIMIT // 64
 
 
 @dataclass
@@ -30,6 +34,7 @@ class Known:
     costs : in grains of the core
     decisions : what a scheduler takes to decide at the arrival of a task, where that is stated; the same again at its end is in `costs`
     reasons : why the response time of a process is not known
+    unsettled : processes whose response time and arrivals make each other grow
     disturbed : (core, whether by interrupts) -> who may run there in a way for which there is no analysis
     """
 
@@ -42,6 +47,7 @@ class Known:
     decisions: dict[str, Cost] = field(default_factory=dict)
     arrivals: dict[str, Arrivals] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
+    unsettled: set[str] = field(default_factory=set)
     disturbed: dict[tuple[str, bool], str] = field(default_factory=dict)
 
     @cached_property
@@ -93,6 +99,8 @@ class Known:
                     decision = demands.decision(scheduler, placed.core)
                     self.decisions[name] = decision
                     cost = Cost((*cost.parts, *decision.parts))
+                if cost.worst > LONGEST:
+                    raise UnknownDemandError("it takes longer than can be counted")
                 self.costs[name] = cost
             except UnknownDemandError as error:
                 self.notes.warning("ANA004", f"the demand of {name!r} is not known: {error}", placed.process)
@@ -114,8 +122,13 @@ class Known:
         """Find the arrivals of each process, given the response times so far."""
         self.arrivals = {}
         for name, placed in self.placed.items():
+            if name in self.unsettled:
+                continue
             try:
-                self.arrivals[name] = propagation.arrivals(placed.process, responses)
+                arrivals = propagation.arrivals(placed.process, responses)
+                if isinstance(arrivals, Periodic) and arrivals.jitter * self.demands.grains(placed.core) > LONGEST:
+                    raise UnknownArrivalsError("its jitter is longer than can be counted")
+                self.arrivals[name] = arrivals
             except UnknownArrivalsError as error:
                 self.notes.warning("ANA005", f"the arrivals of {name!r} are not known: {error}", placed.process)
                 self.give_up(name, str(error))

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from amalthea_uros.analyze.busy_window import Interference
-from amalthea_uros.analyze.fixed_priority import MOST_JOBS, unbounded
+from amalthea_uros.analyze.fixed_priority import most_jobs, unbounded
 from amalthea_uros.analyze.task import Claim, Response, Task
 from amalthea_uros.units import Time
 
@@ -53,9 +53,10 @@ def response_time(
     others, interrupting = Interference.of(higher), Interference.of(always)
     if others.overloads_with(task):
         return unbounded(task.cost.best, others, task, METHOD, SOURCE)
+    most = most_jobs(task)
     period = Interference.of([*higher, task]).window(blocking, 0)
-    if period is None or (jobs := task.arrivals.most(period)) > MOST_JOBS:
-        reason = f"its busy period has more than {MOST_JOBS:,} jobs: the demand up to this priority fills the capacity"
+    if period is None or (jobs := task.arrivals.most(period)) > most:
+        reason = f"its busy period has more than {most:,} jobs: the demand up to this priority fills the capacity"
         return Response(worst=None, best=task.cost.best, method=METHOD, source=SOURCE, reason=reason)
     completions: list[Time] = []
     start = 0

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from amalthea_uros.analyze.busy_window import Interference, demand_rate
-from amalthea_uros.analyze.fixed_priority import MOST_JOBS, unbounded
+from amalthea_uros.analyze.fixed_priority import most_jobs, unbounded
 from amalthea_uros.analyze.kernel import LIMIT, MOST_STEPS
 from amalthea_uros.analyze.task import Claim, Response, Task
 from amalthea_uros.units import Time
@@ -29,7 +29,7 @@ def response_time(task: Task, others: Sequence[Task], higher: Interference, bloc
     if _overloads(task, others, higher):
         return unbounded(task.cost.best, Interference.of([*higher.tasks, *others], higher.supply), task, METHOD, SOURCE)
     completions: list[Time] = []
-    for job in range(1, MOST_JOBS):
+    for job in range(1, most_jobs(task)):
         end = _end(task, job, others, higher, blocking)
         if end > LIMIT:
             break

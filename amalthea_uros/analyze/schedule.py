@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from amalthea_uros.analyze.cost import Cost
-from amalthea_uros.analyze.kernel import Whole, dispatch
+from amalthea_uros.analyze.kernel import LIMIT, Whole, dispatch
 from amalthea_uros.analyze.task import Claim, Response
 from amalthea_uros.units import Time
 
@@ -130,7 +130,7 @@ def settled(tasks: Sequence[Released]) -> Time:
 
 def fits(tasks: Sequence[Released], until: Time) -> bool:
     """Whether a schedule up to a time is worth it, and exists: no more is demanded than served."""
-    if sum(until // task.period + 1 for task in tasks) > MOST_JOBS:
+    if until > LIMIT or sum(until // task.period + 1 for task in tasks) > MOST_JOBS:
         return False
     return sum(task.cost.mean_worst / task.period for task in tasks) <= 1
 

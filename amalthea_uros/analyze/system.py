@@ -23,8 +23,9 @@ from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
 
-#: Rounds of propagation; irregularity that still grows then will not stop.
+#: Rounds of propagation, and jobs of busy windows in all of them; irregularity that still grows then will not stop.
 MOST_ROUNDS = 100
+MOST_JOBS = 50_000
 
 
 def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
@@ -73,18 +74,32 @@ def respond(known: Known) -> dict[str, Response]:
     """All response times, computed as often as they change the arrivals of others."""
     least = {name: cost.best // known.demands.grains(known.placed[name].core) for name, cost in known.costs.items()}
     propagation = Propagation(known.system, least, known.reasons)
+    while True:
+        responses, growing = _settle(known, propagation)
+        if not growing:
+            return responses
+        # Without those that do not settle, and what comes behind them, the others may.
+        known.unsettled |= growing
+        for name in growing:
+            known.give_up(name, "its response time and the arrivals of what it triggers make each other grow without an end")
+
+
+def _settle(known: Known, propagation: Propagation) -> tuple[dict[str, Response], set[str]]:
+    """Response times that fit to the arrivals, and the processes for which there are none."""
     responses: dict[str, Response] = {}
-    for _ in range(MOST_ROUNDS):
+    work = 0
+    for number in range(MOST_ROUNDS):
         before = responses
         known.find_arrivals(propagation, before)
         responses = {}
         for core in known.system.cores:
             responses |= responses_on(core, known)
         if responses == before:
-            return responses
-    for name in responses:
-        known.give_up(name, "response times and arrivals do not settle")
-    return {}
+            return responses, set()
+        work += sum(response.jobs for response in responses.values())
+        if number and work > MOST_JOBS:
+            break
+    return {}, {name for name, response in responses.items() if response != before.get(name)}
 
 
 def _note_settings(settings: Settings, notes: Notes) -> None:

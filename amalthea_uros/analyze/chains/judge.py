@@ -224,6 +224,8 @@ class Judge:
             early, late = self._window(spot)
             offset = releases.offset % releases.period
             windows.append((offset + early, offset + late))
+        if not windows:
+            raise _UnknownError("it names no events")
         if len(periods) > 1:
             raise _UnknownError("its events have different periods, so that not each of them has a partner")
         return max(late for _, late in windows) - min(early for early, _ in windows)
