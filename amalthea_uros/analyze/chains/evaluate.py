@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from amalthea_uros.analyze.chains.expand import Unfolded, UnfoldError, combined, sequences, unfold
 from amalthea_uros.analyze.chains.methods import Methods
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.resolve import Carrier, Resolver, Route, UnresolvedError
+from amalthea_uros.analyze.chains.resolve import Carrier, Resolver, Route
 from amalthea_uros.analyze.chains.result import ChainResult
+from amalthea_uros.analyze.chains.spots import UnresolvedError
 from amalthea_uros.analyze.chains.stages import Stage, communication_of, hop_text, stages
 from amalthea_uros.analyze.chains.timing import Timed, Timing, UntimedError
 from amalthea_uros.analyze.known import Known
@@ -48,7 +49,7 @@ class Evaluation:
         for event in left_out:
             message = f"the chain {chain.name!r} does not start or end with {event!r}, as a part of it does; that is left out"
             self.known.notes.warning("CHN005", message, chain)
-        for event, guess in self.resolver.guesses.items():
+        for event, guess in self.resolver.spots.guesses.items():
             message = f"nothing in the model makes the event {event!r} occur; it is taken to do so {guess}"
             self.known.notes.warning("CHN004", message, self.known.system.events_by_name[event])
         self._note_gaps(chain, [route for found in by_events.values() for route in found])

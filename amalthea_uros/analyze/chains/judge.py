@@ -11,10 +11,12 @@ from dataclasses import dataclass
 
 from amalthea_uros.analyze.arrivals import Arrivals, Periodic
 from amalthea_uros.analyze.chains.evaluate import Evaluation
+from amalthea_uros.analyze.chains.order import in_order
 from amalthea_uros.analyze.chains.places import Place
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.resolve import Carrier, Spot, UnresolvedError, When
+from amalthea_uros.analyze.chains.resolve import Carrier
 from amalthea_uros.analyze.chains.result import ChainResult
+from amalthea_uros.analyze.chains.spots import Spot, UnresolvedError, When
 from amalthea_uros.analyze.chains.timing import UntimedError
 from amalthea_uros.analyze.core import known_releases
 from amalthea_uros.analyze.result import RequirementResult, Verdict
@@ -28,7 +30,6 @@ from amalthea_uros.perf.constraints import (
     LatencyKind,
     Matching,
     OrderConstraint,
-    Ordering,
     RepetitionConstraint,
 )
 from amalthea_uros.perf.events import Event, EventSet, LabelChange, LabelEvent
@@ -140,11 +141,11 @@ class Judge:
     def _data_age(self, constraint: DataAgeConstraint) -> Iterator[RequirementResult]:
         """From each write of the runnable to the reads that still see it."""
         written = LabelEvent(name="write", label=constraint.label, change=LabelChange.WRITE, runnable=constraint.runnable)
-        (spot, *_) = self.evaluation.resolver.spots(written)
+        (spot, *_) = self.evaluation.resolver.spots.of(written)
         readers = {
             place.process.name
             for process in self.evaluation.known.system.processes
-            for place in self.evaluation.resolver.places(process)
+            for place in self.evaluation.resolver.spots.places(process)
             if _reads(place, constraint.label) and process != spot.process.name
         }
         releases = known_releases(spot.process, self.evaluation.known.system)
@@ -188,7 +189,7 @@ class Judge:
             yield self._upper(constraint, constraint.event, "jitter", constraint.jitter, value)
 
     def _spot(self, name: str) -> Spot:
-        spots = self.evaluation.resolver.spots(self._event(name))
+        spots = self.evaluation.resolver.spots.of(self._event(name))
         if len(spots) > 1:
             raise _UnknownError(f"the event {name!r} occurs in several places")
         if any(counter.prescaler > 1 for counter in (spots[0].place.counters if spots[0].place else ())):
@@ -237,12 +238,12 @@ class Judge:
         for process in constraint.processes or tuple(self.evaluation.known.system.processes):
             called = [
                 place.activity.runnable
-                for place in self.evaluation.resolver.places(process)
+                for place in self.evaluation.resolver.spots.places(process)
                 if isinstance(place.activity, Call) and len(place.outer) == 1
             ]
             if not any(name in called for name in wanted):
                 continue
-            holds = _in_order(called, constraint)
+            holds = in_order(called, constraint)
             yield RequirementResult(
                 name=constraint.name,
                 object=process,
@@ -316,24 +317,3 @@ def _longest(arrivals: Arrivals, count: int) -> Time | None:
 def _reads(place: Place, label: str) -> bool:
     access = place.activity
     return isinstance(access, LabelAccess) and access.label == label and access.kind is AccessKind.READ
-
-
-def _in_order(called: Sequence[str], constraint: OrderConstraint) -> bool:
-    """Whether groups follow each other, once each runnable; within a group any order is right."""
-    members = [set(group) for group in constraint.groups]
-    position = [next((i for i, group in enumerate(members) if name in group), None) for name in called]
-    found = [(i, number) for i, number in enumerate(position) if number is not None]
-    numbers = [number for _, number in found]
-    if numbers != sorted(numbers) or len(found) != sum(map(len, members)):
-        return False
-    if constraint.ordering is Ordering.SUCCESSOR:
-        return True
-    first, last = found[0][0], found[-1][0]
-    if last - first + 1 != len(found):
-        return False
-    match constraint.ordering:
-        case Ordering.IMMEDIATE_AT_START:
-            return first == 0
-        case Ordering.IMMEDIATE_AT_END:
-            return last == len(called) - 1
-    return True

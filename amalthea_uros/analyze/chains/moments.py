@@ -11,7 +11,7 @@ import numpy as np
 from amalthea_uros.analyze import schedule
 from amalthea_uros.analyze.chains import progress
 from amalthea_uros.analyze.chains.places import Place
-from amalthea_uros.analyze.chains.resolve import When
+from amalthea_uros.analyze.chains.spots import When
 from amalthea_uros.analyze.chains.stages import At, Fire, Moment, Read, Stage, Write
 from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.known import Known

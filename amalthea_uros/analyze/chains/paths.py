@@ -99,7 +99,7 @@ def _ends(name: str, system: System, resolver: Resolver, kind: AccessKind) -> li
     """The processes of a name, those that call a runnable, or those that access a label."""
     if name in system.processes:
         return [(name, None)]
-    everything = [place for process in system.processes for place in resolver.places(process)]
+    everything = [place for process in system.processes for place in resolver.spots.places(process)]
     if name in system.runnables:
         return [(p.process.name, name) for p in everything if isinstance(p.activity, Call) and p.activity.runnable == name]
     if name in system.labels:
@@ -127,11 +127,11 @@ def _graph(system: System, resolver: Resolver) -> nx.DiGraph:
     for name, process in system.processes.items():
         for stimulus in process.stimuli:
             activated.setdefault(stimulus, []).append(name)
-        for place in resolver.places(name):
+        for place in resolver.spots.places(name):
             if (read := _accesses(place, AccessKind.READ)) is not None:
                 readers.setdefault(read, []).append(name)
     for name in system.processes:
-        for place in resolver.places(name):
+        for place in resolver.spots.places(name):
             written = _accesses(place, AccessKind.WRITE)
             targets = readers.get(written, []) if written is not None else []
             carrier = written or ""

@@ -12,8 +12,9 @@ from dataclasses import replace
 from amalthea_uros.analyze.chains.expand import UnfoldError, sequences, unfold
 from amalthea_uros.analyze.chains.places import Place
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.resolve import Resolver, UnresolvedError
+from amalthea_uros.analyze.chains.resolve import Resolver
 from amalthea_uros.analyze.chains.result import ChainResult
+from amalthea_uros.analyze.chains.spots import UnresolvedError
 from amalthea_uros.analyze.chains.stages import stages
 from amalthea_uros.analyze.task import Claim
 from amalthea_uros.perf.events import EventChain

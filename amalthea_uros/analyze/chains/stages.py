@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.places import Place
-from amalthea_uros.analyze.chains.resolve import Carrier, Hop, Route, Spot
+from amalthea_uros.analyze.chains.resolve import Carrier, Hop, Route
+from amalthea_uros.analyze.chains.spots import Spot
 from amalthea_uros.perf.software import Communication, LabelAccess, Process
 from amalthea_uros.perf.stimuli import Counter
 

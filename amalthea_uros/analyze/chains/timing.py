@@ -19,7 +19,7 @@ from amalthea_uros.analyze.chains import logical
 from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.moments import Moments, is_inside, is_logical, kind
 from amalthea_uros.analyze.chains.periodic import Step
-from amalthea_uros.analyze.chains.resolve import When
+from amalthea_uros.analyze.chains.spots import When
 from amalthea_uros.analyze.chains.stages import At, Fire, Moment, Read, Stage
 from amalthea_uros.analyze.chains.track import Track
 from amalthea_uros.analyze.core import known_releases
