@@ -37,7 +37,7 @@ def version(model):
 
 @row("INC-IO-REF", "E")
 def references_resolve(model):
-    return [reference.holder for reference in model.unresolved()]
+    return [reference.holder for reference, _ in model.unresolved()]
 
 
 @row("INC-IO-LOCALLABEL", "W")

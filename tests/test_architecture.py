@@ -22,9 +22,10 @@ PACKAGE = "amalthea_uros"
         ("metamodel", ("diagnostics",)),
         ("difference", ("metamodel",)),
         ("xmi", ("diagnostics", "errors", "garbage", "resources", "metamodel")),
+        ("validate", ("metamodel", "diagnostics")),
         ("analyze", ("perf", "units", "diagnostics", "compiled")),
         ("pipeline", ("bridge", "diagnostics", "garbage", "metamodel", "perf", "spec", "uros", "xmi")),
-        ("report", ("diagnostics", "metamodel", "difference", "perf", "units", "uros", "pipeline", "analyze")),
+        ("report", ("diagnostics", "metamodel", "difference", "perf", "units", "uros", "pipeline", "analyze", "validate")),
     ],
 )
 def test_a_room_imports_only_what_it_may(room, allowed):

@@ -15,9 +15,12 @@ COMMANDS = {
     "analyze": "Compute response times, loads, latencies of chains, and verdicts.",
     "build": "Build a model from an app.yaml.",
     "chains": "List the paths from one process to another, with their latencies.",
+    "check": "Check models by rules.",
     "diff": "Compare two models by meaning.",
+    "explain": "Tell what a rule is about.",
     "fmt": "Rewrite models in canonical form.",
     "info": "Show what is in a model.",
+    "rules": "List the rules of check.",
     "schema": "Print the JSON Schema of app.yaml.",
 }
 

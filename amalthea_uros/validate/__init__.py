@@ -1,0 +1,1 @@
+"""Rules for models: one rule, one file, below `rules/<profile>`."""

@@ -1,0 +1,44 @@
+"""Runs rules over a model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.model import Model
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(model: Model, rules: Iterable[Rule]) -> list[Finding]:
+    """The findings of rules, by place. A rule that crashes is a finding, too."""
+    context = Context(model)
+    found = [finding for rule in rules for finding in _run(rule, context)]
+    return sorted(found, key=_place)
+
+
+def _run(rule: Rule, context: Context) -> Iterator[Finding]:
+    versions = {document.facts_version for document in context.model.documents}
+    if not any((rule.since or "") <= version <= (rule.until or "9") for version in versions):
+        return
+    for element in context.all(rule.target):
+        try:
+            messages = list(rule.check(element, context))
+        except Exception as error:
+            message = f"the rule {rule.id} failed at this object: {type(error).__name__}: {error}"
+            yield _finding("CHK001", Severity.ERROR, message, element, "Please report it, with the model if you can.")
+            continue
+        for message in messages:
+            yield _finding(rule.id, rule.severity, message, element, rule.remedy)
+
+
+def _finding(rule: str, severity: Severity, message: str, element: Element, remedy: str) -> Finding:
+    document = element.document
+    location = document.location_of(element) if document is not None else None
+    return Finding(rule, severity, message, location, remedy, getattr(element, "name", None) or "")
+
+
+def _place(finding: Finding) -> tuple[str, int, int, str]:
+    place = finding.location or Location(None)  # type: ignore[arg-type]
+    return (str(place.path), place.line or 0, place.column or 0, finding.rule)

@@ -1,0 +1,66 @@
+"""Branch without items."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import AbstractEventChain
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: AbstractEventChain, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    branches = [chain for item in element.items if (chain := getattr(item, "event_chain", None)) is not None]
+    if element.item_type == "parallel" and any(not branch.items for branch in branches):
+        yield f"a branch of the chain {element.name or ''!r} has no items"
+
+
+RULE = Rule(
+    id="INC-EC-PAR-ITEMS",
+    title="branch without items",
+    severity=Severity.ERROR,
+    target=AbstractEventChain,
+    check=check,
+    rationale="am2inc writes a broken graph without a word.",
+    remedy="Give each branch segments of its own.",
+    fails="""
+<eventModel>
+  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
+  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
+  <events xsi:type="am:CustomEvent" name="c"/>
+</eventModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<constraintsModel>
+  <eventChains name="C" itemType="parallel" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
+    <items xsi:type="am:EventChainContainer">
+      <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
+    </items>
+  </eventChains>
+</constraintsModel>
+""",
+    passes="""
+<eventModel>
+  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
+  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
+  <events xsi:type="am:CustomEvent" name="c"/>
+</eventModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<constraintsModel>
+  <eventChains name="C" itemType="parallel" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
+    <items xsi:type="am:EventChainContainer">
+      <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
+        <items xsi:type="am:EventChainContainer">
+          <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
+        </items>
+      </eventChain>
+    </items>
+  </eventChains>
+</constraintsModel>
+""",
+)

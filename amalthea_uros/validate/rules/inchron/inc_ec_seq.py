@@ -1,0 +1,64 @@
+"""Segments that do not fit together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import AbstractEventChain
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: AbstractEventChain, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    segments = [chain for item in element.items if (chain := getattr(item, "event_chain", None)) is not None]
+    if element.item_type != "parallel" and segments:
+        ends = [element.stimulus, *(segment.response for segment in segments)]
+        if [segment.stimulus for segment in segments] != ends[:-1] or ends[-1] is not element.response:
+            yield f"the segments of the chain {element.name or ''!r} do not fit together"
+
+
+RULE = Rule(
+    id="INC-EC-SEQ",
+    title="segments that do not fit together",
+    severity=Severity.WARNING,
+    target=AbstractEventChain,
+    check=check,
+    rationale="am2inc changes the chain without a word: responses of segments are never read.",
+    remedy="Start each segment with the response of the one before it, and keep to the ends of the chain.",
+    fails="""
+<eventModel>
+  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
+  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
+  <events xsi:type="am:CustomEvent" name="c"/>
+</eventModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<constraintsModel>
+  <eventChains name="C" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
+    <items xsi:type="am:EventChainContainer">
+      <eventChain stimulus="b?type=ProcessEvent" response="b?type=ProcessEvent"/>
+    </items>
+  </eventChains>
+</constraintsModel>
+""",
+    passes="""
+<eventModel>
+  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
+  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
+  <events xsi:type="am:CustomEvent" name="c"/>
+</eventModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<constraintsModel>
+  <eventChains name="C" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
+    <items xsi:type="am:EventChainContainer">
+      <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
+    </items>
+  </eventChains>
+</constraintsModel>
+""",
+)

@@ -1,0 +1,47 @@
+"""Port without a width."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import HwPort
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: HwPort, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if not (element.bit_width or 0) > 0:
+        yield f"the port {element.name!r} has no bit width above zero"
+
+
+RULE = Rule(
+    id="INC-HW-BITWIDTH",
+    title="port without a width",
+    severity=Severity.WARNING,
+    target=HwPort,
+    check=check,
+    rationale="It becomes the width of the core, the memory or the interconnect.",
+    remedy="State a bit width above zero.",
+    fails="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <ports name="p"/>
+  </structures>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <ports name="p" bitWidth="32"/>
+  </structures>
+</hwModel>
+""",
+)

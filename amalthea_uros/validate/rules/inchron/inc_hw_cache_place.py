@@ -1,0 +1,50 @@
+"""Cache away from any processing unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Cache, HwStructure, ProcessingUnit
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: Cache, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    holder = element.container
+    modules = holder.modules if isinstance(holder, HwStructure) else []
+    if not isinstance(holder, ProcessingUnit) and not any(isinstance(module, ProcessingUnit) for module in modules):
+        yield f"the cache {element.name!r} is neither in a processing unit nor in a structure that has one"
+
+
+RULE = Rule(
+    id="INC-HW-CACHE-PLACE",
+    title="cache away from any processing unit",
+    severity=Severity.ERROR,
+    target=Cache,
+    check=check,
+    rationale="am2inc ends with a segmentation fault.",
+    remedy="Put the cache into a processing unit, or into a structure that has one.",
+    fails="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <modules xsi:type="am:Cache" name="L2"/>
+  </structures>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core"/>
+    <modules xsi:type="am:Cache" name="L2"/>
+  </structures>
+</hwModel>
+""",
+)

@@ -1,0 +1,51 @@
+"""Interconnect without a known interface."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ConnectionHandler
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: ConnectionHandler, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if not element.ports or element.ports[0].port_interface not in ("AXI", "AHB", "APB", "custom"):
+        yield f"the first port of {element.name!r} has no interface among AXI, AHB, APB and custom"
+
+
+RULE = Rule(
+    id="INC-HW-CONN-IFACE",
+    title="interconnect without a known interface",
+    severity=Severity.WARNING,
+    target=ConnectionHandler,
+    check=check,
+    rationale="am2inc drops it without a word.",
+    remedy="Give its first port the interface AXI, AHB, APB or custom.",
+    fails="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <modules xsi:type="am:ConnectionHandler" name="bus">
+      <ports name="p" portInterface="CAN"/>
+    </modules>
+  </structures>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <modules xsi:type="am:ConnectionHandler" name="bus">
+      <ports name="p" portInterface="AXI"/>
+    </modules>
+  </structures>
+</hwModel>
+""",
+)

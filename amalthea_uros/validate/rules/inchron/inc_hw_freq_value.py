@@ -1,0 +1,47 @@
+"""Frequency domain without a frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import FrequencyDomain, ProcessingUnit
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: FrequencyDomain, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    value = element.default_value
+    is_used = any(unit.frequency_domain is element for unit in context.all(ProcessingUnit))
+    if is_used and (value is None or not value.unit or not (value.value or 0) > 0):
+        yield f"the frequency domain {element.name!r} of a processing unit has no frequency above zero with a unit"
+
+
+RULE = Rule(
+    id="INC-HW-FREQ-VALUE",
+    title="frequency domain without a frequency",
+    severity=Severity.ERROR,
+    target=FrequencyDomain,
+    check=check,
+    rationale="am2inc ends with a segmentation fault, or takes 1000 MHz or 0 MHz without a word.",
+    remedy="State a default value above zero, with its unit.",
+    fails="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock"/>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
+  </structures>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
+  </structures>
+</hwModel>
+""",
+)

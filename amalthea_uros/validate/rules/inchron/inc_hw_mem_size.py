@@ -1,0 +1,49 @@
+"""Memory without a size."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Cache, HwModule, Memory
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: HwModule, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if isinstance(element, Memory | Cache):
+        size = element.definition.size if element.definition is not None else None
+        if size is None or not size.unit:
+            yield f"the memory {element.name!r} has no definition with a size"
+
+
+RULE = Rule(
+    id="INC-HW-MEM-SIZE",
+    title="memory without a size",
+    severity=Severity.WARNING,
+    target=HwModule,
+    check=check,
+    rationale="am2inc takes 1 KiB without a word.",
+    remedy="Give the memory a definition with a size and its unit.",
+    fails="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <modules xsi:type="am:Memory" name="RAM"/>
+  </structures>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <definitions xsi:type="am:MemoryDefinition" name="type">
+    <size value="1" unit="MB"/>
+  </definitions>
+  <structures name="ECU">
+    <modules xsi:type="am:Memory" name="RAM" definition="type?type=MemoryDefinition"/>
+  </structures>
+</hwModel>
+""",
+)

@@ -1,0 +1,47 @@
+"""Processing unit without a clock."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ProcessingUnit
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: ProcessingUnit, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.frequency_domain is None:
+        yield f"the processing unit {element.name!r} has no frequency domain"
+
+
+RULE = Rule(
+    id="INC-HW-PU-CLOCK",
+    title="processing unit without a clock",
+    severity=Severity.ERROR,
+    target=ProcessingUnit,
+    check=check,
+    rationale="am2inc ends with a segmentation fault.",
+    remedy="Give the processing unit a frequency domain.",
+    fails="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core"/>
+  </structures>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
+  </structures>
+</hwModel>
+""",
+)

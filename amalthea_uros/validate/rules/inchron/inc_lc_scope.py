@@ -1,0 +1,46 @@
+"""Latency constraint without a chain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import EventChainLatencyConstraint
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: EventChainLatencyConstraint, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.scope is None:
+        yield f"the constraint {element.name!r} names no chain"
+
+
+RULE = Rule(
+    id="INC-LC-SCOPE",
+    title="latency constraint without a chain",
+    severity=Severity.WARNING,
+    target=EventChainLatencyConstraint,
+    check=check,
+    rationale="am2inc drops it, with a warning.",
+    remedy="Name the chain.",
+    fails="""
+<constraintsModel>
+  <timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L"/>
+</constraintsModel>
+""",
+    passes="""
+<eventModel>
+  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
+  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
+  <events xsi:type="am:CustomEvent" name="c"/>
+</eventModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<constraintsModel>
+  <eventChains name="C" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
+  <timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L" scope="C?type=EventChain"/>
+</constraintsModel>
+""",
+)

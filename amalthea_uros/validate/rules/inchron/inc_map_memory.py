@@ -1,0 +1,51 @@
+"""Memory mapping of something else than a label."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Label, MemoryMapping
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: MemoryMapping, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.memory is None or not isinstance(element.abstract_element, Label):
+        yield "the memory mapping lacks its memory or its label"
+
+
+RULE = Rule(
+    id="INC-MAP-MEMORY",
+    title="memory mapping of something else than a label",
+    severity=Severity.ERROR,
+    target=MemoryMapping,
+    check=check,
+    rationale="Without an element am2inc ends with a segmentation fault; what is no label is dropped without a word.",
+    remedy="Map labels to memories only, and name both.",
+    fails="""
+<swModel>
+  <labels name="L"/>
+</swModel>
+<mappingModel>
+  <memoryMapping abstractElement="L?type=Label"/>
+</mappingModel>
+""",
+    passes="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <modules xsi:type="am:Memory" name="RAM"/>
+  </structures>
+</hwModel>
+<swModel>
+  <labels name="L"/>
+</swModel>
+<mappingModel>
+  <memoryMapping abstractElement="L?type=Label" memory="RAM?type=Memory"/>
+</mappingModel>
+""",
+)

@@ -1,0 +1,53 @@
+"""Incomplete task allocation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import TaskAllocation
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: TaskAllocation, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.task is None or element.scheduler is None:
+        yield "the task allocation lacks its task or its scheduler"
+
+
+RULE = Rule(
+    id="INC-MAP-TASK",
+    title="incomplete task allocation",
+    severity=Severity.ERROR,
+    target=TaskAllocation,
+    check=check,
+    rationale="am2inc ends with a segmentation fault, or the task vanishes.",
+    remedy="Name the task and its scheduler.",
+    fails="""
+<osModel>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S"/>
+  </operatingSystems>
+</osModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<mappingModel>
+  <taskAllocation task="T?type=Task"/>
+</mappingModel>
+""",
+    passes="""
+<osModel>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S"/>
+  </operatingSystems>
+</osModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<mappingModel>
+  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
+</mappingModel>
+""",
+)

@@ -1,0 +1,53 @@
+"""Process that is not allocated exactly once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ISR, ISRAllocation, Process, Task, TaskAllocation
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: Process, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if isinstance(element, Task | ISR):
+        tasks = sum(allocation.task is element for allocation in context.all(TaskAllocation))
+        isrs = sum(allocation.isr is element for allocation in context.all(ISRAllocation))
+        if tasks + isrs != 1:
+            yield f"{element.name!r} is allocated {tasks + isrs} times"
+
+
+RULE = Rule(
+    id="INC-MAP-TASK-ONCE",
+    title="process that is not allocated exactly once",
+    severity=Severity.ERROR,
+    target=Process,
+    check=check,
+    rationale="Without an allocation it has no core or disappears, with several it is listed twice, both without a word.",
+    remedy="Allocate each task and each ISR once.",
+    fails="""
+<osModel>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S"/>
+  </operatingSystems>
+</osModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+""",
+    passes="""
+<osModel>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S"/>
+  </operatingSystems>
+</osModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<mappingModel>
+  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
+</mappingModel>
+""",
+)

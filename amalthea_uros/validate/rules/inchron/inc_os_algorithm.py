@@ -1,0 +1,47 @@
+"""Scheduler without fixed priorities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import TaskScheduler
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: TaskScheduler, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    before = getattr(element, "scheduling_algorithm", None)
+    policy = (
+        element.definition.name if element.definition is not None else type(before).__name__ if before is not None else None
+    )
+    if policy not in (None, "FixedPriorityPreemptive"):
+        yield f"the policy {policy} of {element.name!r} becomes fixed priorities with preemption"
+
+
+RULE = Rule(
+    id="INC-OS-ALGORITHM",
+    title="scheduler without fixed priorities",
+    severity=Severity.WARNING,
+    target=TaskScheduler,
+    check=check,
+    rationale="Every scheduler becomes one of fixed priorities with preemption, without a word.",
+    remedy="Use FixedPriorityPreemptive, or expect other results than the model says.",
+    fails="""
+<osModel>
+  <schedulerDefinitions name="EarliestDeadlineFirst"/>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S" definition="EarliestDeadlineFirst?type=SchedulerDefinition"/>
+  </operatingSystems>
+</osModel>
+""",
+    passes="""
+<osModel>
+  <schedulerDefinitions name="FixedPriorityPreemptive"/>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S" definition="FixedPriorityPreemptive?type=SchedulerDefinition"/>
+  </operatingSystems>
+</osModel>
+""",
+)

@@ -1,0 +1,57 @@
+"""Deadline that is no time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import SchedulingParameter, Time
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: SchedulingParameter, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.key is not None and element.key.name == "deadline" and not isinstance(element.value, Time):
+        yield "the value of the deadline is no Time"
+
+
+RULE = Rule(
+    id="INC-OS-DEADLINE-TYPE",
+    title="deadline that is no time",
+    severity=Severity.WARNING,
+    target=SchedulingParameter,
+    check=check,
+    rationale="am2inc takes 0 without a word.",
+    remedy="Make the value a Time.",
+    fails="""
+<osModel>
+  <schedulingParameterDefinitions name="deadline"/>
+</osModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<mappingModel>
+  <taskAllocation task="T?type=Task">
+    <schedulingParameters key="deadline?type=SchedulingParameterDefinition">
+      <value xsi:type="am:IntegerObject" value="3"/>
+    </schedulingParameters>
+  </taskAllocation>
+</mappingModel>
+""",
+    passes="""
+<osModel>
+  <schedulingParameterDefinitions name="deadline"/>
+</osModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<mappingModel>
+  <taskAllocation task="T?type=Task">
+    <schedulingParameters key="deadline?type=SchedulingParameterDefinition">
+      <value xsi:type="am:Time" value="3" unit="ms"/>
+    </schedulingParameters>
+  </taskAllocation>
+</mappingModel>
+""",
+)

@@ -1,0 +1,48 @@
+"""Overhead of the operating system."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import OsOverhead, Scheduler, Ticks
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: Element, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if isinstance(element, OsOverhead) and any(isinstance(part, Ticks) for part in element.walk()):
+        yield f"the overhead {element.name!r} has Ticks"
+    if isinstance(element, Scheduler) and element.computation_items:
+        yield f"the scheduler {element.name!r} has computation items"
+
+
+RULE = Rule(
+    id="INC-OS-OVERHEAD",
+    title="overhead of the operating system",
+    severity=Severity.ERROR,
+    target=Element,
+    check=check,
+    rationale="am2inc ends with a segmentation fault.",
+    remedy="Remove overheads with Ticks and the computation items of schedulers before the import.",
+    fails="""
+<osModel>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S">
+      <computationItems xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueConstant" value="1"/>
+      </computationItems>
+    </taskSchedulers>
+  </operatingSystems>
+</osModel>
+""",
+    passes="""
+<osModel>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S"/>
+  </operatingSystems>
+</osModel>
+""",
+)

@@ -1,0 +1,57 @@
+"""Priority that is no integer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import IntegerObject, SchedulingParameter
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: SchedulingParameter, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.key is not None and element.key.name == "priority" and not isinstance(element.value, IntegerObject):
+        yield "the value of the priority is no IntegerObject"
+
+
+RULE = Rule(
+    id="INC-OS-PRIO-TYPE",
+    title="priority that is no integer",
+    severity=Severity.ERROR,
+    target=SchedulingParameter,
+    check=check,
+    rationale="am2inc ends with a segmentation fault.",
+    remedy="Make the value an IntegerObject.",
+    fails="""
+<osModel>
+  <schedulingParameterDefinitions name="priority"/>
+</osModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<mappingModel>
+  <taskAllocation task="T?type=Task">
+    <schedulingParameters key="priority?type=SchedulingParameterDefinition">
+      <value xsi:type="am:StringObject" value="3"/>
+    </schedulingParameters>
+  </taskAllocation>
+</mappingModel>
+""",
+    passes="""
+<osModel>
+  <schedulingParameterDefinitions name="priority"/>
+</osModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<mappingModel>
+  <taskAllocation task="T?type=Task">
+    <schedulingParameters key="priority?type=SchedulingParameterDefinition">
+      <value xsi:type="am:IntegerObject" value="3"/>
+    </schedulingParameters>
+  </taskAllocation>
+</mappingModel>
+""",
+)

@@ -1,0 +1,37 @@
+"""Semaphore that is more than a counter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Semaphore
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: Semaphore, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.semaphore_type not in (None, "CountingSemaphore") or element.priority_ceiling_protocol:
+        yield f"the semaphore {element.name!r} loses its type, or its priority ceiling"
+
+
+RULE = Rule(
+    id="INC-OS-SEMA-TYPE",
+    title="semaphore that is more than a counter",
+    severity=Severity.WARNING,
+    target=Semaphore,
+    check=check,
+    rationale="am2inc drops the type and the ceiling protocol without a word.",
+    remedy="Use plain counting semaphores, or expect other blocking.",
+    fails="""
+<osModel>
+  <semaphores name="S" semaphoreType="Mutex"/>
+</osModel>
+""",
+    passes="""
+<osModel>
+  <semaphores name="S" semaphoreType="CountingSemaphore"/>
+</osModel>
+""",
+)

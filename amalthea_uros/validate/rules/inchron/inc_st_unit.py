@@ -1,0 +1,42 @@
+"""Quantity without a unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import DataSize, Frequency, Time
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: Element, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if isinstance(element, Time | Frequency | DataSize) and (element.unit is None or element.unit.name == "UNDEFINED"):
+        yield f"the value {element.value} has no unit"
+
+
+RULE = Rule(
+    id="INC-ST-UNIT",
+    title="quantity without a unit",
+    severity=Severity.WARNING,
+    target=Element,
+    check=check,
+    rationale="am2inc takes 0 ps, 1000 MHz or 1 KiB without a word.",
+    remedy="State the unit; a value without one means nothing.",
+    fails="""
+<stimuliModel>
+  <stimuli xsi:type="am:PeriodicStimulus" name="S">
+    <recurrence value="1"/>
+  </stimuli>
+</stimuliModel>
+""",
+    passes="""
+<stimuliModel>
+  <stimuli xsi:type="am:PeriodicStimulus" name="S">
+    <recurrence value="1" unit="ms"/>
+  </stimuli>
+</stimuliModel>
+""",
+)

@@ -1,0 +1,39 @@
+"""Label without a size."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Label
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: Label, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.size is None:
+        yield f"the label {element.name!r} has no size"
+
+
+RULE = Rule(
+    id="INC-SW-LABELSIZE",
+    title="label without a size",
+    severity=Severity.WARNING,
+    target=Label,
+    check=check,
+    rationale="am2inc takes 1 KiB without a word.",
+    remedy="State the size.",
+    fails="""
+<swModel>
+  <labels name="L"/>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <labels name="L">
+    <size value="4" unit="B"/>
+  </labels>
+</swModel>
+""",
+)

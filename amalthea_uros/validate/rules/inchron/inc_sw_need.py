@@ -1,0 +1,46 @@
+"""Execution need."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ExecutionNeed
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: ExecutionNeed, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    yield "the execution need is dropped"
+
+
+RULE = Rule(
+    id="INC-SW-NEED",
+    title="execution need",
+    severity=Severity.WARNING,
+    target=ExecutionNeed,
+    check=check,
+    rationale="am2inc drops it; the runnable takes no time.",
+    remedy="State the execution time as Ticks.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:ExecutionNeed"/>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueConstant" value="1"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+)

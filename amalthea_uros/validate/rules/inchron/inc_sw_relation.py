@@ -1,0 +1,57 @@
+"""Comparison for something else than equality."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ModeCondition
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: ModeCondition, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.relation != "EQUAL":
+        yield "the comparison becomes one for equality"
+
+
+RULE = Rule(
+    id="INC-SW-RELATION",
+    title="comparison for something else than equality",
+    severity=Severity.WARNING,
+    target=ModeCondition,
+    check=check,
+    rationale='Every relation becomes "equal", without a word.',
+    remedy="Compare for equality only.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Switch">
+        <entries name="e">
+          <condition>
+            <entries xsi:type="am:ModeValueCondition" relation="LESS_THAN" value="1"/>
+          </condition>
+        </entries>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Switch">
+        <entries name="e">
+          <condition>
+            <entries xsi:type="am:ModeValueCondition" relation="EQUAL" value="1"/>
+          </condition>
+        </entries>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+)

@@ -1,0 +1,48 @@
+"""Beta distribution."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import DiscreteValueBetaDistribution
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: DiscreteValueBetaDistribution, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    yield "the beta distribution becomes its upper bound"
+
+
+RULE = Rule(
+    id="INC-SW-TICKS-BETA",
+    title="beta distribution",
+    severity=Severity.WARNING,
+    target=DiscreteValueBetaDistribution,
+    check=check,
+    rationale="It becomes its upper bound, without a word.",
+    remedy="Use another distribution.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueBetaDistribution" alpha="1" beta="2" lowerBound="1" upperBound="9"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueConstant" value="1"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+)

@@ -1,0 +1,49 @@
+"""Boundaries without a sampling type."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import DiscreteValueBoundaries
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: DiscreteValueBoundaries, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.sampling_type in (None, "default"):
+        yield "the boundaries have no sampling type"
+
+
+RULE = Rule(
+    id="INC-SW-TICKS-BOUNDS",
+    title="boundaries without a sampling type",
+    severity=Severity.WARNING,
+    target=DiscreteValueBoundaries,
+    check=check,
+    rationale="am2inc computes a wrong mean without a word.",
+    remedy="State a sampling type other than default.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueBoundaries" lowerBound="1" upperBound="9"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueBoundaries" lowerBound="1" upperBound="9" samplingType="Uniform"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+)

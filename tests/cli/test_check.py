@@ -1,0 +1,87 @@
+"""`amuros check` as its user sees it."""
+
+import json
+from xml.etree import ElementTree
+
+import pytest
+from support import ROOT
+from test_cli import amuros
+
+ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
+
+
+@pytest.fixture
+def bad(tmp_path):
+    """A model with a core without a clock, and a label without a size."""
+    text = ADVANCED.with_suffix(".amxmi").read_text()
+    start = text.index(" frequencyDomain=")
+    end = text.index('"', start + len(" frequencyDomain=") + 1) + 1
+    path = tmp_path / "bad.amxmi"
+    path.write_text(text[:start] + text[end:])
+    return path
+
+
+def test_findings_point_into_the_description():
+    run = amuros("check", ADVANCED)
+    assert run.returncode == 0
+    line = next(number for number, text in enumerate(ADVANCED.read_text().splitlines(), 1) if "response_time: 1 ms" in text)
+    assert f"bodas-test-advanced.yaml:{line}:" in run.stdout
+    assert "INC-CO-KIND warning" in run.stdout
+
+
+def test_severities_decide_about_the_exit_code(bad):
+    assert amuros("check", ADVANCED, "--fail-on", "warning").returncode == 1
+    run = amuros("check", bad)
+    assert run.returncode == 1
+    assert "INC-HW-PU-CLOCK error: the processing unit 'Core_0' has no frequency domain" in run.stdout
+    assert "help: Give the processing unit a frequency domain." in run.stdout
+
+
+def test_select_and_ignore(bad):
+    run = amuros("check", bad, "--select", "INC-CO-*")
+    assert (run.returncode, run.stdout.count("INC-")) == (0, 1)
+    run = amuros("check", bad, "--ignore", "INC-*")
+    assert (run.returncode, run.stdout) == (0, "no findings\n")
+    assert "there is no rule 'INC-NOTHING'" in amuros("check", bad, "--select", "INC-NOTHING").stderr
+
+
+def test_several_outputs_in_one_run(bad, tmp_path):
+    names = {kind: tmp_path / kind for kind in ("json", "sarif", "junit", "github")}
+    run = amuros("check", bad, *(part for kind, path in names.items() for part in ("--output", f"{kind}={path}")))
+    assert (run.returncode, run.stdout) == (1, "")
+    findings = json.loads(names["json"].read_text())["findings"]
+    clock = next(finding for finding in findings if finding["rule"] == "INC-HW-PU-CLOCK")
+    assert (clock["severity"], clock["profile"], clock["object"]) == ("error", "inchron", "Core_0")
+    (sarif,) = json.loads(names["sarif"].read_text())["runs"]
+    assert len(sarif["results"]) == len(findings)
+    for result in sarif["results"]:
+        assert sarif["tool"]["driver"]["rules"][result["ruleIndex"]]["id"] == result["ruleId"]
+        assert result["locations"][0]["physicalLocation"]["region"]["startLine"] >= 1
+    suite = ElementTree.parse(names["junit"]).getroot().find("testsuite")
+    assert int(suite.get("tests")) == len(suite.findall("testcase")) == len({finding["rule"] for finding in findings})
+    assert int(suite.get("failures")) == len(suite.findall("testcase/failure"))
+    lines = names["github"].read_text().splitlines()
+    assert len(lines) == len(findings)
+    assert all(line.startswith(("::error file=", "::warning file=", "::notice file=")) for line in lines)
+
+
+def test_statistics(bad):
+    run = amuros("check", bad, "--statistics")
+    assert "INC-HW-PU-CLOCK" in run.stdout
+    assert "help:" not in run.stdout
+
+
+def test_rules_are_explained_and_listed():
+    run = amuros("explain", "inc-hw-pu-clock")
+    assert run.stdout.startswith("INC-HW-PU-CLOCK: processing unit without a clock (error, profile inchron)")
+    assert "segmentation fault" in run.stdout
+    assert "there is no rule 'X'" in amuros("explain", "X").stderr
+    assert "INC-EC-CYCLE" in amuros("rules").stdout
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    assert amuros("check", tmp_path / "none.amxmi").returncode == 2
+    (tmp_path / "app.yaml").write_text("nothing")
+    run = amuros("check", tmp_path / "app.yaml")
+    assert run.returncode in (1, 2)
+    assert "Traceback" not in run.stderr
