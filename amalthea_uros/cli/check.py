@@ -18,6 +18,8 @@ from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import check
 from amalthea_uros.validate.rule import Profile
 
+#: The profile that is no set of rules, but the XML schema of a model's version.
+SCHEMA = "schema"
 _ORDER = (Severity.ERROR, Severity.WARNING, Severity.INFO)
 
 
@@ -27,7 +29,7 @@ _ORDER = (Severity.ERROR, Severity.WARNING, Severity.INFO)
     "--profile",
     "profiles",
     multiple=True,
-    type=click.Choice([str(p) for p in Profile]),
+    type=click.Choice([SCHEMA, *map(str, Profile)]),
     help="Rules for a purpose; all by default.",
 )
 @click.option("--select", "selected", multiple=True, metavar="RULE", help="Only these rules; * stands for anything.")
@@ -51,9 +53,13 @@ def command(
     MODEL_OR_YAML is an app.yaml, or one or several .amxmi files or a folder with some. What is odd about the files themselves is told,
     too. `amuros explain RULE` tells more about a rule.
     """
-    known = list(registry.ids(Profile(profile) for profile in profiles or Profile))
+    known = list(registry.ids(Profile(name) for name in profiles or Profile if name != SCHEMA))
     chosen = list(_chosen(known, selected, ignored))
     model, findings = _read(paths)
+    if SCHEMA in profiles or not (profiles or selected):
+        from amalthea_uros.xmi.schema_findings import schema_findings
+
+        findings += [finding for document in model.documents for finding in schema_findings(document)]
     findings += check(model, map(registry.rule, chosen))
     findings = [finding for finding in findings if not _matches(finding.rule, ignored)]
     for output in outputs:

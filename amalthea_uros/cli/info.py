@@ -9,8 +9,7 @@ from pathlib import Path
 import click
 
 from amalthea_uros.cli.output import Output, output_option
-from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.metamodel.model import Document
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.summary import summarise
 from amalthea_uros.report.info import write_json, write_text
 from amalthea_uros.report.terminal import Terminal
@@ -32,32 +31,11 @@ def command(paths: tuple[Path, ...], schema: bool, outputs: tuple[Output, ...]) 
     model = load(*paths)
     findings = list(model.findings)
     if schema:
-        findings += [finding for document in model.documents for finding in _schema_findings(document)]
+        from amalthea_uros.xmi.schema_findings import schema_findings
+
+        findings += [finding for document in model.documents for finding in schema_findings(document)]
     Terminal(sys.stderr).findings(findings)
     summary = summarise(model)
     for output in outputs:
         output.write(partial(write_json if output.format == "json" else write_text, summary))
     sys.exit(1 if any(finding.severity is Severity.ERROR for finding in findings) else 0)
-
-
-def _schema_findings(document: Document) -> list[Finding]:
-    from amalthea_uros.xmi.schema import NoSchemaError, validate
-
-    source, path = document.source, document.path
-    assert source
-    assert path
-    try:
-        problems = validate(source.text.encode(), document.version)
-    except NoSchemaError as error:
-        return [Finding("XSD000", Severity.WARNING, str(error), Location(path))]
-    return [
-        Finding(
-            "XSD001",
-            Severity.ERROR,
-            problem.reason,
-            Location(path, problem.line, problem.column, source.line(problem.line)),
-            problem.advice or "",
-            problem.path,
-        )
-        for problem in problems
-    ]

@@ -25,7 +25,10 @@ def write_text(findings: Sequence[Finding], statistics: bool, stream: IO[str]) -
     terminal = Terminal(stream)
     if statistics:
         count = Counter((finding.rule, str(finding.severity)) for finding in findings)
-        terminal.table(("rule", "severity", "findings"), [(*key, number) for key, number in count.most_common()], right=(2,))
+        if count:
+            terminal.table(
+                ("rule", "severity", "findings"), [(*key, number) for key, number in count.most_common()], right=(2,)
+            )
     else:
         terminal.findings(findings)
     by_severity = Counter(finding.severity for finding in findings)

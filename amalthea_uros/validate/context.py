@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import TypeVar
+from typing import TypeVar, cast
 
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.naming import unique_name
 
 E = TypeVar("E", bound=Element)
+T = TypeVar("T")
 
 
 class Context:
@@ -19,6 +20,7 @@ class Context:
 
     def __init__(self, model: Model) -> None:
         self.model = model
+        self._once: dict[object, object] = {}
 
     @cached_property
     def _by_type(self) -> dict[type[Element], list[Element]]:
@@ -34,4 +36,19 @@ class Context:
 
     def all(self, cls: type[E]) -> Sequence[E]:
         """All objects of a class and its subclasses."""
-        return [element for kind, elements in self._by_type.items() if issubclass(kind, cls) for element in elements]  # type: ignore[misc]
+        if cls not in self._once:
+            self._once[cls] = [element for kind, found in self._by_type.items() if issubclass(kind, cls) for element in found]
+        return cast("Sequence[E]", self._once[cls])
+
+    def uses(self, cls: type[Element], feature: str) -> Counter[Element]:
+        """How often each object is referred to by a feature of objects of a class."""
+        key = (cls, feature)
+        if key not in self._once:
+            self._once[key] = Counter(getattr(element, feature) for element in self.all(cls))
+        return cast("Counter[Element]", self._once[key])
+
+    def once(self, function: Callable[[Context], T]) -> T:
+        """What a function of a rule finds out about the whole model."""
+        if function not in self._once:
+            self._once[function] = function(self)
+        return cast("T", self._once[function])

@@ -16,6 +16,7 @@ class Profile(StrEnum):
     """A set of rules for a purpose; the folder in which they are has its name."""
 
     INCHRON = "inchron"
+    TIMING = "timing"
 
 
 #: What is wrong with an object, one sentence for each thing.

@@ -40,7 +40,7 @@ def test_severities_decide_about_the_exit_code(bad):
 def test_select_and_ignore(bad):
     run = amuros("check", bad, "--select", "INC-CO-*")
     assert (run.returncode, run.stdout.count("INC-")) == (0, 1)
-    run = amuros("check", bad, "--ignore", "INC-*")
+    run = amuros("check", bad, "--ignore", "INC-*", "--ignore", "TIM-*")
     assert (run.returncode, run.stdout) == (0, "no findings\n")
     assert "there is no rule 'INC-NOTHING'" in amuros("check", bad, "--select", "INC-NOTHING").stderr
 
@@ -63,6 +63,17 @@ def test_several_outputs_in_one_run(bad, tmp_path):
     lines = names["github"].read_text().splitlines()
     assert len(lines) == len(findings)
     assert all(line.startswith(("::error file=", "::warning file=", "::notice file=")) for line in lines)
+
+
+def test_the_schema_of_the_version(tmp_path):
+    path = tmp_path / "odd.amxmi"
+    path.write_text(ADVANCED.with_suffix(".amxmi").read_text().replace('unit="ms"', 'unit="hours"', 1))
+    for arguments in ([], ["--profile", "schema"]):
+        run = amuros("check", path, *arguments)
+        assert run.returncode == 1
+        assert "XSD001 error" in run.stdout
+    assert "XSD001" not in amuros("check", path, "--profile", "timing").stdout
+    assert "INC-" not in amuros("check", path, "--profile", "schema").stdout
 
 
 def test_statistics(bad):

@@ -73,6 +73,20 @@ def test_the_reference_table_of_the_importer(path):
     assert found_by_rules(read) == expected
 
 
+def test_a_circle_of_calls_is_told_from_each_of_its_runnables(tmp_path):
+    def calls(name, *called):
+        items = "".join(f'<items xsi:type="am:RunnableCall" runnable="{other}?type=Runnable"/>' for other in called)
+        return f'<runnables name="{name}"><activityGraph>{items}</activityGraph></runnables>'
+
+    excerpt = f"<swModel>{calls('A', 'D', 'B')}{calls('B', 'C')}{calls('C', 'A')}{calls('D')}</swModel>"
+    found = check(model(excerpt, tmp_path), [registry.rule("TIM-RECURSION")])
+    assert [finding.message for finding in found] == [
+        "'A' calls itself: A -> B -> C -> A",
+        "'B' calls itself: B -> C -> A -> B",
+        "'C' calls itself: C -> A -> B -> C",
+    ]
+
+
 def test_a_rule_that_fails_is_a_finding(tmp_path):
     from dataclasses import replace
 

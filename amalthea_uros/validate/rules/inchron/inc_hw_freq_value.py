@@ -13,7 +13,7 @@ from amalthea_uros.validate.rule import Rule
 def check(element: FrequencyDomain, context: Context) -> Iterator[str]:
     """What is wrong with an object."""
     value = element.default_value
-    is_used = any(unit.frequency_domain is element for unit in context.all(ProcessingUnit))
+    is_used = context.uses(ProcessingUnit, "frequency_domain")[element] > 0
     if is_used and (value is None or not value.unit or not (value.value or 0) > 0):
         yield f"the frequency domain {element.name!r} of a processing unit has no frequency above zero with a unit"
 

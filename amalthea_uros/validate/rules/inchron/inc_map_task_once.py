@@ -13,10 +13,9 @@ from amalthea_uros.validate.rule import Rule
 def check(element: Process, context: Context) -> Iterator[str]:
     """What is wrong with an object."""
     if isinstance(element, Task | ISR):
-        tasks = sum(allocation.task is element for allocation in context.all(TaskAllocation))
-        isrs = sum(allocation.isr is element for allocation in context.all(ISRAllocation))
-        if tasks + isrs != 1:
-            yield f"{element.name!r} is allocated {tasks + isrs} times"
+        times = context.uses(TaskAllocation, "task")[element] + context.uses(ISRAllocation, "isr")[element]
+        if times != 1:
+            yield f"{element.name!r} is allocated {times} times"
 
 
 RULE = Rule(

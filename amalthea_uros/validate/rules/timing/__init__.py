@@ -1,0 +1,1 @@
+"""What makes a model impossible to analyse, or its figures misleading."""

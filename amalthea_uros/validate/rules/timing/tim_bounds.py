@@ -1,0 +1,49 @@
+"""Distribution without bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import DiscreteValueGaussDistribution
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: DiscreteValueGaussDistribution, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.lower_bound is None or element.upper_bound is None:
+        yield "the Gauss distribution lacks a bound"
+
+
+RULE = Rule(
+    id="TIM-BOUNDS",
+    title="distribution without bounds",
+    severity=Severity.WARNING,
+    target=DiscreteValueGaussDistribution,
+    check=check,
+    rationale="Without an upper bound there is no worst case.",
+    remedy="State the lower and the upper bound.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueGaussDistribution" mean="5" sd="1"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueGaussDistribution" mean="5" sd="1" lowerBound="1" upperBound="9"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+)

@@ -1,0 +1,87 @@
+"""Task without a priority."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import IntegerObject, SchedulingParameter, TaskAllocation
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: TaskAllocation, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    definition = element.scheduler.definition if element.scheduler is not None else None
+    if definition is not None and definition.name in ("FixedPriorityPreemptive", "OSEK") and _priority(element) is None:
+        yield f"the task {element.task.name if element.task else ''!r} has no priority"
+
+
+def _priority(allocation: TaskAllocation) -> int | None:
+    for parameter in allocation.scheduling_parameters:
+        if isinstance(parameter, SchedulingParameter) and parameter.key is not None and parameter.key.name == "priority":
+            return parameter.value.value if isinstance(parameter.value, IntegerObject) else None
+    return None
+
+
+RULE = Rule(
+    id="TIM-PRIORITY",
+    title="task without a priority",
+    severity=Severity.WARNING,
+    target=TaskAllocation,
+    check=check,
+    rationale="Where priorities decide, it is not known who is served first.",
+    remedy="Give its allocation the scheduling parameter priority.",
+    fails="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
+  </structures>
+</hwModel>
+<osModel>
+  <schedulingParameterDefinitions name="priority"/>
+  <schedulerDefinitions name="FixedPriorityPreemptive"/>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S" definition="FixedPriorityPreemptive?type=SchedulerDefinition"/>
+  </operatingSystems>
+</osModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<mappingModel>
+  <schedulerAllocation scheduler="S?type=TaskScheduler" responsibility="core?type=ProcessingUnit"/>
+  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
+</mappingModel>
+""",
+    passes="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock">
+    <defaultValue value="300" unit="MHz"/>
+  </domains>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
+  </structures>
+</hwModel>
+<osModel>
+  <schedulingParameterDefinitions name="priority"/>
+  <schedulerDefinitions name="FixedPriorityPreemptive"/>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S" definition="FixedPriorityPreemptive?type=SchedulerDefinition"/>
+  </operatingSystems>
+</osModel>
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<mappingModel>
+  <schedulerAllocation scheduler="S?type=TaskScheduler" responsibility="core?type=ProcessingUnit"/>
+  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler">
+    <schedulingParameters key="priority?type=SchedulingParameterDefinition">
+      <value xsi:type="am:IntegerObject" value="1"/>
+    </schedulingParameters>
+  </taskAllocation>
+</mappingModel>
+""",
+)

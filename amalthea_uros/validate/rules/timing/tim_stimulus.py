@@ -1,0 +1,40 @@
+"""Process that nothing activates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ISR, Process, Task
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: Process, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if isinstance(element, Task | ISR) and not element.stimuli:
+        yield f"nothing activates {element.name!r}"
+
+
+RULE = Rule(
+    id="TIM-STIMULUS",
+    title="process that nothing activates",
+    severity=Severity.WARNING,
+    target=Process,
+    check=check,
+    rationale="It never runs, so that neither its response time nor its load means anything.",
+    remedy="Give it a stimulus, or remove it.",
+    fails="""
+<swModel>
+  <tasks name="T"/>
+</swModel>
+""",
+    passes="""
+<stimuliModel>
+  <stimuli xsi:type="am:PeriodicStimulus" name="S"/>
+</stimuliModel>
+<swModel>
+  <tasks name="T" stimuli="S?type=PeriodicStimulus"/>
+</swModel>
+""",
+)

@@ -1,0 +1,49 @@
+"""Branches without a probability."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ProbabilitySwitch
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: ProbabilitySwitch, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if element.entries and not any((entry.probability or 0) > 0 for entry in element.entries):
+        yield "no branch has a probability above 0"
+
+
+RULE = Rule(
+    id="TIM-WEIGHTS",
+    title="branches without a probability",
+    severity=Severity.WARNING,
+    target=ProbabilitySwitch,
+    check=check,
+    rationale="With weights that are all 0 no branch can be chosen.",
+    remedy="Give at least one branch a probability above 0.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:ProbabilitySwitch">
+        <entries probability="0"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:ProbabilitySwitch">
+        <entries probability="0.5"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+)

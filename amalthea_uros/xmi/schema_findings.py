@@ -1,0 +1,29 @@
+"""A file against the XML schema of its version, as findings."""
+
+from __future__ import annotations
+
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.metamodel.model import Document
+from amalthea_uros.xmi.schema import NoSchemaError, validate
+
+
+def schema_findings(document: Document) -> list[Finding]:
+    """What the XML schema of its version says about a file; nothing, if the document has no file."""
+    source, path = document.source, document.path
+    if source is None or path is None:
+        return []
+    try:
+        problems = validate(source.text.encode(), document.version)
+    except NoSchemaError as error:
+        return [Finding("XSD000", Severity.WARNING, str(error), Location(path))]
+    return [
+        Finding(
+            "XSD001",
+            Severity.ERROR,
+            problem.reason,
+            Location(path, problem.line, problem.column, source.line(problem.line)),
+            problem.advice or "",
+            problem.path,
+        )
+        for problem in problems
+    ]
