@@ -18,7 +18,7 @@ demo: $(READY)
 	$(BIN)/amuros diff build/app.amxmi build/faster.amxmi || true
 
 test: $(READY)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto
 
 check: $(READY)
 	$(BIN)/ruff check .

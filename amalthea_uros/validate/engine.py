@@ -36,7 +36,7 @@ def _run(rule: Rule, context: Context) -> Iterator[Finding]:
 def _finding(rule: str, severity: Severity, message: str, element: Element, remedy: str) -> Finding:
     document = element.document
     location = document.location_of(element) if document is not None else None
-    return Finding(rule, severity, message, location, remedy, getattr(element, "name", None) or "")
+    return Finding(rule, severity, message, location, remedy, element.qualified_name)
 
 
 def _place(finding: Finding) -> tuple[str, int, int, str]:

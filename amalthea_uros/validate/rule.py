@@ -15,6 +15,7 @@ from amalthea_uros.validate.context import Context
 class Profile(StrEnum):
     """A set of rules for a purpose; the folder in which they are has its name."""
 
+    APP4MC = "app4mc"
     INCHRON = "inchron"
     TIMING = "timing"
 
@@ -29,7 +30,7 @@ class Rule:
 
     Attributes
     ----------
-    id : unique, in capitals
+    id : unique; those of APP4MC's own rules are APP4MC's
     title : what is wrong where the rule fires, in a few words
     target : the class whose objects, and those of its subclasses, are looked at
     rationale : why that matters

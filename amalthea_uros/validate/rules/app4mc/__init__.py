@@ -1,0 +1,1 @@
+"""What APP4MC reports when it validates a model, under its own ids."""

@@ -1,0 +1,49 @@
+"""Counter with an offset below zero."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Counter
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: Counter, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if (element.offset or 0) < 0:
+        yield f"the counter has the offset {element.offset}"
+
+
+RULE = Rule(
+    id="AM-Basic-Counter",
+    title="counter with an offset below zero",
+    severity=Severity.ERROR,
+    target=Counter,
+    check=check,
+    rationale="It would take effect before the first occurrence; APP4MC reports it when it validates the model.",
+    remedy="State an offset of 0 or more.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:RunnableCall">
+        <counter prescaler="2" offset="-1"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:RunnableCall">
+        <counter prescaler="2" offset="1"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+)

@@ -1,0 +1,43 @@
+"""Frequency that is not above zero."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ClockFunction, Frequency, FrequencyDomain
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: Frequency, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    holder = element.container
+    decides = isinstance(holder, FrequencyDomain) or (isinstance(holder, ClockFunction) and holder.y_offset is element)
+    if decides and element.value is not None and element.value <= 0:
+        yield f"the frequency is {element.value}"
+
+
+RULE = Rule(
+    id="AM-Basic-Frequency",
+    title="frequency that is not above zero",
+    severity=Severity.ERROR,
+    target=Frequency,
+    check=check,
+    rationale="A clock that stands still counts nothing. APP4MC reports it when it validates the model.",
+    remedy="State a frequency above 0.",
+    fails="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="c">
+    <defaultValue value="0.0" unit="MHz"/>
+  </domains>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="c">
+    <defaultValue value="1.0" unit="MHz"/>
+  </domains>
+</hwModel>
+""",
+)

@@ -1,0 +1,41 @@
+"""Quantity without a unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Quantity
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: Quantity, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if getattr(element, "unit", None) in (None, "_undefined_"):
+        yield f"the {type(element).__name__} has no unit"
+
+
+RULE = Rule(
+    id="AM-Basic-Quantity",
+    title="quantity without a unit",
+    severity=Severity.ERROR,
+    target=Quantity,
+    check=check,
+    rationale="Without a unit a value means nothing, also 0. APP4MC reports it when it validates the model.",
+    remedy="State the unit.",
+    fails="""
+<swModel>
+  <labels name="L">
+    <size value="4"/>
+  </labels>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <labels name="L">
+    <size value="4" unit="B"/>
+  </labels>
+</swModel>
+""",
+)

@@ -1,0 +1,50 @@
+"""Connection whose ends do not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ConnectionHandler, HwConnection
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: HwConnection, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    first, second = element.port1, element.port2
+    if first is None or second is None:
+        yield f"the connection {element.name!r} lacks a port"
+    elif first is second:
+        yield f"the connection {element.name!r} joins a port with itself"
+    elif not isinstance(element.container, ConnectionHandler):
+        interfaces = {first.port_interface, second.port_interface} - {None}
+        if len(interfaces) > 1:
+            yield f"the connection {element.name!r} joins ports of the interfaces {' and '.join(sorted(map(str, interfaces)))}"
+
+
+RULE = Rule(
+    id="AM-HW-Connection",
+    title="connection whose ends do not fit",
+    severity=Severity.ERROR,
+    target=HwConnection,
+    check=check,
+    rationale="It joins nothing, or what cannot be joined. APP4MC reports it when it validates the model.",
+    remedy="Join two different ports of the same interface.",
+    fails="""
+<hwModel>
+  <structures name="ECU">
+    <connections name="wire"/>
+  </structures>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <structures name="ECU">
+    <ports name="a" portInterface="AXI"/>
+    <ports name="b" portInterface="AXI"/>
+    <connections name="wire" port1="ECU/a?type=HwPort" port2="ECU/b?type=HwPort"/>
+  </structures>
+</hwModel>
+""",
+)

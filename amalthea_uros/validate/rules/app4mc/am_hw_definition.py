@@ -1,0 +1,47 @@
+"""Two features of one category."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ProcessingUnitDefinition
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: ProcessingUnitDefinition, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    count = Counter(feature.container for feature in element.features)
+    for feature in element.features:
+        if count[feature.container] > 1:
+            yield f"the feature {feature.name!r} is not the only one of its category"
+
+
+RULE = Rule(
+    id="AM-HW-Definition",
+    title="two features of one category",
+    severity=Severity.ERROR,
+    target=ProcessingUnitDefinition,
+    check=check,
+    rationale="Execution needs find their feature by the category, which has to be one. APP4MC reports it when it validates the model.",
+    remedy="Refer to one feature of each category.",
+    fails="""
+<hwModel>
+  <definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="I/a?type=HwFeature I/b?type=HwFeature"/>
+  <featureCategories name="I">
+    <features name="a"/>
+    <features name="b"/>
+  </featureCategories>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="I/a?type=HwFeature"/>
+  <featureCategories name="I">
+    <features name="a"/>
+  </featureCategories>
+</hwModel>
+""",
+)

@@ -1,0 +1,42 @@
+"""Hardware module without a definition."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Cache, ConnectionHandler, HwModule, Memory, ProcessingUnit
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Rule
+
+
+def check(element: HwModule, context: Context) -> Iterator[str]:
+    """What is wrong with an object."""
+    if isinstance(element, Memory | ProcessingUnit | ConnectionHandler | Cache) and element.definition is None:
+        yield f"{element.name!r} has no definition"
+
+
+RULE = Rule(
+    id="AM-HW-Module-Definition",
+    title="hardware module without a definition",
+    severity=Severity.WARNING,
+    target=HwModule,
+    check=check,
+    rationale="Its properties are not known. APP4MC reports it when it validates the model.",
+    remedy="Refer to a definition.",
+    fails="""
+<hwModel>
+  <structures name="ECU">
+    <modules xsi:type="am:Memory" name="RAM"/>
+  </structures>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <definitions xsi:type="am:MemoryDefinition" name="D"/>
+  <structures name="ECU">
+    <modules xsi:type="am:Memory" name="RAM" definition="D?type=MemoryDefinition"/>
+  </structures>
+</hwModel>
+""",
+)
