@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from fnmatch import fnmatchcase
 from functools import partial
 from pathlib import Path
+from typing import IO
 
 import click
 
@@ -17,6 +18,7 @@ from amalthea_uros.report.check import WRITERS
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import check
 from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.suppress import baseline_text, fingerprint, is_ignored, read_baseline
 
 #: The profile that is no set of rules, but the XML schema of a model's version.
 SCHEMA = "schema"
@@ -38,6 +40,8 @@ _ORDER = (Severity.ERROR, Severity.WARNING, Severity.INFO)
     "--fail-on", type=click.Choice([str(s) for s in _ORDER]), default="error", help="From which severity on the exit code is 1."
 )
 @click.option("--statistics", is_flag=True, help="Show how often each rule fires instead of each finding.")
+@click.option("--baseline", type=click.Path(path_type=Path), metavar="FILE", help="Hide the findings that a baseline accepts.")
+@click.option("--write-baseline", type=click.Path(path_type=Path), metavar="FILE", help="Accept all findings of today.")
 @output_option("text", "json", "sarif", "junit", "github")
 def command(
     paths: tuple[Path, ...],
@@ -46,6 +50,8 @@ def command(
     ignored: tuple[str, ...],
     fail_on: str,
     statistics: bool,
+    baseline: Path | None,
+    write_baseline: Path | None,
     outputs: tuple[Output, ...],
 ) -> None:
     """Check models by rules.
@@ -61,11 +67,23 @@ def command(
 
         findings += [finding for document in model.documents for finding in schema_findings(document)]
     findings += check(model, map(registry.rule, chosen))
-    findings = [finding for finding in findings if not _matches(finding.rule, ignored)]
+    findings = [finding for finding in findings if not _matches(finding.rule, ignored) and not is_ignored(finding)]
+    if write_baseline is not None:
+        Output("baseline", write_baseline).write(partial(_write, baseline_text(findings)))
+    if baseline is not None:
+        try:
+            accepted = read_baseline(baseline)
+        except ValueError as error:
+            raise click.BadParameter(str(error), param_hint="--baseline") from None
+        findings = [finding for finding in findings if fingerprint(finding) not in accepted]
     for output in outputs:
         output.write(partial(WRITERS[output.format], findings, statistics))
     worst = _ORDER[: _ORDER.index(Severity(fail_on)) + 1]
     sys.exit(1 if any(finding.severity in worst for finding in findings) else 0)
+
+
+def _write(text: str, stream: IO[str]) -> None:
+    stream.write(text)
 
 
 def _read(paths: tuple[Path, ...]) -> tuple[Model, list[Finding]]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from hashlib import sha256
 from pathlib import Path
 from typing import IO, Any
 from xml.etree import ElementTree
@@ -15,6 +14,7 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report.findings import finding_json
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.validate import registry
+from amalthea_uros.validate.suppress import fingerprint
 
 _SARIF_LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 _GITHUB = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
@@ -91,9 +91,7 @@ def _sarif_result(finding: Finding, index: int) -> dict[str, Any]:
         "level": _SARIF_LEVELS[finding.severity],
         "message": {"text": finding.message},
         # The same finding in another line is the same finding.
-        "partialFingerprints": {
-            "object/v1": sha256(f"{finding.rule}|{finding.object}|{finding.message}".encode()).hexdigest()[:32]
-        },
+        "partialFingerprints": {"object/v1": fingerprint(finding)},
     }
     if finding.location is not None:
         place: dict[str, Any] = {"artifactLocation": {"uri": _relative(finding.location.path)}}

@@ -96,3 +96,29 @@ def test_files_that_cannot_be_read(tmp_path):
     run = amuros("check", tmp_path / "app.yaml")
     assert run.returncode in (1, 2)
     assert "Traceback" not in run.stderr
+
+
+def test_a_comment_in_the_line_accepts_a_finding(tmp_path):
+    path = tmp_path / "app.yaml"
+    line = "  - {process: Control_Function, response_time: 1 ms}"
+    assert line in ADVANCED.read_text()
+    path.write_text(ADVANCED.read_text().replace(line, line + " # amuros: ignore[INC-CO-KIND]"))
+    assert "INC-CO-KIND" in amuros("check", ADVANCED).stdout
+    assert amuros("check", path).stdout == "no findings\n"
+    path.write_text(ADVANCED.read_text().replace(line, line + " # amuros: ignore[INC-OTHER]"))
+    assert "INC-CO-KIND" in amuros("check", path).stdout
+
+
+def test_a_baseline_accepts_what_is_there_today(bad, tmp_path):
+    baseline = tmp_path / "baseline.json"
+    assert amuros("check", bad, "--write-baseline", baseline).returncode == 1
+    # Also where the lines have moved.
+    bad.write_text(bad.read_text().replace("<am:Amalthea", "\n\n<am:Amalthea", 1))
+    run = amuros("check", bad, "--baseline", baseline)
+    assert (run.returncode, run.stdout) == (0, "no findings\n")
+    bad.write_text(bad.read_text().replace('preemption="preemptive"', 'preemption="cooperative"', 1))
+    run = amuros("check", bad, "--baseline", baseline)
+    assert "INC-SW-PREEMPTION" in run.stdout
+    assert "1 finding:" in run.stdout
+    baseline.write_text("{}")
+    assert "is no baseline of amuros" in amuros("check", bad, "--baseline", baseline).stderr
