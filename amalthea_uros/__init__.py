@@ -7,7 +7,7 @@
 
 The names of this module are the public interface: `load` and `save`, the model and its documents, findings and errors, every
 AMALTHEA class and enumeration; `build` and `describe` for an `app.yaml`, `extract` and `build_model` between AMALTHEA models and
-systems of the generic performance model, `analyze_system` for response times.
+systems of the generic performance model, `analyze_system` for response times; `check` for rules.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from amalthea_uros.bridge.build import build_model as build_model
     from amalthea_uros.bridge.extract import Extraction as Extraction
     from amalthea_uros.bridge.extract import extract as extract
+    from amalthea_uros.checking import check as check
     from amalthea_uros.diagnostics import Finding as Finding
     from amalthea_uros.diagnostics import Location as Location
     from amalthea_uros.errors import AmurosError as AmurosError
@@ -60,6 +61,7 @@ _HOMES = {
     "Settings": "analyze.settings",
     "analyze_system": "analyze.system",
     "build": "pipeline",
+    "check": "checking",
     "build_model": "bridge.build",
     "describe": "pipeline",
     "extract": "bridge.extract",

@@ -60,6 +60,12 @@ class Finding:
         return f"{where}{self.rule} {self.severity}: {self.message}"
 
 
+def by_place(finding: Finding) -> tuple[str, int, int, str]:
+    """A key that sorts findings by file, line, column and rule."""
+    place = finding.location
+    return (str(place.path), place.line or 0, place.column or 0, finding.rule) if place else ("", 0, 0, finding.rule)
+
+
 def worst(findings: Iterable[Finding]) -> Severity | None:
     """The highest severity among findings, None if there are none."""
     present = {finding.severity for finding in findings}

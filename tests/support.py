@@ -14,6 +14,12 @@ ROOT = Path(__file__).parents[1]
 SHARED = ROOT.parent / "shared"
 DATA = ROOT / "tests" / "data"
 
+#: A model around an excerpt.
+MODEL = """<?xml version="1.0" encoding="UTF-8"?>
+<am:Amalthea xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
+ xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0">{}</am:Amalthea>
+"""
+
 
 def is_held(version: str) -> bool:
     return not version.startswith("ITEA") and tuple(map(int, version.split("."))) >= (0, 9, 7)

@@ -25,6 +25,7 @@ PACKAGE = "amalthea_uros"
         ("validate", ("metamodel", "diagnostics")),
         ("analyze", ("perf", "units", "diagnostics", "compiled")),
         ("pipeline", ("bridge", "diagnostics", "garbage", "metamodel", "perf", "spec", "uros", "xmi")),
+        ("checking", ("diagnostics", "garbage", "metamodel", "pipeline", "validate", "xmi")),
         ("report", ("diagnostics", "metamodel", "difference", "perf", "units", "uros", "pipeline", "analyze", "validate")),
     ],
 )

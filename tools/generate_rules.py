@@ -15,7 +15,7 @@ def main() -> None:
     rows = ["| rule | severity | profile | what is wrong | why it matters |", "|---|---|---|---|---|"]
     for identifier in registry.ids():
         rule = registry.rule(identifier)
-        rows.append(f"| {rule.id} | {rule.severity} | {rule.profile} | {rule.title} | {rule.rationale} |")
+        rows.append(f"| {rule.id} | {rule.severity} | {registry.profile_of(identifier)} | {rule.title} | {rule.rationale} |")
     PAGE.write_text(text[: text.index(HEADING)] + HEADING + "\n" + "\n".join(rows) + "\n")
 
 

@@ -11,11 +11,10 @@ from amalthea_uros.validate import registry
 @click.argument("identifier", metavar="RULE")
 def command(identifier: str) -> None:
     """Tell what a rule looks for, why, and what to do, with an example."""
-    try:
-        rule = registry.rule(identifier.upper())
-    except KeyError:
-        raise click.BadParameter(f"there is no rule {identifier!r}; `amuros rules` lists them") from None
-    click.echo(f"{rule.id}: {rule.title} ({rule.severity}, profile {rule.profile})\n")
+    profile = registry.profile_of(identifier)
+    if profile is None:
+        raise click.BadParameter(f"there is no rule {identifier!r}; `amuros rules` lists them")
+    rule = registry.rule(identifier)
+    click.echo(f"{rule.id}: {rule.title} ({rule.severity}, profile {profile})\n")
     click.echo(f"{rule.rationale}\n{rule.remedy}\n")
-    if rule.fails.strip():
-        click.echo(f"It fires at:\n{rule.fails.rstrip()}\n\nIt does not at:\n{rule.passes.rstrip()}")
+    click.echo(f"It fires at:\n{rule.fails.rstrip()}\n\nIt does not at:\n{rule.passes.rstrip()}")

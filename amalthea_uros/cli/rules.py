@@ -16,5 +16,5 @@ def command() -> None:
     rows = []
     for identifier in registry.ids():
         rule = registry.rule(identifier)
-        rows.append((rule.id, rule.severity, rule.profile, rule.title))
+        rows.append((rule.id, rule.severity, registry.profile_of(identifier), rule.title))
     Terminal(sys.stdout).table(("rule", "severity", "profile", "what is wrong"), rows)

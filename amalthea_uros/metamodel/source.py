@@ -108,6 +108,10 @@ class Source:
         return {element: i for i, element in enumerate(self.elements)}
 
     @cached_property
+    def _lines(self) -> dict[int, str]:
+        return {}
+
+    @cached_property
     def _line_starts(self) -> list[int]:
         starts = [0]
         find = self.text.find
@@ -134,9 +138,12 @@ class Source:
 
     def line(self, number: int) -> str:
         """The text of one line, counted from 1, without its end."""
-        starts = self._line_starts
-        end = starts[number] if number < len(starts) else len(self.text)
-        return self.text[starts[number - 1] : end].rstrip("\r\n")
+        # Kept, because all of a file may stand in one line, and each of its objects may be told with it.
+        if number not in self._lines:
+            starts = self._line_starts
+            end = starts[number] if number < len(starts) else len(self.text)
+            self._lines[number] = self.text[starts[number - 1] : end].rstrip("\r\n")
+        return self._lines[number]
 
     def attribute_offset(self, start: int, name: str) -> int:
         """Offset of an attribute of the tag that starts at `start`; of the tag itself if it has no such attribute."""

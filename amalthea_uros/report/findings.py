@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.validate import registry
 
 
 def finding_json(finding: Finding) -> dict[str, Any]:
@@ -20,3 +22,16 @@ def finding_json(finding: Finding) -> dict[str, Any]:
         "column": place.column if place else None,
         "object": finding.object,
     }
+
+
+def profile_name(identifier: str) -> str:
+    """The profile of a rule; "reading" for what is told of files and descriptions themselves."""
+    return registry.profile_of(identifier) or "reading"
+
+
+def relative(path: Path) -> str | None:
+    """A path from the current folder, None where it is not below that."""
+    try:
+        return path.resolve().relative_to(Path.cwd()).as_posix()
+    except ValueError:
+        return None

@@ -49,9 +49,10 @@ class Terminal:
         """Write the source line of a place and a caret below."""
         if location.text is None or location.line is None or location.column is None:
             return
-        text, column = _excerpt(location.text.replace("\t", " "), location.column - 1)
+        text, column = _excerpt(location.text, location.column - 1)
         number = str(location.line)
-        self.line(f"  {self.style(f'{number} |', '34')} {text}")
+        tabless = text.replace("\t", " ")
+        self.line(f"  {self.style(f'{number} |', '34')} {tabless}")
         self.line(f"  {self.style(' ' * len(number) + ' |', '34')} {' ' * column}{self.style('^', '31')}")
 
     def table(self, headings: Sequence[str], rows: Iterable[Sequence[object]], right: Sequence[int] = ()) -> None:

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(model: Model, rules: Iterable[Rule]) -> list[Finding]:
-    """The findings of rules, by place. A rule that crashes is a finding, too."""
+def run(model: Model, rules: Iterable[ModelRule]) -> list[Finding]:
+    """The findings of rules. A rule that crashes is a finding, too."""
     context = Context(model)
-    found = [finding for rule in rules for finding in _run(rule, context)]
-    return sorted(found, key=_place)
+    return [finding for rule in rules for finding in _findings(rule, context)]
 
 
-def _run(rule: Rule, context: Context) -> Iterator[Finding]:
+def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
     versions = {document.facts_version for document in context.model.documents}
     if not any((rule.since or "") <= version <= (rule.until or "9") for version in versions):
         return
@@ -37,8 +36,3 @@ def _finding(rule: str, severity: Severity, message: str, element: Element, reme
     document = element.document
     location = document.location_of(element) if document is not None else None
     return Finding(rule, severity, message, location, remedy, element.qualified_name)
-
-
-def _place(finding: Finding) -> tuple[str, int, int, str]:
-    place = finding.location or Location(None)  # type: ignore[arg-type]
-    return (str(place.path), place.line or 0, place.column or 0, finding.rule)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from functools import cache
 from importlib import import_module
 from importlib.resources import files
-from importlib.resources.abc import Traversable
 
 from amalthea_uros.validate.rule import Profile, Rule
 
@@ -17,7 +17,14 @@ _ID = re.compile(r'^    id="([^"]+)",$', re.MULTILINE)
 def ids(profiles: Iterable[Profile] = Profile) -> Iterator[str]:
     """The ids of the rules of some profiles, in order."""
     for profile in profiles:
-        yield from sorted(_ID.findall(entry.read_text())[0] for entry in _entries(profile))
+        folder = files("amalthea_uros.validate.rules") / _folder(profile)
+        yield from sorted(_ID.findall((folder / f"{name}.py").read_text())[0] for name in _modules(profile))
+
+
+def profile_of(identifier: str) -> Profile | None:
+    """The profile of a rule, None if there is no such rule."""
+    name = _module(identifier)
+    return next((profile for profile in Profile if name in _modules(profile)), None)
 
 
 def rule(identifier: str) -> Rule:
@@ -27,18 +34,26 @@ def rule(identifier: str) -> Rule:
     ------
     KeyError : there is none.
     """
-    for profile in Profile:
-        name = identifier.lower().replace("-", "_")
-        if name in _modules(profile):
-            found: Rule = import_module(f"amalthea_uros.validate.rules.{profile}.{name}").RULE
-            return found
-    raise KeyError(identifier)
+    profile = profile_of(identifier)
+    if profile is None:
+        raise KeyError(identifier)
+    found: Rule = import_module(f"amalthea_uros.validate.rules.{_folder(profile)}.{_module(identifier)}").RULE
+    return found
 
 
-def _modules(profile: Profile) -> list[str]:
-    return [entry.name.removesuffix(".py") for entry in _entries(profile)]
+def _module(identifier: str) -> str:
+    return re.sub("[-/]", "_", identifier.lower())
 
 
-def _entries(profile: Profile) -> list[Traversable]:
-    folder = files("amalthea_uros.validate.rules") / profile
-    return [entry for entry in folder.iterdir() if entry.name.endswith(".py") and not entry.name.startswith("_")]
+def _folder(profile: Profile) -> str:
+    return profile.replace("-", "_")
+
+
+@cache
+def _modules(profile: Profile) -> frozenset[str]:
+    folder = files("amalthea_uros.validate.rules") / _folder(profile)
+    return frozenset(
+        entry.name.removesuffix(".py")
+        for entry in folder.iterdir()
+        if entry.name.endswith(".py") and not entry.name.startswith("_")
+    )

@@ -15,9 +15,35 @@ from amalthea_uros.validate.context import Context
 class Profile(StrEnum):
     """A set of rules for a purpose; the folder in which they are has its name."""
 
+    SCHEMA = "schema"
+    EMF = "emf"
     APP4MC = "app4mc"
+    TA = "ta"
     INCHRON = "inchron"
     TIMING = "timing"
+    MICRO_ROS = "micro-ros"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rule:
+    """What is to be known of a rule; what finds it is elsewhere: the XML schema, or the building of a system from a description.
+
+    Attributes
+    ----------
+    id : unique; those of APP4MC's own rules are APP4MC's
+    title : what is wrong where the rule fires, in a few words
+    rationale : why that matters
+    remedy : what to do about it
+    fails, passes : what stands in a model, or in a description, in which the rule fires, or does not
+    """
+
+    id: str
+    title: str
+    severity: Severity
+    rationale: str
+    remedy: str
+    fails: str
+    passes: str
 
 
 #: What is wrong with an object, one sentence for each thing.
@@ -25,35 +51,21 @@ Check = Callable[[Any, Context], Iterator[str]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Rule:
+class ModelRule(Rule):
     """A rule about the objects of a class.
 
     Attributes
     ----------
-    id : unique; those of APP4MC's own rules are APP4MC's
-    title : what is wrong where the rule fires, in a few words
     target : the class whose objects, and those of its subclasses, are looked at
-    rationale : why that matters
-    remedy : what to do about it
-    fails, passes : what stands in a model in which the rule fires, or does not
+    check : what is wrong with one of them
     example_version : AMALTHEA version of the failing example
     since, until : AMALTHEA versions for which it is meant; None: any
+    is_about_files : it tells of what reading found odd in a file, such as unknown elements
     """
 
-    id: str
-    title: str
-    severity: Severity
     target: type[Element]
-    rationale: str
-    remedy: str
     check: Check
-    fails: str
-    passes: str
     example_version: str = "3.3.0"
     since: str | None = None
     until: str | None = None
-
-    @property
-    def profile(self) -> Profile:
-        """The profile, which is the folder of the file in which the check is."""
-        return Profile(self.check.__module__.split(".")[-2])
+    is_about_files: bool = False

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 
@@ -16,8 +17,12 @@ _COMMENT = re.compile(r"amuros:\s*ignore\[([^\]]*)\]")
 def is_ignored(finding: Finding) -> bool:
     """Whether the line of a finding has a comment such as `# amuros: ignore[INC-CO-KIND]`."""
     text = finding.location.text if finding.location is not None else None
-    found = _COMMENT.search(text or "")
-    return found is not None and finding.rule in (name.strip() for name in found[1].split(","))
+    return text is not None and finding.rule in _ignored_in(text)
+
+
+@lru_cache
+def _ignored_in(line: str) -> frozenset[str]:
+    return frozenset(name.strip() for comment in _COMMENT.findall(line) for name in comment.split(","))
 
 
 def fingerprint(finding: Finding) -> str:

@@ -4,7 +4,7 @@ import json
 from xml.etree import ElementTree
 
 import pytest
-from support import ROOT
+from support import MODEL, ROOT
 from test_cli import amuros
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
@@ -122,3 +122,17 @@ def test_a_baseline_accepts_what_is_there_today(bad, tmp_path):
     assert "1 finding:" in run.stdout
     baseline.write_text("{}")
     assert "is no baseline of amuros" in amuros("check", bad, "--baseline", baseline).stderr
+
+
+def test_of_what_is_found_very_often_the_first_are_shown(tmp_path):
+    path = tmp_path / "labels.amxmi"
+    # All in one line, as some tools write: the line is not shown as a whole.
+    labels = "".join(f'<labels name="L{number}"/>' for number in range(150))
+    path.write_text(MODEL.format(f"<swModel>{labels}</swModel>"))
+    run = amuros("check", path, "--select", "INC-SW-LABELSIZE")
+    assert run.stdout.count("INC-SW-LABELSIZE warning") == 100
+    assert "INC-SW-LABELSIZE: 50 more, not shown" in run.stdout
+    assert "150 findings" in run.stdout
+    assert max(map(len, run.stdout.splitlines())) < 150
+    run = amuros("check", path, "--select", "INC-SW-LABELSIZE", "--output", "json")
+    assert len(json.loads(run.stdout)["findings"]) == 150

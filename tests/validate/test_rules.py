@@ -5,20 +5,17 @@ import sys
 
 import inchron
 import pytest
-from support import ROOT, SHARED
+from support import MODEL, ROOT, SHARED
 
-from amalthea_uros import load
+from amalthea_uros import check, load
+from amalthea_uros.checking import check_files
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.engine import check
+from amalthea_uros.validate.engine import run
 from amalthea_uros.validate.rule import Profile
 
 IDS = list(registry.ids())
-MODEL = """<?xml version="1.0" encoding="UTF-8"?>
-<am:Amalthea xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
- xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0">{}</am:Amalthea>
-"""
 
 
 def model(excerpt, folder, version="3.3.0"):
@@ -35,18 +32,40 @@ def test_a_rule(identifier, tmp_path):
     assert rule.title[-1] != "."
     assert rule.rationale.endswith(".")
     assert rule.remedy.endswith(".")
-    assert isinstance(rule.profile, Profile)
-    failing = model(rule.fails, tmp_path, rule.example_version)
-    passing = model(rule.passes, tmp_path)
-    # The examples are models of which everything is understood.
-    assert not failing.findings
-    assert not passing.findings
-    findings = check(failing, [rule])
+    findings = found_in(rule, rule.fails, tmp_path)
     assert findings
     for finding in findings:
-        assert (finding.rule, finding.severity, finding.help) == (rule.id, rule.severity, rule.remedy)
-        assert finding.location.line
-    assert not check(passing, [rule])
+        assert (finding.rule, finding.severity) == (rule.id, rule.severity)
+    assert not found_in(rule, rule.passes, tmp_path)
+
+
+def found_in(rule, example, folder):
+    """What a rule finds in one of its examples."""
+    profile = registry.profile_of(rule.id)
+    if profile is Profile.MICRO_ROS:
+        path = folder / "app.yaml"
+        path.write_text(example)
+        return [finding for finding in told_of(path) if finding.rule == rule.id]
+    if profile is Profile.SCHEMA:
+        path = folder / "model.amxmi"
+        path.write_text(example)
+        return check(load(path), [rule.id])
+    version = rule.example_version if example == rule.fails else "3.3.0"
+    read = model(example, folder, version)
+    if not rule.is_about_files:
+        # The examples are models of which everything is understood.
+        assert not read.findings
+    findings = check(read, [rule.id])
+    assert all(finding.help == rule.remedy and finding.location.line for finding in findings)
+    return findings
+
+
+def told_of(path):
+    """The findings about a description, whether it becomes a system or not."""
+    try:
+        return check_files([path], IDS)
+    except ReadError as error:
+        return error.findings
 
 
 def test_ids_are_unique():
@@ -54,9 +73,8 @@ def test_ids_are_unique():
 
 
 def found_by_rules(model):
-    rules = [registry.rule(identifier) for identifier in registry.ids([Profile.INCHRON])]
-    # What reading already tells is not told again.
-    return {(finding.rule, "E" if finding.severity is Severity.ERROR else "W") for finding in check(model, rules)}
+    findings = check(model, registry.ids([Profile.INCHRON]))
+    return {(finding.rule, "E" if finding.severity is Severity.ERROR else "W") for finding in findings}
 
 
 PATHS = [*sorted((ROOT / "samples").glob("*.amxmi")), *sorted((SHARED / "vectors" / "am2inc").glob("*.amxmi"))]
@@ -79,7 +97,7 @@ def test_a_circle_of_calls_is_told_from_each_of_its_runnables(tmp_path):
         return f'<runnables name="{name}"><activityGraph>{items}</activityGraph></runnables>'
 
     excerpt = f"<swModel>{calls('A', 'D', 'B')}{calls('B', 'C')}{calls('C', 'A')}{calls('D')}</swModel>"
-    found = check(model(excerpt, tmp_path), [registry.rule("TIM-RECURSION")])
+    found = check(model(excerpt, tmp_path), ["TIM-RECURSION"])
     assert [finding.message for finding in found] == [
         "'A' calls itself: A -> B -> C -> A",
         "'B' calls itself: B -> C -> A -> B",
@@ -95,7 +113,7 @@ def test_a_rule_that_fails_is_a_finding(tmp_path):
         yield
 
     rule = replace(registry.rule("INC-SW-LABELSIZE"), check=broken)
-    (finding,) = check(model('<swModel><labels name="L"/></swModel>', tmp_path), [rule])
+    (finding,) = run(model('<swModel><labels name="L"/></swModel>', tmp_path), [rule])
     assert finding.rule == "CHK001"
     assert "INC-SW-LABELSIZE failed" in finding.message
     assert finding.object == "L"
@@ -106,5 +124,5 @@ def test_only_what_is_selected_is_imported():
         "import sys; from amalthea_uros.validate import registry; list(registry.ids()); registry.rule('INC-HW-PU-CLOCK'); "
         "print([name for name in sys.modules if '.rules.inchron.' in name])"
     )
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert run.stdout.strip() == "['amalthea_uros.validate.rules.inchron.inc_hw_pu_clock']"
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert process.stdout.strip() == "['amalthea_uros.validate.rules.inchron.inc_hw_pu_clock']"

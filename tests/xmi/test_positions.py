@@ -36,3 +36,11 @@ def test_beyond_the_line_at_which_libxml2_stops_counting(tmp_path):
     (finding,) = model.findings
     assert (finding.location.line, finding.location.column) == (23, 6)
     assert "70000 times" in finding.message
+
+
+def test_the_text_of_a_line_is_kept_once(tmp_path):
+    # All of a file may stand in one line, and a finding about each of its objects carries that.
+    model = amuros.load(DATA / "brake.amxmi")
+    document = model.documents[0]
+    lines = [document.location_of(element).text for element in (model[Runnable, "Act"], model[Runnable, "Act"])]
+    assert lines[0] is lines[1]

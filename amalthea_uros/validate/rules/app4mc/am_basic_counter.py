@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Counter
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Counter, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Counter, context: Context) -> Iterator[str]:
     if (element.offset or 0) < 0:
         yield f"the counter has the offset {element.offset}"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="AM-Basic-Counter",
     title="counter with an offset below zero",
     severity=Severity.ERROR,
     target=Counter,
-    check=check,
+    check=_check,
     rationale="It would take effect before the first occurrence; APP4MC reports it when it validates the model.",
     remedy="State an offset of 0 or more.",
     fails="""

@@ -8,23 +8,22 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import IAnnotatable
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: IAnnotatable, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: IAnnotatable, context: Context) -> Iterator[str]:
     count = Counter(entry.key for entry in element.custom_properties)
     for key, times in count.items():
         if times > 1:
             yield f"the custom property {key!r} is given {times} times"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="AM-Basic-CustomProperty-Key",
     title="custom property that is given twice",
     severity=Severity.WARNING,
     target=IAnnotatable,
-    check=check,
+    check=_check,
     rationale="Only one of them counts, and it is not said which. APP4MC reports it when it validates the model.",
     remedy="Give each key once.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractMemoryElement
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: AbstractMemoryElement, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: AbstractMemoryElement, context: Context) -> Iterator[str]:
     if element.size is not None and element.size.value is not None and element.size.value <= 0:
         yield f"the size of {element.name!r} is {element.size.value}"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="AM-Basic-Data-Size",
     title="size that is not above zero",
     severity=Severity.ERROR,
     target=AbstractMemoryElement,
-    check=check,
+    check=_check,
     rationale="Something in memory cannot be that small. APP4MC reports it when it validates the model.",
     remedy="State a size above 0, or none.",
     fails="""

@@ -7,23 +7,22 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ClockFunction, Frequency, FrequencyDomain
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Frequency, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Frequency, context: Context) -> Iterator[str]:
     holder = element.container
     decides = isinstance(holder, FrequencyDomain) or (isinstance(holder, ClockFunction) and holder.y_offset is element)
     if decides and element.value is not None and element.value <= 0:
         yield f"the frequency is {element.value}"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="AM-Basic-Frequency",
     title="frequency that is not above zero",
     severity=Severity.ERROR,
     target=Frequency,
-    check=check,
+    check=_check,
     rationale="A clock that stands still counts nothing. APP4MC reports it when it validates the model.",
     remedy="State a frequency above 0.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Quantity
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Quantity, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Quantity, context: Context) -> Iterator[str]:
     if getattr(element, "unit", None) in (None, "_undefined_"):
         yield f"the {type(element).__name__} has no unit"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="AM-Basic-Quantity",
     title="quantity without a unit",
     severity=Severity.ERROR,
     target=Quantity,
-    check=check,
+    check=_check,
     rationale="Without a unit a value means nothing, also 0. APP4MC reports it when it validates the model.",
     remedy="State the unit.",
     fails="""

@@ -8,11 +8,10 @@ from itertools import pairwise
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: AbstractEventChain, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
     parts = [chain for item in element.items if (chain := getattr(item, "event_chain", None)) is not None]
     if element.item_type == "parallel" or not parts:
         return
@@ -25,12 +24,12 @@ def check(element: AbstractEventChain, context: Context) -> Iterator[str]:
             yield f"the segment {number} does not start with the response of the one before it"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="AM-Constraints-EventChain",
     title="segments that do not fit together",
     severity=Severity.ERROR,
     target=AbstractEventChain,
-    check=check,
+    check=_check,
     rationale="A chain is a path without gaps. APP4MC reports it when it validates the model.",
     remedy="Start each segment with the response of the one before it, and keep to the ends of the chain.",
     fails="""

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ConnectionHandler, HwConnection
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: HwConnection, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: HwConnection, context: Context) -> Iterator[str]:
     first, second = element.port1, element.port2
     if first is None or second is None:
         yield f"the connection {element.name!r} lacks a port"
@@ -23,12 +22,12 @@ def check(element: HwConnection, context: Context) -> Iterator[str]:
             yield f"the connection {element.name!r} joins ports of the interfaces {' and '.join(sorted(map(str, interfaces)))}"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="AM-HW-Connection",
     title="connection whose ends do not fit",
     severity=Severity.ERROR,
     target=HwConnection,
-    check=check,
+    check=_check,
     rationale="It joins nothing, or what cannot be joined. APP4MC reports it when it validates the model.",
     remedy="Join two different ports of the same interface.",
     fails="""

@@ -8,23 +8,22 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ProcessingUnitDefinition
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: ProcessingUnitDefinition, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: ProcessingUnitDefinition, context: Context) -> Iterator[str]:
     count = Counter(feature.container for feature in element.features)
     for feature in element.features:
         if count[feature.container] > 1:
             yield f"the feature {feature.name!r} is not the only one of its category"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="AM-HW-Definition",
     title="two features of one category",
     severity=Severity.ERROR,
     target=ProcessingUnitDefinition,
-    check=check,
+    check=_check,
     rationale="Execution needs find their feature by the category, which has to be one. APP4MC reports it when it validates the model.",
     remedy="Refer to one feature of each category.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Cache, ConnectionHandler, HwModule, Memory, ProcessingUnit
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: HwModule, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: HwModule, context: Context) -> Iterator[str]:
     if isinstance(element, Memory | ProcessingUnit | ConnectionHandler | Cache) and element.definition is None:
         yield f"{element.name!r} has no definition"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="AM-HW-Module-Definition",
     title="hardware module without a definition",
     severity=Severity.WARNING,
     target=HwModule,
-    check=check,
+    check=_check,
     rationale="Its properties are not known. APP4MC reports it when it validates the model.",
     remedy="Refer to a definition.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ISR, ISRAllocation
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: ISR, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: ISR, context: Context) -> Iterator[str]:
     if not context.uses(ISRAllocation, "isr")[element]:
         yield f"no ISR allocation refers to {element.name!r}"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="AM-Mapping-ISR-Scheduler",
     title="interrupt service routine without a controller",
     severity=Severity.WARNING,
     target=ISR,
-    check=check,
+    check=_check,
     rationale="It is not served by anything. APP4MC reports it when it validates the model.",
     remedy="Allocate it to an interrupt controller.",
     fails="""

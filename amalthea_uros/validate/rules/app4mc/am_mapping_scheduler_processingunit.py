@@ -7,23 +7,22 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Scheduler, SchedulerAllocation
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Scheduler, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Scheduler, context: Context) -> Iterator[str]:
     definition = getattr(element, "definition", None)
     is_grouping = definition is not None and definition.name == "Grouping"
     if not is_grouping and not context.uses(SchedulerAllocation, "scheduler")[element]:
         yield f"no scheduler allocation refers to {element.name!r}"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="AM-Mapping-Scheduler-ProcessingUnit",
     title="scheduler without a processing unit",
     severity=Severity.WARNING,
     target=Scheduler,
-    check=check,
+    check=_check,
     rationale="It decides for nothing. APP4MC reports it when it validates the model.",
     remedy="Give it a scheduler allocation.",
     fails="""

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import EventChain, EventChainReference
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: EventChain, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: EventChain, context: Context) -> Iterator[str]:
     if _contains(element, (element,)):
         yield f"the chain {element.name!r} is part of itself"
 
@@ -21,12 +20,12 @@ def _contains(chain: EventChain, above: tuple[EventChain, ...]) -> bool:
     return any(each in above or _contains(each, (*above, each)) for each in inner if each is not None)
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-EC-CYCLE",
     title="chain that is part of itself",
     severity=Severity.ERROR,
     target=EventChain,
-    check=check,
+    check=_check,
     rationale="am2inc ends with a segmentation fault.",
     remedy="Break the circle of references.",
     fails="""

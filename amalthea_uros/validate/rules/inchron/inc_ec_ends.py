@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: AbstractEventChain, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
     if element.stimulus is None or element.response is None:
         yield f"the chain {element.name or ''!r} lacks its stimulus or its response"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-EC-ENDS",
     title="chain without an end",
     severity=Severity.WARNING,
     target=AbstractEventChain,
-    check=check,
+    check=_check,
     rationale="The chain is dropped, with a warning.",
     remedy="Name its stimulus and its response.",
     fails="""

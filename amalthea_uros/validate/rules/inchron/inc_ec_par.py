@@ -7,23 +7,22 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: AbstractEventChain, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
     branches = [chain for item in element.items if (chain := getattr(item, "event_chain", None)) is not None]
     ends = (element.stimulus, element.response)
     if element.item_type == "parallel" and any((b.stimulus, b.response) != ends for b in branches):
         yield f"a branch of the chain {element.name or ''!r} has other ends than the chain"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-EC-PAR",
     title="branch with other ends than its chain",
     severity=Severity.WARNING,
     target=AbstractEventChain,
-    check=check,
+    check=_check,
     rationale="The chain is dropped, with a warning.",
     remedy="Give each branch the stimulus and the response of the chain.",
     fails="""

@@ -7,22 +7,21 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: AbstractEventChain, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
     branches = [chain for item in element.items if (chain := getattr(item, "event_chain", None)) is not None]
     if element.item_type == "parallel" and any(not branch.items for branch in branches):
         yield f"a branch of the chain {element.name or ''!r} has no items"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-EC-PAR-ITEMS",
     title="branch without items",
     severity=Severity.ERROR,
     target=AbstractEventChain,
-    check=check,
+    check=_check,
     rationale="am2inc writes a broken graph without a word.",
     remedy="Give each branch segments of its own.",
     fails="""

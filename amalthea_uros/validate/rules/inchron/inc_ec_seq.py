@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: AbstractEventChain, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
     segments = [chain for item in element.items if (chain := getattr(item, "event_chain", None)) is not None]
     if element.item_type != "parallel" and segments:
         ends = [element.stimulus, *(segment.response for segment in segments)]
@@ -19,12 +18,12 @@ def check(element: AbstractEventChain, context: Context) -> Iterator[str]:
             yield f"the segments of the chain {element.name or ''!r} do not fit together"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-EC-SEQ",
     title="segments that do not fit together",
     severity=Severity.WARNING,
     target=AbstractEventChain,
-    check=check,
+    check=_check,
     rationale="am2inc changes the chain without a word: responses of segments are never read.",
     remedy="Start each segment with the response of the one before it, and keep to the ends of the chain.",
     fails="""

@@ -7,22 +7,21 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import EventChain, EventSet
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: EventChain, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: EventChain, context: Context) -> Iterator[str]:
     for event in (element.stimulus, element.response):
         if isinstance(event, EventSet) and len(event.events) > 1:
             yield f"the chain {element.name!r} starts or ends with the {len(event.events)} events of {event.name!r}"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-EC-SET",
     title="chain that starts or ends with several events",
     severity=Severity.WARNING,
     target=EventChain,
-    check=check,
+    check=_check,
     rationale="The chain is dropped, with a warning.",
     remedy="Start and end it with one event.",
     fails="""

@@ -7,22 +7,21 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain, EventSet, LabelEvent, ProcessEvent, RunnableEvent
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: AbstractEventChain, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
     for event in (element.stimulus, element.response):
         if event is not None and not isinstance(event, ProcessEvent | RunnableEvent | LabelEvent | EventSet):
             yield f"the event {event.name!r} is not converted, and the chain is dropped"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-EV-KIND",
     title="chain with an event that is not converted",
     severity=Severity.WARNING,
     target=AbstractEventChain,
-    check=check,
+    check=_check,
     rationale="The chain is dropped, with a warning.",
     remedy="Use events of processes, runnables or labels.",
     fails="""

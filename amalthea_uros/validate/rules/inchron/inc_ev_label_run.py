@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import LabelEvent
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: LabelEvent, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: LabelEvent, context: Context) -> Iterator[str]:
     if element.runnable is not None:
         yield f"the event {element.name!r} holds for one runnable only, and is dropped"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-EV-LABEL-RUN",
     title="event of a label in one runnable",
     severity=Severity.WARNING,
     target=LabelEvent,
-    check=check,
+    check=_check,
     rationale="It is dropped without a word.",
     remedy="Let the event hold for all runnables.",
     fails="""

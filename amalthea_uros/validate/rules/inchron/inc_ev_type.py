@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import EntityEvent, LabelEvent, ProcessEvent, RunnableEvent, Task
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: EntityEvent, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: EntityEvent, context: Context) -> Iterator[str]:
     if not isinstance(element, ProcessEvent | RunnableEvent | LabelEvent):
         return
     allowed = _allowed(element)
@@ -30,12 +29,12 @@ def _allowed(event: ProcessEvent | RunnableEvent | LabelEvent) -> set[str]:
     return {"activate", "start", "terminate"}
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-EV-TYPE",
     title="event that is no moment",
     severity=Severity.WARNING,
     target=EntityEvent,
-    check=check,
+    check=_check,
     rationale="A chain with it is dropped, with a warning.",
     remedy="Name the object, and one of activate, start, terminate; start, terminate of runnables; read, write of labels.",
     fails="""

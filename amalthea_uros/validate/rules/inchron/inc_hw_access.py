@@ -7,20 +7,19 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import HwAccessElement
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: HwAccessElement, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: HwAccessElement, context: Context) -> Iterator[str]:
     yield f"what accesses to {element.destination.name if element.destination else 'a memory'!r} cost is ignored"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-HW-ACCESS",
     title="access that carries timing",
     severity=Severity.WARNING,
     target=HwAccessElement,
-    check=check,
+    check=_check,
     rationale="am2inc ignores access elements, paths and latencies without a word.",
     remedy="Do not rely on the timing of memory accesses after the import.",
     fails="""

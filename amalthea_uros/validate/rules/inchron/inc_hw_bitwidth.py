@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import HwPort
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: HwPort, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: HwPort, context: Context) -> Iterator[str]:
     if not (element.bit_width or 0) > 0:
         yield f"the port {element.name!r} has no bit width above zero"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-HW-BITWIDTH",
     title="port without a width",
     severity=Severity.WARNING,
     target=HwPort,
-    check=check,
+    check=_check,
     rationale="It becomes the width of the core, the memory or the interconnect.",
     remedy="State a bit width above zero.",
     fails="""

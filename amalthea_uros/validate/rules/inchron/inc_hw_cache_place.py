@@ -7,23 +7,22 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Cache, HwStructure, ProcessingUnit
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Cache, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Cache, context: Context) -> Iterator[str]:
     holder = element.container
     modules = holder.modules if isinstance(holder, HwStructure) else []
     if not isinstance(holder, ProcessingUnit) and not any(isinstance(module, ProcessingUnit) for module in modules):
         yield f"the cache {element.name!r} is neither in a processing unit nor in a structure that has one"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-HW-CACHE-PLACE",
     title="cache away from any processing unit",
     severity=Severity.ERROR,
     target=Cache,
-    check=check,
+    check=_check,
     rationale="am2inc ends with a segmentation fault.",
     remedy="Put the cache into a processing unit, or into a structure that has one.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ConnectionHandler
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: ConnectionHandler, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: ConnectionHandler, context: Context) -> Iterator[str]:
     if not element.ports or element.ports[0].port_interface not in ("AXI", "AHB", "APB", "custom"):
         yield f"the first port of {element.name!r} has no interface among AXI, AHB, APB and custom"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-HW-CONN-IFACE",
     title="interconnect without a known interface",
     severity=Severity.WARNING,
     target=ConnectionHandler,
-    check=check,
+    check=_check,
     rationale="am2inc drops it without a word.",
     remedy="Give its first port the interface AXI, AHB, APB or custom.",
     fails="""

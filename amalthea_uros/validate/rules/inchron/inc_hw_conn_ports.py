@@ -7,22 +7,21 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import HwConnection
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: HwConnection, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: HwConnection, context: Context) -> Iterator[str]:
     types = {port.port_type for port in (element.port1, element.port2) if port is not None}
     if types != {"initiator", "responder"}:
         yield f"the connection {element.name!r} does not join an initiator and a responder"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-HW-CONN-PORTS",
     title="connection that joins no initiator and responder",
     severity=Severity.WARNING,
     target=HwConnection,
-    check=check,
+    check=_check,
     rationale="am2inc drops it without a word.",
     remedy="Join one port of the type initiator and one of the type responder.",
     fails="""

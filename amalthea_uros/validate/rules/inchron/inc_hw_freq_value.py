@@ -7,23 +7,22 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import FrequencyDomain, ProcessingUnit
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: FrequencyDomain, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: FrequencyDomain, context: Context) -> Iterator[str]:
     value = element.default_value
     is_used = context.uses(ProcessingUnit, "frequency_domain")[element] > 0
     if is_used and (value is None or not value.unit or not (value.value or 0) > 0):
         yield f"the frequency domain {element.name!r} of a processing unit has no frequency above zero with a unit"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-HW-FREQ-VALUE",
     title="frequency domain without a frequency",
     severity=Severity.ERROR,
     target=FrequencyDomain,
-    check=check,
+    check=_check,
     rationale="am2inc ends with a segmentation fault, or takes 1000 MHz or 0 MHz without a word.",
     remedy="State a default value above zero, with its unit.",
     fails="""

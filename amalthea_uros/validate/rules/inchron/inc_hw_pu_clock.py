@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ProcessingUnit
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: ProcessingUnit, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: ProcessingUnit, context: Context) -> Iterator[str]:
     if element.frequency_domain is None:
         yield f"the processing unit {element.name!r} has no frequency domain"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-HW-PU-CLOCK",
     title="processing unit without a clock",
     severity=Severity.ERROR,
     target=ProcessingUnit,
-    check=check,
+    check=_check,
     rationale="am2inc ends with a segmentation fault.",
     remedy="Give the processing unit a frequency domain.",
     fails="""

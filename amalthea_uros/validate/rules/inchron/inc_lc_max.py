@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import EventChainLatencyConstraint
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: EventChainLatencyConstraint, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: EventChainLatencyConstraint, context: Context) -> Iterator[str]:
     if element.maximum is None or element.type in (None, "_undefined_"):
         yield f"the constraint {element.name!r} lacks its maximum or its type"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-LC-MAX",
     title="latency constraint without a maximum or a type",
     severity=Severity.WARNING,
     target=EventChainLatencyConstraint,
-    check=check,
+    check=_check,
     rationale="A missing maximum becomes 0, a missing type becomes reaction, without a word.",
     remedy="State the maximum and the type.",
     fails="""

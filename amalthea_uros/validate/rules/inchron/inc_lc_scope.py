@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import EventChainLatencyConstraint
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: EventChainLatencyConstraint, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: EventChainLatencyConstraint, context: Context) -> Iterator[str]:
     if element.scope is None:
         yield f"the constraint {element.name!r} names no chain"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-LC-SCOPE",
     title="latency constraint without a chain",
     severity=Severity.WARNING,
     target=EventChainLatencyConstraint,
-    check=check,
+    check=_check,
     rationale="am2inc drops it, with a warning.",
     remedy="Name the chain.",
     fails="""

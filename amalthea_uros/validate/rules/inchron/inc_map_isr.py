@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ISRAllocation
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: ISRAllocation, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: ISRAllocation, context: Context) -> Iterator[str]:
     if element.isr is None or element.controller is None:
         yield "the ISR allocation lacks its ISR or its controller"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-MAP-ISR",
     title="incomplete ISR allocation",
     severity=Severity.WARNING,
     target=ISRAllocation,
-    check=check,
+    check=_check,
     rationale="am2inc skips it without a word.",
     remedy="Name the ISR and its controller.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Label, MemoryMapping
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: MemoryMapping, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: MemoryMapping, context: Context) -> Iterator[str]:
     if element.memory is None or not isinstance(element.abstract_element, Label):
         yield "the memory mapping lacks its memory or its label"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-MAP-MEMORY",
     title="memory mapping of something else than a label",
     severity=Severity.ERROR,
     target=MemoryMapping,
-    check=check,
+    check=_check,
     rationale="Without an element am2inc ends with a segmentation fault; what is no label is dropped without a word.",
     remedy="Map labels to memories only, and name both.",
     fails="""

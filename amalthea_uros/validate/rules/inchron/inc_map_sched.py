@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Scheduler, SchedulerAllocation
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Scheduler, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Scheduler, context: Context) -> Iterator[str]:
     if not any(a.scheduler is element and a.responsibility for a in context.all(SchedulerAllocation)):
         yield f"no scheduler allocation makes {element.name!r} responsible for a processing unit"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-MAP-SCHED",
     title="scheduler without a core",
     severity=Severity.WARNING,
     target=Scheduler,
-    check=check,
+    check=_check,
     rationale="am2inc makes a scheduler without a core, without a word.",
     remedy="Give it a scheduler allocation with a responsibility.",
     fails="""

@@ -7,20 +7,19 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import PhysicalSectionMapping
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: PhysicalSectionMapping, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: PhysicalSectionMapping, context: Context) -> Iterator[str]:
     yield f"the section mapping {element.name!r} is dropped"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-MAP-SECTION",
     title="section mapping",
     severity=Severity.WARNING,
     target=PhysicalSectionMapping,
-    check=check,
+    check=_check,
     rationale="am2inc drops it, with a warning.",
     remedy="Map the labels themselves.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import TaskAllocation
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: TaskAllocation, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
     if element.task is None or element.scheduler is None:
         yield "the task allocation lacks its task or its scheduler"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-MAP-TASK",
     title="incomplete task allocation",
     severity=Severity.ERROR,
     target=TaskAllocation,
-    check=check,
+    check=_check,
     rationale="am2inc ends with a segmentation fault, or the task vanishes.",
     remedy="Name the task and its scheduler.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import SchedulingParameter
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: SchedulingParameter, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
     if element.key is not None and element.key.name not in ("priority", "deadline"):
         yield f"the scheduling parameter {element.key.name!r} is ignored"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-OS-ALGOPARAM",
     title="scheduling parameter other than priority and deadline",
     severity=Severity.WARNING,
     target=SchedulingParameter,
-    check=check,
+    check=_check,
     rationale="am2inc ignores it without a word; names are compared exactly.",
     remedy="Rely on priority and deadline only.",
     fails="""

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import TaskScheduler
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: TaskScheduler, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: TaskScheduler, context: Context) -> Iterator[str]:
     before = getattr(element, "scheduling_algorithm", None)
     policy = (
         element.definition.name if element.definition is not None else type(before).__name__ if before is not None else None
@@ -20,12 +19,12 @@ def check(element: TaskScheduler, context: Context) -> Iterator[str]:
         yield f"the policy {policy} of {element.name!r} becomes fixed priorities with preemption"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-OS-ALGORITHM",
     title="scheduler without fixed priorities",
     severity=Severity.WARNING,
     target=TaskScheduler,
-    check=check,
+    check=_check,
     rationale="Every scheduler becomes one of fixed priorities with preemption, without a word.",
     remedy="Use FixedPriorityPreemptive, or expect other results than the model says.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import SchedulingParameter, Time
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: SchedulingParameter, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
     if element.key is not None and element.key.name == "deadline" and not isinstance(element.value, Time):
         yield "the value of the deadline is no Time"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-OS-DEADLINE-TYPE",
     title="deadline that is no time",
     severity=Severity.WARNING,
     target=SchedulingParameter,
-    check=check,
+    check=_check,
     rationale="am2inc takes 0 without a word.",
     remedy="Make the value a Time.",
     fails="""

@@ -8,23 +8,22 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import OsOverhead, Scheduler, Ticks
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Element, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Element, context: Context) -> Iterator[str]:
     if isinstance(element, OsOverhead) and any(isinstance(part, Ticks) for part in element.walk()):
         yield f"the overhead {element.name!r} has Ticks"
     if isinstance(element, Scheduler) and element.computation_items:
         yield f"the scheduler {element.name!r} has computation items"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-OS-OVERHEAD",
     title="overhead of the operating system",
     severity=Severity.ERROR,
     target=Element,
-    check=check,
+    check=_check,
     rationale="am2inc ends with a segmentation fault.",
     remedy="Remove overheads with Ticks and the computation items of schedulers before the import.",
     fails="""

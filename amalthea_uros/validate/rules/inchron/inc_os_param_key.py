@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import SchedulingParameter
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: SchedulingParameter, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
     if element.key is None:
         yield "the scheduling parameter has no key"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-OS-PARAM-KEY",
     title="scheduling parameter without a key",
     severity=Severity.ERROR,
     target=SchedulingParameter,
-    check=check,
+    check=_check,
     rationale="am2inc ends with a segmentation fault.",
     remedy="Let the parameter refer to its definition.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import IntegerObject, SchedulingParameter
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: SchedulingParameter, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
     if element.key is not None and element.key.name == "priority" and not isinstance(element.value, IntegerObject):
         yield "the value of the priority is no IntegerObject"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-OS-PRIO-TYPE",
     title="priority that is no integer",
     severity=Severity.ERROR,
     target=SchedulingParameter,
-    check=check,
+    check=_check,
     rationale="am2inc ends with a segmentation fault.",
     remedy="Make the value an IntegerObject.",
     fails="""

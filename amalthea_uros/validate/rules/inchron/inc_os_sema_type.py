@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Semaphore
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Semaphore, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Semaphore, context: Context) -> Iterator[str]:
     if element.semaphore_type not in (None, "CountingSemaphore") or element.priority_ceiling_protocol:
         yield f"the semaphore {element.name!r} loses its type, or its priority ceiling"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-OS-SEMA-TYPE",
     title="semaphore that is more than a counter",
     severity=Severity.WARNING,
     target=Semaphore,
-    check=check,
+    check=_check,
     rationale="am2inc drops the type and the ceiling protocol without a word.",
     remedy="Use plain counting semaphores, or expect other blocking.",
     fails="""

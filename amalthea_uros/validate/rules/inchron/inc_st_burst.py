@@ -7,22 +7,21 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import PeriodicBurstStimulus
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: PeriodicBurstStimulus, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: PeriodicBurstStimulus, context: Context) -> Iterator[str]:
     distance = element.occurrence_min_distance
     if not element.occurrence_count and not (distance is not None and distance.value):
         yield f"the burst {element.name!r} has neither a count nor a distance"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-ST-BURST",
     title="burst that cannot be counted",
     severity=Severity.WARNING,
     target=PeriodicBurstStimulus,
-    check=check,
+    check=_check,
     rationale="am2inc divides by zero.",
     remedy="State how many occurrences a burst has, or their distance.",
     fails="""

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import PeriodicStimulus, TimeConstant, TimeGaussDistribution, TimeUniformDistribution
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: PeriodicStimulus, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: PeriodicStimulus, context: Context) -> Iterator[str]:
     jitter = element.jitter
     if isinstance(jitter, TimeGaussDistribution):
         if jitter.lower_bound is None or jitter.upper_bound is None or (jitter.mean is not None and jitter.mean.value):
@@ -20,12 +19,12 @@ def check(element: PeriodicStimulus, context: Context) -> Iterator[str]:
         yield f"the jitter of {element.name!r} is dropped"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-ST-JITTER",
     title="jitter that is not converted",
     severity=Severity.WARNING,
     target=PeriodicStimulus,
-    check=check,
+    check=_check,
     rationale="Other distributions are dropped; the mean of Gauss is ignored, and its missing bounds become 0.",
     remedy="Use a constant, a uniform distribution, or Gauss with bounds and the mean 0.",
     fails="""

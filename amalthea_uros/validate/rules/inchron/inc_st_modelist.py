@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Stimulus
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Stimulus, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Stimulus, context: Context) -> Iterator[str]:
     if element.set_mode_value_list is not None:
         yield f"the modes that {element.name!r} sets are ignored"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-ST-MODELIST",
     title="stimulus that sets modes",
     severity=Severity.WARNING,
     target=Stimulus,
-    check=check,
+    check=_check,
     rationale="am2inc ignores it without a word.",
     remedy="Set the modes in the software.",
     fails="""

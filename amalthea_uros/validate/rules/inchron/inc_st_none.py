@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ISR, Process, Task
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Process, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Process, context: Context) -> Iterator[str]:
     if isinstance(element, Task | ISR) and not element.stimuli:
         yield f"nothing activates {element.name!r}"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-ST-NONE",
     title="process without a stimulus",
     severity=Severity.WARNING,
     target=Process,
-    check=check,
+    check=_check,
     rationale="It is never activated, without a word.",
     remedy="Give it a stimulus.",
     fails="""

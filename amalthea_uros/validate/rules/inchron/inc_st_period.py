@@ -7,23 +7,22 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import PeriodicBurstStimulus, PeriodicStimulus, PeriodicSyntheticStimulus, Stimulus
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Stimulus, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Stimulus, context: Context) -> Iterator[str]:
     if isinstance(element, PeriodicStimulus | PeriodicSyntheticStimulus | PeriodicBurstStimulus):
         period = element.recurrence
         if period is None or not period.unit or not (period.value or 0) > 0:
             yield f"the stimulus {element.name!r} has no recurrence above zero with a unit"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-ST-PERIOD",
     title="periodic stimulus without a period",
     severity=Severity.WARNING,
     target=Stimulus,
-    check=check,
+    check=_check,
     rationale="am2inc takes a period of 0 without a word.",
     remedy="State a recurrence above zero, with its unit.",
     fails="""

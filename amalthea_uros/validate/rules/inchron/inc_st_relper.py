@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import RelativePeriodicStimulus, TimeGaussDistribution, TimeUniformDistribution
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: RelativePeriodicStimulus, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: RelativePeriodicStimulus, context: Context) -> Iterator[str]:
     if not isinstance(element.next_occurrence, TimeGaussDistribution | TimeUniformDistribution):
         yield f"the next occurrence of {element.name!r} is neither uniform nor Gauss"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-ST-RELPER",
     title="relative periodic stimulus that is not converted",
     severity=Severity.ERROR,
     target=RelativePeriodicStimulus,
-    check=check,
+    check=_check,
     rationale="The conversion is aborted; without any distance it takes a period of 0 without a word.",
     remedy="State the next occurrence as a uniform or Gauss distribution.",
     fails="""

@@ -7,23 +7,22 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ArrivalCurveStimulus, CustomStimulus, EventStimulus, Process, VariableRateStimulus
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Process, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Process, context: Context) -> Iterator[str]:
     bad = (EventStimulus, CustomStimulus, ArrivalCurveStimulus, VariableRateStimulus)
     for stimulus in element.stimuli:
         if isinstance(stimulus, bad):
             yield f"{element.name!r} is not activated by {stimulus.name!r}"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-ST-TYPE",
     title="process with a stimulus that is not converted",
     severity=Severity.WARNING,
     target=Process,
-    check=check,
+    check=_check,
     rationale="Event, custom, arrival-curve and variable-rate stimuli are not converted; the process is not activated by them.",
     remedy="Use periodic, relative periodic, single or inter-process stimuli.",
     fails="""

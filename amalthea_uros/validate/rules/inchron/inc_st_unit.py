@@ -8,21 +8,20 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import DataSize, Frequency, Time
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Element, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Element, context: Context) -> Iterator[str]:
     if isinstance(element, Time | Frequency | DataSize) and (element.unit is None or element.unit.name == "UNDEFINED"):
         yield f"the value {element.value} has no unit"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-ST-UNIT",
     title="quantity without a unit",
     severity=Severity.WARNING,
     target=Element,
-    check=check,
+    check=_check,
     rationale="am2inc takes 0 ps, 1000 MHz or 1 KiB without a word.",
     remedy="State the unit; a value without one means nothing.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import LabelAccess
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: LabelAccess, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: LabelAccess, context: Context) -> Iterator[str]:
     if element.access not in ("read", "write"):
         yield "the label access neither reads nor writes"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-ACCESS",
     title="access that neither reads nor writes",
     severity=Severity.WARNING,
     target=LabelAccess,
-    check=check,
+    check=_check,
     rationale="am2inc takes it for a read without a word.",
     remedy="State whether the access reads or writes.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Runnable
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Runnable, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Runnable, context: Context) -> Iterator[str]:
     if element.activations:
         yield f"the activations of {element.name!r} are ignored"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-ACTIVATION",
     title="runnable with activations",
     severity=Severity.WARNING,
     target=Runnable,
-    check=check,
+    check=_check,
     rationale="am2inc ignores them without a word; they do not activate anything anyway.",
     remedy="Let a task with a stimulus call the runnable.",
     fails="""

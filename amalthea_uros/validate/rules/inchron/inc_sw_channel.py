@@ -14,22 +14,21 @@ from amalthea_uros.metamodel.classes import (
     TerminateProcess,
 )
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: ActivityGraphItem, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: ActivityGraphItem, context: Context) -> Iterator[str]:
     kinds = ChannelSend | ChannelReceive | EnforcedMigration | CustomEventTrigger | TerminateProcess
     if isinstance(element, kinds):
         yield f"the {type(element).__name__} is dropped"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-CHANNEL",
     title="item that is dropped",
     severity=Severity.WARNING,
     target=ActivityGraphItem,
-    check=check,
+    check=_check,
     rationale="am2inc drops channel accesses, migrations, custom event triggers and terminations, with one warning each.",
     remedy="Do not rely on them after the import.",
     fails="""

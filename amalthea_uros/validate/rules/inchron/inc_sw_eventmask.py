@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import EventMask
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: EventMask, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: EventMask, context: Context) -> Iterator[str]:
     if len(element.events) != 1:
         yield f"of {len(element.events)} events in the mask at most one is used"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-EVENTMASK",
     title="mask of several events",
     severity=Severity.WARNING,
     target=EventMask,
-    check=check,
+    check=_check,
     rationale="Only the first event is used, without a word.",
     remedy="Use one event in each mask.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Runnable
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Runnable, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Runnable, context: Context) -> Iterator[str]:
     if element.execution_condition is not None:
         yield f"the condition of {element.name!r} is ignored"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-EXECCOND",
     title="runnable with a condition",
     severity=Severity.WARNING,
     target=Runnable,
-    check=check,
+    check=_check,
     rationale="am2inc does not attach the condition, without a word; the runnable is always executed.",
     remedy="Put a switch around the call.",
     fails="""

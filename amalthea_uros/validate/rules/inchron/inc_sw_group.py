@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Group
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Group, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Group, context: Context) -> Iterator[str]:
     if element.ordered is False:
         yield "the order of the group becomes fixed"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-GROUP",
     title="group without an order",
     severity=Severity.WARNING,
     target=Group,
-    check=check,
+    check=_check,
     rationale="Its order becomes fixed, with a warning.",
     remedy="Order the group, or expect this order always.",
     fails="""

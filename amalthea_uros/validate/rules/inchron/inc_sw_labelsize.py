@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Label
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Label, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Label, context: Context) -> Iterator[str]:
     if element.size is None:
         yield f"the label {element.name!r} has no size"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-LABELSIZE",
     title="label without a size",
     severity=Severity.WARNING,
     target=Label,
-    check=check,
+    check=_check,
     rationale="am2inc takes 1 KiB without a word.",
     remedy="State the size.",
     fails="""

@@ -7,20 +7,19 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ExecutionNeed
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: ExecutionNeed, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: ExecutionNeed, context: Context) -> Iterator[str]:
     yield "the execution need is dropped"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-NEED",
     title="execution need",
     severity=Severity.WARNING,
     target=ExecutionNeed,
-    check=check,
+    check=_check,
     rationale="am2inc drops it; the runnable takes no time.",
     remedy="State the execution time as Ticks.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Task
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Task, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Task, context: Context) -> Iterator[str]:
     if element.preemption == "cooperative":
         yield f"the cooperative task {element.name!r} becomes non-preemptive"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-PREEMPTION",
     title="cooperative task",
     severity=Severity.WARNING,
     target=Task,
-    check=check,
+    check=_check,
     rationale="It becomes non-preemptive, without a word.",
     remedy="Expect longer blocking after the import, or make it preemptive.",
     fails="""

@@ -16,7 +16,7 @@ from amalthea_uros.metamodel.classes import (
     WaitEvent,
 )
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 #: What each of these has to refer to.
 _REFERENCES: dict[type[ActivityGraphItem], str] = {
@@ -30,19 +30,18 @@ _REFERENCES: dict[type[ActivityGraphItem], str] = {
 }
 
 
-def check(element: ActivityGraphItem, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: ActivityGraphItem, context: Context) -> Iterator[str]:
     feature = next((name for kind, name in _REFERENCES.items() if isinstance(element, kind)), None)
     if feature is not None and getattr(element, feature) is None:
         yield f"the {type(element).__name__} names no {feature.replace('_', ' ')}"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-REF",
     title="item that refers to nothing",
     severity=Severity.ERROR,
     target=ActivityGraphItem,
-    check=check,
+    check=_check,
     rationale="am2inc ends with a segmentation fault.",
     remedy="Name what is called, accessed, triggered or waited for.",
     fails="""

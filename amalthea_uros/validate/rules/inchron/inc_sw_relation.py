@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ModeCondition
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: ModeCondition, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: ModeCondition, context: Context) -> Iterator[str]:
     if element.relation != "EQUAL":
         yield "the comparison becomes one for equality"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-RELATION",
     title="comparison for something else than equality",
     severity=Severity.WARNING,
     target=ModeCondition,
-    check=check,
+    check=_check,
     rationale='Every relation becomes "equal", without a word.',
     remedy="Compare for equality only.",
     fails="""

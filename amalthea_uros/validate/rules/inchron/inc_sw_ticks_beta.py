@@ -7,20 +7,19 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import DiscreteValueBetaDistribution
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: DiscreteValueBetaDistribution, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: DiscreteValueBetaDistribution, context: Context) -> Iterator[str]:
     yield "the beta distribution becomes its upper bound"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-TICKS-BETA",
     title="beta distribution",
     severity=Severity.WARNING,
     target=DiscreteValueBetaDistribution,
-    check=check,
+    check=_check,
     rationale="It becomes its upper bound, without a word.",
     remedy="Use another distribution.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import DiscreteValueBoundaries
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: DiscreteValueBoundaries, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: DiscreteValueBoundaries, context: Context) -> Iterator[str]:
     if element.sampling_type in (None, "default"):
         yield "the boundaries have no sampling type"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="INC-SW-TICKS-BOUNDS",
     title="boundaries without a sampling type",
     severity=Severity.WARNING,
     target=DiscreteValueBoundaries,
-    check=check,
+    check=_check,
     rationale="am2inc computes a wrong mean without a word.",
     remedy="State a sampling type other than default.",
     fails="""

@@ -7,22 +7,21 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ISR, ISRAllocation, Process, Task, TaskAllocation
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Process, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Process, context: Context) -> Iterator[str]:
     times = context.uses(TaskAllocation, "task")[element] + context.uses(ISRAllocation, "isr")[element]
     if isinstance(element, Task | ISR) and not times:
         yield f"{element.name!r} is allocated to no scheduler and no interrupt controller"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="TIM-ALLOCATION",
     title="process without a place",
     severity=Severity.WARNING,
     target=Process,
-    check=check,
+    check=_check,
     rationale="It is not known which core serves it, and by which policy; its load is missing everywhere.",
     remedy="Allocate it to a task scheduler or an interrupt controller.",
     fails="""

@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import DiscreteValueGaussDistribution
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: DiscreteValueGaussDistribution, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: DiscreteValueGaussDistribution, context: Context) -> Iterator[str]:
     if element.lower_bound is None or element.upper_bound is None:
         yield "the Gauss distribution lacks a bound"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="TIM-BOUNDS",
     title="distribution without bounds",
     severity=Severity.WARNING,
     target=DiscreteValueGaussDistribution,
-    check=check,
+    check=_check,
     rationale="Without an upper bound there is no worst case.",
     remedy="State the lower and the upper bound.",
     fails="""

@@ -7,23 +7,22 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ProcessingUnit
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: ProcessingUnit, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: ProcessingUnit, context: Context) -> Iterator[str]:
     domain = element.frequency_domain
     value = domain.default_value if domain is not None else None
     if value is None or not value.unit or not (value.value or 0) > 0:
         yield f"the clock of {element.name!r} is not known"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="TIM-CLOCK",
     title="processing unit whose clock is not known",
     severity=Severity.WARNING,
     target=ProcessingUnit,
-    check=check,
+    check=_check,
     rationale="Without a frequency no tick becomes a time, and nothing on this processing unit can be analysed.",
     remedy="Give it a frequency domain with a default value and a unit, or state the clock with --frequency.",
     fails="""

@@ -8,11 +8,10 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ISR, ExecutionNeed, Process, RunnableCall, Task, Ticks
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Process, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Process, context: Context) -> Iterator[str]:
     if isinstance(element, Task | ISR) and not any(isinstance(part, Ticks | ExecutionNeed) for part in _executed(element)):
         yield f"neither {element.name!r} nor a runnable that it calls has an execution time"
 
@@ -28,12 +27,12 @@ def _executed(process: Process) -> Iterator[Element]:
                 pending.append(part.runnable)
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="TIM-DEMAND",
     title="process that takes no time",
     severity=Severity.WARNING,
     target=Process,
-    check=check,
+    check=_check,
     rationale="Without Ticks or execution needs its execution time is 0, and so is its share of the load.",
     remedy="State the execution time in the runnables that it calls.",
     fails="""

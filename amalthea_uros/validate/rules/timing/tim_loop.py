@@ -7,20 +7,19 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import WhileLoop
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: WhileLoop, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: WhileLoop, context: Context) -> Iterator[str]:
     yield "nothing says how often the loop is repeated at most"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="TIM-LOOP",
     title="loop without a bound",
     severity=Severity.WARNING,
     target=WhileLoop,
-    check=check,
+    check=_check,
     rationale="Nothing says how often it is repeated at most, so that there is no worst case.",
     remedy="Unroll it, or state the repetitions as calls with a statistic.",
     fails="""

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import IntegerObject, SchedulingParameter, TaskAllocation
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: TaskAllocation, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
     definition = element.scheduler.definition if element.scheduler is not None else None
     if definition is not None and definition.name in ("FixedPriorityPreemptive", "OSEK") and _priority(element) is None:
         yield f"the task {element.task.name if element.task else ''!r} has no priority"
@@ -24,12 +23,12 @@ def _priority(allocation: TaskAllocation) -> int | None:
     return None
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="TIM-PRIORITY",
     title="task without a priority",
     severity=Severity.WARNING,
     target=TaskAllocation,
-    check=check,
+    check=_check,
     rationale="Where priorities decide, it is not known who is served first.",
     remedy="Give its allocation the scheduling parameter priority.",
     fails="""

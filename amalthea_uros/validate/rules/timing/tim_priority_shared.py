@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import IntegerObject, Scheduler, SchedulingParameter, Task, TaskAllocation
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: TaskAllocation, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
     priority = _priority(element)
     same = [task for task in context.once(_by_priority).get((element.scheduler, priority), []) if task is not element.task]
     if same and element.task is not None and priority is not None:
@@ -33,12 +32,12 @@ def _priority(allocation: TaskAllocation) -> int | None:
     return None
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="TIM-PRIORITY-SHARED",
     title="tasks of the same priority",
     severity=Severity.INFO,
     target=TaskAllocation,
-    check=check,
+    check=_check,
     rationale="They are served in the order of their arrival; an analysis has to take each for being first.",
     remedy="Give each task of a scheduler a priority of its own.",
     fails="""

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Runnable, RunnableCall
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Runnable, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Runnable, context: Context) -> Iterator[str]:
     calls = context.once(_calls)
     # Who called first whom on the way from this runnable.
     callers: dict[Runnable, Runnable] = {}
@@ -38,12 +37,12 @@ def _calls(context: Context) -> dict[Runnable, list[Runnable]]:
     return found
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="TIM-RECURSION",
     title="runnable that calls itself",
     severity=Severity.ERROR,
     target=Runnable,
-    check=check,
+    check=_check,
     rationale="Its execution time has no end.",
     remedy="Break the circle of calls.",
     fails="""

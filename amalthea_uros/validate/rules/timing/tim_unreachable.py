@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Runnable, RunnableCall
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: Runnable, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: Runnable, context: Context) -> Iterator[str]:
     if not context.uses(RunnableCall, "runnable")[element]:
         yield f"nothing calls the runnable {element.name!r}"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="TIM-UNREACHABLE",
     title="runnable that nothing calls",
     severity=Severity.INFO,
     target=Runnable,
-    check=check,
+    check=_check,
     rationale="It never runs; if it should, its time is missing in the load.",
     remedy="Call it from a task, or remove it.",
     fails="""

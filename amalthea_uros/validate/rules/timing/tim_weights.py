@@ -7,21 +7,20 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ProbabilitySwitch
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
-def check(element: ProbabilitySwitch, context: Context) -> Iterator[str]:
-    """What is wrong with an object."""
+def _check(element: ProbabilitySwitch, context: Context) -> Iterator[str]:
     if element.entries and not any((entry.probability or 0) > 0 for entry in element.entries):
         yield "no branch has a probability above 0"
 
 
-RULE = Rule(
+RULE = ModelRule(
     id="TIM-WEIGHTS",
     title="branches without a probability",
     severity=Severity.WARNING,
     target=ProbabilitySwitch,
-    check=check,
+    check=_check,
     rationale="With weights that are all 0 no branch can be chosen.",
     remedy="Give at least one branch a probability above 0.",
     fails="""

@@ -1,0 +1,80 @@
+"""Models and descriptions checked by rules: what `amuros check` does, and scripts too."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from os import PathLike
+from pathlib import Path
+
+from amalthea_uros.diagnostics import Finding, by_place
+from amalthea_uros.garbage import paused_garbage_collection
+from amalthea_uros.metamodel.model import Model
+from amalthea_uros.validate import registry
+from amalthea_uros.validate.engine import run
+from amalthea_uros.validate.rule import ModelRule, Profile
+
+StrPath = str | PathLike[str]
+
+#: What reading tells in general, and the rules that tell it of each object.
+_TOLD_BY_RULES = {
+    "XMI021": ("INC-IO-NAME",),
+}
+
+
+def check(model: Model, rules: Iterable[str] | None = None) -> list[Finding]:
+    """What is wrong with a model, by file and line.
+
+    Parameters
+    ----------
+    rules : ids of the rules; all of them if none are given
+
+    Raises
+    ------
+    KeyError : there is no rule of an id.
+    """
+    chosen = list(registry.ids() if rules is None else rules)
+    with paused_garbage_collection():
+        findings = run(model, [rule for rule in map(registry.rule, chosen) if isinstance(rule, ModelRule)])
+        if not set(chosen).isdisjoint(registry.ids([Profile.SCHEMA])):
+            from amalthea_uros.xmi.schema_findings import schema_findings
+
+            told = [finding for document in model.documents for finding in schema_findings(document)]
+            findings += [finding for finding in told if finding.rule in chosen]
+    return sorted(findings, key=by_place)
+
+
+def check_files(paths: Sequence[StrPath], rules: Collection[str]) -> list[Finding]:
+    """What is wrong with an `app.yaml`, or with AMALTHEA models; what is odd about the files themselves included.
+
+    Parameters
+    ----------
+    rules : ids of the rules
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    """
+    model, findings = read_model(paths)
+    told = [finding for finding in findings if not _is_told_by(finding, rules)]
+    return sorted([*told, *check(model, rules)], key=by_place)
+
+
+def read_model(paths: Sequence[StrPath]) -> tuple[Model, Sequence[Finding]]:
+    """The model of files, or the one that a description becomes, whose objects know its lines; and what there was to say."""
+    if len(paths) == 1 and Path(paths[0]).suffix in (".yaml", ".yml"):
+        from amalthea_uros.pipeline import build
+
+        built = build(paths[0])
+        return built.model, built.assembly.findings
+    from amalthea_uros.xmi.load import load
+
+    model = load(*paths)
+    return model, model.findings
+
+
+def _is_told_by(finding: Finding, rules: Collection[str]) -> bool:
+    """Whether a finding of reading or building is left to the rules: one of them tells it, or it belongs to none that is wanted."""
+    profile = registry.profile_of(finding.rule)
+    if profile is not None:
+        return profile is not Profile.MICRO_ROS or finding.rule not in rules
+    return any(rule in rules for rule in _TOLD_BY_RULES.get(finding.rule, ()))

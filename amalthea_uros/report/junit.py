@@ -1,0 +1,28 @@
+"""Findings as JUnit XML, as CI systems show tests."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import IO
+from xml.etree import ElementTree
+
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.report.findings import profile_name
+
+
+def write_junit(findings: Sequence[Finding], model: str, stream: IO[str]) -> None:
+    """A test case for each rule that fired; it fails if the rule is more than information."""
+    by_rule: dict[str, list[Finding]] = {}
+    for finding in findings:
+        by_rule.setdefault(finding.rule, []).append(finding)
+    failing = {rule for rule, found in by_rule.items() if any(f.severity is not Severity.INFO for f in found)}
+    suites = ElementTree.Element("testsuites")
+    suite = ElementTree.SubElement(suites, "testsuite", name=f"amuros check {model}")
+    suite.attrib |= {"tests": str(max(1, len(by_rule))), "failures": str(len(failing)), "errors": "0"}
+    for rule, found in by_rule.items() or {"no findings": []}.items():
+        case = ElementTree.SubElement(suite, "testcase", classname=f"amuros.{profile_name(rule)}", name=rule)
+        if rule in failing:
+            failure = ElementTree.SubElement(case, "failure", message=f"{len(found)} findings", type=str(found[0].severity))
+            failure.text = "\n".join(map(str, found))
+    stream.write('<?xml version="1.0" encoding="UTF-8"?>\n')
+    stream.write(ElementTree.tostring(suites, encoding="unicode") + "\n")

@@ -1,0 +1,1 @@
+"""What EMF checks of every model, from the facts of the metamodel, and what its classes demand of themselves."""

@@ -1,0 +1,1 @@
+"""What the XML schema of a model's version says."""
