@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.kinds import Kind
 from amalthea_uros.metamodel import classes as am
-from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit, FrequencyUnit, TimeUnit
+from amalthea_uros.metamodel import magnitudes
+from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit, TimeUnit
 from amalthea_uros.metamodel.element import Element
-from amalthea_uros.units import SECOND
+from amalthea_uros.metamodel.magnitudes import bits, bits_per_second, hertz, picoseconds
 
 
 class Codec(NamedTuple):
@@ -56,25 +57,6 @@ def same_names(ours: type[StrEnum], theirs: type[StrEnum], **others: str) -> Cod
 
 # Quantities. Units without meaning, and values that are not given, give None.
 
-_TIMES = {TimeUnit.S: SECOND, TimeUnit.MS: 10**9, TimeUnit.US: 10**6, TimeUnit.NS: 10**3, TimeUnit.PS: 1}
-_FREQUENCIES = {FrequencyUnit.GHZ: 10**9, FrequencyUnit.MHZ: 10**6, FrequencyUnit.KHZ: 10**3, FrequencyUnit.HZ: 1}
-
-
-def _data_factors(units: type[StrEnum]) -> dict[Any, int]:
-    """Bits of a unit of data, by the prefix and the B or bit in its name."""
-    found = {}
-    for unit in units:
-        word = unit.value.removesuffix("PerSecond")
-        size = 8 if word.endswith("B") else 1
-        prefix = word.removesuffix("B").removesuffix("bit")
-        base, letter = (1024, prefix[:1]) if prefix.endswith("i") else (1000, prefix)
-        if unit.value != "_undefined_":
-            found[unit] = size * base ** " kMGT".upper().index(letter.upper() or " ")
-    return found
-
-
-_SIZES = _data_factors(DataSizeUnit)
-_RATES = _data_factors(DataRateUnit)
 _SIZE_UNITS = (DataSizeUnit.B, DataSizeUnit.BIT)
 _RATE_UNITS = (
     DataRateUnit.GBIT_PER_SECOND,
@@ -88,20 +70,14 @@ def build_time(value: int | None) -> am.Time | None:
     """Picoseconds in the biggest unit that gives a whole number."""
     if value is None:
         return None
-    unit = next(unit for unit, size in _TIMES.items() if value % size == 0) if value else TimeUnit.MS
-    return am.Time(value=value // _TIMES[unit], unit=unit)
-
-
-def extract_time(value: Any) -> int | None:
-    """Picoseconds of a time."""
-    size = _TIMES.get(value.unit) if value is not None else None
-    return None if size is None else (value.value or 0) * size
+    unit = next(unit for unit, size in magnitudes.TIMES.items() if value % size == 0) if value else TimeUnit.MS
+    return am.Time(value=value // magnitudes.TIMES[unit], unit=unit)
 
 
 def _build_frequency(value: Fraction | None, context: Building) -> am.Frequency | None:
     if value is None:
         return None
-    for unit, size in _FREQUENCIES.items():
+    for unit, size in magnitudes.FREQUENCIES.items():
         number = value / size
         if (number >= 1 or size == 1) and Fraction(repr(float(number))) == number:
             return am.Frequency(value=float(number), unit=unit)
@@ -109,42 +85,27 @@ def _build_frequency(value: Fraction | None, context: Building) -> am.Frequency 
     return None
 
 
-def _extract_frequency(value: Any) -> Fraction | None:
-    size = _FREQUENCIES.get(value.unit) if value is not None else None
-    # The decimal number that stands in the file, not the binary one that is next to it.
-    return None if size is None or not _is_finite(value.value) else Fraction(repr(value.value or 0.0)) * size
-
-
-def _is_finite(value: float | None) -> bool:
-    return value is None or abs(value) < float("inf")
-
-
-def _extract_data(value: Any, factors: Mapping[Any, int]) -> int | None:
-    size = factors.get(value.unit) if value is not None else None
-    return None if size is None else (value.value or 0) * size
-
-
 def _build_size(value: int | None, _context: Building) -> am.DataSize | None:
     if value is None:
         return None
-    unit = next(unit for unit in _SIZE_UNITS if value % _SIZES[unit] == 0)
-    return am.DataSize(value=value // _SIZES[unit], unit=unit)
+    unit = next(unit for unit in _SIZE_UNITS if value % magnitudes.SIZES[unit] == 0)
+    return am.DataSize(value=value // magnitudes.SIZES[unit], unit=unit)
 
 
 def _build_rate(value: int | None, _context: Building) -> am.DataRate | None:
     if value is None:
         return None
-    unit = next(unit for unit in _RATE_UNITS if value % _RATES[unit] == 0)
-    return am.DataRate(value=value // _RATES[unit], unit=unit)
+    unit = next(unit for unit in _RATE_UNITS if value % magnitudes.RATES[unit] == 0)
+    return am.DataRate(value=value // magnitudes.RATES[unit], unit=unit)
 
 
-TIME = Codec(lambda value, _: build_time(value), lambda value, _context, _element: extract_time(value))
-FREQUENCY = Codec(_build_frequency, lambda value, _context, _element: _extract_frequency(value))
-SIZE = Codec(_build_size, lambda value, _context, _element: _extract_data(value, _SIZES))
-RATE = Codec(_build_rate, lambda value, _context, _element: _extract_data(value, _RATES))
+TIME = Codec(lambda value, _: build_time(value), lambda value, _context, _element: picoseconds(value))
+FREQUENCY = Codec(_build_frequency, lambda value, _context, _element: hertz(value))
+SIZE = Codec(_build_size, lambda value, _context, _element: bits(value))
+RATE = Codec(_build_rate, lambda value, _context, _element: bits_per_second(value))
 TIMES = Codec(
     lambda values, _: [build_time(value) for value in values],
-    lambda values, _context, _element: tuple(time for time in map(extract_time, values) if time is not None),
+    lambda values, _context, _element: tuple(time for time in map(picoseconds, values) if time is not None),
 )
 
 

@@ -40,17 +40,32 @@ _KINDS = {kind.value: kind for kind in Kind}
 
 
 class FeatureFact(NamedTuple):
-    """What one version declares of one feature, under the names of the file format."""
+    """What one version declares of one feature, under the names of the file format.
+
+    Attributes
+    ----------
+    lower, upper : the least and the greatest number of values, None: any
+    """
 
     name: str
     kind: Kind
     type: str
-    required: bool = False
-    many: bool = False
+    lower: int = 0
+    upper: int | None = 1
     derived: bool = False
     readonly: bool = False
     default: str | None = None
     opposite: str | None = None
+
+    @property
+    def required(self) -> bool:
+        """Whether there has to be a value."""
+        return self.lower > 0
+
+    @property
+    def many(self) -> bool:
+        """Whether there may be several values."""
+        return self.upper != 1
 
     @property
     def stored(self) -> bool:
@@ -145,13 +160,14 @@ def _feature(line: str) -> FeatureFact:
     name, *words = declaration.split()
     kind = _KINDS.get(words[0], Kind.ATTRIBUTE)
     type_name, *flags = words if kind is Kind.ATTRIBUTE else words[1:]
-    bounds = [_bounds(flag) for flag in flags if _BOUNDS.fullmatch(flag)]
+    bounds = next((flag for flag in flags if _BOUNDS.fullmatch(flag)), "")
+    lower, upper = _bounds(bounds)
     return FeatureFact(
         name=name,
         kind=kind,
         type=type_name,
-        required=any(lower not in ("", "0") for lower, _ in bounds),
-        many=any(upper != "1" for _, upper in bounds),
+        lower=lower,
+        upper=upper,
         derived="derived" in flags,
         readonly="readonly" in flags,
         default=json.loads(default) if default else None,
@@ -163,7 +179,9 @@ def _feature(line: str) -> FeatureFact:
 _BOUNDS = re.compile(r"(?:\d+\.\.)?(?:\d+|\*)")
 
 
-def _bounds(text: str) -> tuple[str, str]:
+def _bounds(text: str) -> tuple[int, int | None]:
     """The least and the greatest number of values; an upper bound alone says nothing of the lower one, but 1 means exactly one."""
+    if not text:
+        return 0, 1
     lower, _, upper = text.rpartition("..")
-    return (lower or ("1" if upper == "1" else "")), upper
+    return int(lower or upper == "1"), None if upper == "*" else int(upper)

@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from amalthea_uros.bridge.codecs import build_time, extract_time
+from amalthea_uros.bridge.codecs import build_time
 from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.magnitudes import picoseconds
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.os import Duration, Parameter, ParameterValue, Policy
 
@@ -90,7 +91,7 @@ def _build_value(value: ParameterValue) -> am.Value:
 def _extract_values(value: Any) -> tuple[ParameterValue, ...]:
     match value:
         case am.Time():
-            time = extract_time(value)
+            time = picoseconds(value)
             return () if time is None else (Duration(time),)
         case am.ListObject():
             return tuple(inner for item in value.values for inner in _extract_values(item))
@@ -256,6 +257,6 @@ def _stated_before(stated: am.SchedulingParameters) -> Iterable[tuple[str, tuple
     if stated.priority is not None:
         yield PRIORITY, (stated.priority,)
     for name, feature in _BUDGETS.items():
-        time = extract_time(getattr(stated, feature))
+        time = picoseconds(getattr(stated, feature))
         if time is not None:
             yield name, (Duration(time),)
