@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TypeVar, cast
 
 from amalthea_uros.metamodel.element import Element
-from amalthea_uros.metamodel.model import Model
+from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.metamodel.naming import unique_name
 
 E = TypeVar("E", bound=Element)
@@ -28,6 +28,25 @@ class Context:
         for element in self.model.walk():
             found.setdefault(type(element), []).append(element)
         return found
+
+    @cached_property
+    def _only_version(self) -> str | None:
+        versions = {document.facts_version for document in self.model.documents}
+        return versions.pop() if len(versions) == 1 else None
+
+    def version_of(self, element: Element) -> str:
+        """The AMALTHEA version whose facts hold for an object."""
+        return self._only_version or cast("Document", element.document).facts_version
+
+    @cached_property
+    def names_in_files(self) -> Counter[tuple[Document, str]]:
+        """How often each name occurs in a file."""
+        return Counter(
+            (document, unique_name(element))
+            for document in self.model.documents
+            for element in document.root.walk()
+            if element.is_referable
+        )
 
     @cached_property
     def names(self) -> Counter[str]:

@@ -42,7 +42,7 @@ def rule(identifier: str) -> Rule:
 
 
 def _module(identifier: str) -> str:
-    return re.sub("[-/]", "_", identifier.lower())
+    return re.sub("[-/.]", "_", identifier.lower())
 
 
 def _folder(profile: Profile) -> str:

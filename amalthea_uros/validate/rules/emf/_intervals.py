@@ -1,0 +1,36 @@
+"""The order of the bounds and the average of a deviation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from amalthea_uros.metamodel.classes import Time
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.magnitudes import picoseconds
+
+
+def disorder(element: Element) -> Iterator[str]:
+    """Which of lower bound, average and upper bound are in the wrong order; what is not given is in order."""
+    values = [(words, getattr(element, name, None)) for name, words in _NAMES.items()]
+    if values[1][1] is not None:
+        yield from _decreasing(values)
+    yield from _decreasing([values[0], values[2]])
+
+
+_NAMES = {"lower_bound": "lower bound", "average": "average", "upper_bound": "upper bound"}
+
+
+def _decreasing(values: list[tuple[str, Time | float | None]]) -> Iterator[str]:
+    for (words, value), (next_words, next_value) in pairwise(values):
+        number, next_number = _number(value), _number(next_value)
+        if number is not None and next_number is not None and number > next_number:
+            yield f"the {words} {_shown(value)} is above the {next_words} {_shown(next_value)}"
+
+
+def _number(value: Time | float | None) -> float | None:
+    return picoseconds(value) if isinstance(value, Time) else value
+
+
+def _shown(value: Time | float | None) -> str:
+    return f"{value.value or 0} {value.unit}" if isinstance(value, Time) else str(value)

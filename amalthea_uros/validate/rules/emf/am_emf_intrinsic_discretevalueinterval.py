@@ -1,0 +1,48 @@
+"""Bounds in the wrong order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import DiscreteValueInterval
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.emf._intervals import disorder
+
+
+def _check(element: DiscreteValueInterval, context: Context) -> Iterator[str]:
+    yield from disorder(element)
+
+
+RULE = ModelRule(
+    id="AM-EMF-INTRINSIC/DiscreteValueInterval",
+    title="bounds of a number in the wrong order",
+    severity=Severity.ERROR,
+    target=DiscreteValueInterval,
+    check=_check,
+    rationale="No value lies between such bounds. APP4MC reports it when it validates the model.",
+    remedy="Correct the bounds and the average.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueBoundaries" lowerBound="20" upperBound="10"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueBoundaries" lowerBound="10" upperBound="20"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+)

@@ -1,0 +1,67 @@
+"""Key that stands twice."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.versions import facts
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
+
+
+def _check(element: Element, context: Context) -> Iterator[str]:
+    for name, xml_name in _maps(type(element), context.version_of(element)):
+        count = Counter(entry.key for entry in element.__dict__.get(name, ()))
+        for key, times in count.items():
+            if times > 1:
+                yield f"{xml_name} has the key {_shown(key)} {times} times"
+
+
+@per_class
+def _maps(cls: type[Element], version: str) -> tuple[tuple[str, str], ...]:
+    """The features that are maps, by Python and XML name."""
+    classes = facts(version).classes
+    features = stored_features(cls, version).items()
+    return tuple(
+        (name, fact.name) for name, fact in features if fact.many and fact.type in classes and classes[fact.type].entry
+    )
+
+
+def _shown(key: str | Element | None) -> str:
+    return repr(key.qualified_name if isinstance(key, Element) else key)
+
+
+RULE = ModelRule(
+    id="AM-EMF-INTRINSIC/map-entry-unique",
+    title="key that stands twice",
+    severity=Severity.ERROR,
+    target=Element,
+    check=_check,
+    rationale="Only one of the values counts, and it is not said which. APP4MC reports it when it validates the model.",
+    remedy="Give each key once.",
+    fails="""
+<swModel>
+  <tasks name="T">
+    <customProperties key="k">
+      <value xsi:type="am:StringObject" value="1"/>
+    </customProperties>
+    <customProperties key="k">
+      <value xsi:type="am:StringObject" value="2"/>
+    </customProperties>
+  </tasks>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <tasks name="T">
+    <customProperties key="k">
+      <value xsi:type="am:StringObject" value="1"/>
+    </customProperties>
+  </tasks>
+</swModel>
+""",
+)

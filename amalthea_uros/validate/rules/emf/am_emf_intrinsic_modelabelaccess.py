@@ -1,0 +1,60 @@
+"""Value that a mode label is set to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ModeLabelAccess, ModeLabelAccessEnum
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.emf._modes import allowed_values, is_value_of
+
+
+def _check(element: ModeLabelAccess, context: Context) -> Iterator[str]:
+    label = element.data
+    if label is None:
+        yield "it is not said which mode label is accessed"
+    elif label.mode is None and label.unresolved is None:
+        yield f"the mode label {label.name!r} has no mode"
+    elif element.access == ModeLabelAccessEnum.SET and element.value is not None and not is_value_of(label.mode, element.value):
+        yield f"{label.name!r} is set to {element.value!r}, which is not {allowed_values(label.mode)}"
+
+
+RULE = ModelRule(
+    id="AM-EMF-INTRINSIC/ModeLabelAccess",
+    title="access that sets a mode label to what is none of its values",
+    severity=Severity.ERROR,
+    target=ModeLabelAccess,
+    check=_check,
+    rationale="The mode label is in no mode then. APP4MC reports it when it validates the model.",
+    remedy="Set it to one of the values of its mode.",
+    fails="""
+<swModel>
+  <modes xsi:type="am:EnumMode" name="M">
+    <literals name="on"/>
+    <literals name="off"/>
+  </modes>
+  <modeLabels name="L" mode="M?type=EnumMode"/>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:ModeLabelAccess" data="L?type=ModeLabel" access="set" value="half"/>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <modes xsi:type="am:EnumMode" name="M">
+    <literals name="on"/>
+    <literals name="off"/>
+  </modes>
+  <modeLabels name="L" mode="M?type=EnumMode"/>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:ModeLabelAccess" data="L?type=ModeLabel" access="set" value="off"/>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+)

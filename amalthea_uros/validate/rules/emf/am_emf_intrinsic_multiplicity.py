@@ -1,0 +1,56 @@
+"""Too few or too many values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.factfile import FeatureFact
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
+
+
+def _check(element: Element, context: Context) -> Iterator[str]:
+    values = element.__dict__
+    for name, fact in _bounded(type(element), context.version_of(element)):
+        number = len(values.get(name, ()))
+        if number < fact.lower or (fact.upper is not None and number > fact.upper):
+            yield f"the {type(element).__name__} has {number} {fact.name}, {_wanted(fact)}"
+
+
+@per_class
+def _bounded(cls: type[Element], version: str) -> tuple[tuple[str, FeatureFact], ...]:
+    features = stored_features(cls, version).items()
+    return tuple((name, fact) for name, fact in features if fact.many and (fact.lower or fact.upper is not None))
+
+
+def _wanted(fact: FeatureFact) -> str:
+    if fact.upper is None:
+        return f"at least {fact.lower} are needed"
+    return f"{fact.lower} are needed" if fact.lower == fact.upper else f"{fact.lower} to {fact.upper} are needed"
+
+
+RULE = ModelRule(
+    id="AM-EMF-INTRINSIC/multiplicity",
+    title="too few or too many values",
+    severity=Severity.ERROR,
+    target=Element,
+    check=_check,
+    rationale="The number of values is part of what the feature means. APP4MC reports it when it validates the model.",
+    remedy="State as many as the message says.",
+    fails="""
+<constraintsModel>
+  <timingConstraints xsi:type="am:EventChainSynchronizationConstraint" name="C" scope="A?type=EventChain"/>
+  <eventChains name="A"/>
+</constraintsModel>
+""",
+    passes="""
+<constraintsModel>
+  <timingConstraints xsi:type="am:EventChainSynchronizationConstraint" name="C" scope="A?type=EventChain B?type=EventChain"/>
+  <eventChains name="A"/>
+  <eventChains name="B"/>
+</constraintsModel>
+""",
+)

@@ -1,0 +1,43 @@
+"""Reference to nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.element import Element, references_of
+from amalthea_uros.metamodel.features import features_of
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+
+
+def _check(element: Element, context: Context) -> Iterator[str]:
+    for name, value in references_of(element):
+        for target in value if isinstance(value, list) else (value,):
+            if target.unresolved is not None:
+                yield f"{features_of(type(element))[name].xml_name} refers to {target.unresolved!r}, which is nowhere"
+
+
+RULE = ModelRule(
+    id="AM-EMF-INTRINSIC/proxy-resolves",
+    title="reference to nothing",
+    severity=Severity.ERROR,
+    target=Element,
+    check=_check,
+    rationale="It is in none of the files that were read. APP4MC reports it when it validates the model.",
+    remedy="Correct the name, or read the missing file, too.",
+    fails="""
+<swModel>
+  <tasks name="T" stimuli="S?type=PeriodicStimulus"/>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <tasks name="T" stimuli="S?type=PeriodicStimulus"/>
+</swModel>
+<stimuliModel>
+  <stimuli xsi:type="am:PeriodicStimulus" name="S"/>
+</stimuliModel>
+""",
+    is_about_files=True,
+)

@@ -1,0 +1,48 @@
+"""Bounds in the wrong order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import TruncatedDiscreteValueDistribution
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.emf._intervals import disorder
+
+
+def _check(element: TruncatedDiscreteValueDistribution, context: Context) -> Iterator[str]:
+    yield from disorder(element)
+
+
+RULE = ModelRule(
+    id="AM-EMF-INTRINSIC/TruncatedDiscreteValueDistribution",
+    title="bounds of a distribution of numbers in the wrong order",
+    severity=Severity.ERROR,
+    target=TruncatedDiscreteValueDistribution,
+    check=_check,
+    rationale="No value lies between such bounds. APP4MC reports it when it validates the model.",
+    remedy="Correct the bounds.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueGaussDistribution" lowerBound="20" upperBound="10" mean="15.0" sd="1.0"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueGaussDistribution" lowerBound="10" upperBound="20" mean="15.0" sd="1.0"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+)

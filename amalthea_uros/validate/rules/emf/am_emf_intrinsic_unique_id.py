@@ -1,0 +1,40 @@
+"""Name that another object has, too."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import IReferable
+from amalthea_uros.metamodel.naming import unique_name
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+
+
+def _check(element: IReferable, context: Context) -> Iterator[str]:
+    document = element.document
+    if element.name and document and context.names_in_files[document, unique_name(element)] > 1:
+        yield f"{element.qualified_name!r} is the name of several objects of class {type(element).__name__} in this file"
+
+
+RULE = ModelRule(
+    id="AM-EMF-INTRINSIC/unique-id",
+    title="name that another object of the file has, too",
+    severity=Severity.ERROR,
+    target=IReferable,
+    check=_check,
+    rationale="References go by class and name, and reach one of the objects only. APP4MC reports it when it validates the model.",
+    remedy="Give each its own name, or put one into another namespace.",
+    fails="""
+<swModel>
+  <tasks name="T"/>
+  <tasks name="T"/>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <tasks name="T"/>
+  <isrs name="T"/>
+</swModel>
+""",
+)
