@@ -17,7 +17,8 @@ StrPath = str | PathLike[str]
 
 #: What reading tells in general, and the rules that tell it of each object.
 _TOLD_BY_RULES = {
-    "XMI021": ("INC-IO-NAME",),
+    "XMI020": ("AM-EMF-INTRINSIC/proxy-resolves",),
+    "XMI021": ("AM-EMF-INTRINSIC/unique-id", "INC-IO-NAME"),
 }
 
 

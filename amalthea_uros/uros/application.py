@@ -9,7 +9,7 @@ from amalthea_uros.spec.middleware import Interrupt
 from amalthea_uros.units import Time
 from amalthea_uros.uros.callbacks import Callback, in_order
 from amalthea_uros.uros.executor import Costs, Part, in_executor_parts, message_cost, occurrences, own_task_parts, timers
-from amalthea_uros.uros.periods import Choice, choose, choose_executor, offer_of
+from amalthea_uros.uros.periods import Choice, check_inside, choose, choose_executor, offer_of
 from amalthea_uros.uros.steps import steps
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 from amalthea_uros.uros.work import Work
@@ -22,6 +22,7 @@ def add_callbacks(work: Work, callbacks: Sequence[Callback]) -> tuple[Choice, ..
     outside = [callback for callback in callbacks if not callback.in_executor]
     inside = in_order((callback for callback in callbacks if callback.in_executor), executor, work.notes)
     own = [choice for callback in outside if (choice := choose(callback, offer, work.profile, work.notes)) is not None]
+    check_inside(inside, work.profile, work.notes)
     if not own and not inside:
         return ()
     chosen = choose_executor(executor, offer, own, inside, work.notes)

@@ -30,6 +30,7 @@ from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
 from amalthea_uros.uros.periods import Choice
 from amalthea_uros.uros.pools import Pool, check, pools_of
 from amalthea_uros.uros.requirements import requirements
+from amalthea_uros.uros.streams import check_streams
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 from amalthea_uros.uros.work import Work
 from amalthea_uros.uros.xrce import Traffic, note_traffic, traffic_of
@@ -85,6 +86,7 @@ def _assembly(work: Work) -> Assembly:
     note_traffic(traffic, middleware.transport, work.notes)
     pools = pools_of(application, middleware)
     check(pools, callbacks, middleware, work.notes)
+    check_streams(callbacks, middleware, work.notes)
     choices = add_callbacks(work, callbacks)
     add_interrupt(work, traffic)
     add_load(work)

@@ -97,6 +97,17 @@ def _reason(callback: Callback, period: Time, offer: Offer) -> str:
     return f"{every}, longest period on offer that fits" if offer.periods else every
 
 
+def check_inside(callbacks: Iterable[Callback], profile: Profile, notes: Notes) -> None:
+    """Note callbacks inside the executor that take as long as the time until they are due again."""
+    for callback in callbacks:
+        execution_time = profile.longest(callback.section.execution_time)
+        if execution_time >= callback.interval:
+            due = f"is due every {time_text(callback.interval)}"
+            message = f"{callback.name!r} {due}, but executes for up to {time_text(execution_time)}"
+            place = callback.section.location("execution_time")
+            notes.error("UR107", message, place, "Shorten it, or let it be due less often.")
+
+
 def choose_executor(
     executor: Executor, offer: Offer, own_tasks: Iterable[Choice], inside: Iterable[Callback], notes: Notes
 ) -> Choice | None:

@@ -10,6 +10,7 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import data_size_text
 from amalthea_uros.uros.callbacks import Callback, Message
 from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.streams import DEFAULT_STREAM_HISTORY
 
 #: Values of the build options that are not set, from the table in the README of micro-ROS/rmw_microxrcedds.
 DEFAULTS: Mapping[str, int] = {
@@ -21,7 +22,6 @@ DEFAULTS: Mapping[str, int] = {
     "RMW_UXRCE_MAX_SERVICES": 4,
     "RMW_UXRCE_MAX_CLIENTS": 4,
 }
-_DEFAULT_STREAM_HISTORY = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,7 +104,7 @@ def _check_size(message: Message, middleware: Middleware, notes: Notes) -> None:
     limits = middleware.limits
     if limits.RMW_UXRCE_MTU is None:
         return
-    history = limits.RMW_UXRCE_STREAM_HISTORY or _DEFAULT_STREAM_HISTORY
+    history = limits.RMW_UXRCE_STREAM_HISTORY or DEFAULT_STREAM_HISTORY
     room = limits.RMW_UXRCE_MTU * (history if message.reliable else 1)
     size = message.size + middleware.transport.overhead
     if size > room:

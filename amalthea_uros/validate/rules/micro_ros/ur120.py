@@ -1,0 +1,38 @@
+"""Static pool."""
+
+from __future__ import annotations
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.validate.rule import Rule
+
+RULE = Rule(
+    id="UR120",
+    title="static pool of the middleware that is too small",
+    severity=Severity.ERROR,
+    rationale="rmw_microxrcedds allocates nothing at run time; the creation of an entity beyond the size of its pool fails.",
+    remedy="Set the build option to what is needed, and state it under limits.",
+    fails="""
+amuros: 1
+name: app
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  limits: {RMW_UXRCE_MAX_SUBSCRIPTIONS: 0}
+application:
+  nodes:
+    - name: node
+      subscriptions:
+        - {name: Factor, topic: factor, rate: 50 Hz, message_size: 4 B, execution_time: 2 us}
+""",
+    passes="""
+amuros: 1
+name: app
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  limits: {RMW_UXRCE_MAX_SUBSCRIPTIONS: 1}
+application:
+  nodes:
+    - name: node
+      subscriptions:
+        - {name: Factor, topic: factor, rate: 50 Hz, message_size: 4 B, execution_time: 2 us}
+""",
+)

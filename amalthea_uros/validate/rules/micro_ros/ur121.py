@@ -1,0 +1,41 @@
+"""Message without room."""
+
+from __future__ import annotations
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.validate.rule import Rule
+
+RULE = Rule(
+    id="UR121",
+    title="message that fits into no buffer of its stream",
+    severity=Severity.ERROR,
+    rationale=(
+        "A best-effort message has to fit into the MTU, a reliable one into the buffers of its stream together; "
+        "otherwise it cannot be sent."
+    ),
+    remedy="Enlarge the MTU or the history of the stream, or send smaller messages.",
+    fails="""
+amuros: 1
+name: app
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  limits: {RMW_UXRCE_MTU: 512 B, RMW_UXRCE_STREAM_HISTORY: 2}
+application:
+  nodes:
+    - name: node
+      subscriptions:
+        - {name: Factor, topic: factor, rate: 50 Hz, message_size: 1100 B, execution_time: 2 us}
+""",
+    passes="""
+amuros: 1
+name: app
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  limits: {RMW_UXRCE_MTU: 512 B, RMW_UXRCE_STREAM_HISTORY: 4}
+application:
+  nodes:
+    - name: node
+      subscriptions:
+        - {name: Factor, topic: factor, rate: 50 Hz, message_size: 1100 B, execution_time: 2 us}
+""",
+)

@@ -1,0 +1,45 @@
+"""Stream full of messages."""
+
+from __future__ import annotations
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.validate.rule import Rule
+
+RULE = Rule(
+    id="UR123",
+    title="more reliable messages under way than their stream has buffers",
+    severity=Severity.WARNING,
+    rationale=(
+        "While all buffers wait for their acknowledgement nothing more can be sent; the sender waits, or the message is lost."
+    ),
+    remedy="Enlarge the history of the stream, or send less often.",
+    fails="""
+amuros: 1
+name: app
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  transport: {acknowledgement: 50 ms}
+application:
+  nodes:
+    - name: node
+      publishers:
+        - {topic: state, message_size: 8 B}
+      timers:
+        - {name: Control, period: 10 ms, execution_time: 4 us, publishes: [state]}
+""",
+    passes="""
+amuros: 1
+name: app
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  transport: {acknowledgement: 50 ms}
+  limits: {RMW_UXRCE_STREAM_HISTORY: 5}
+application:
+  nodes:
+    - name: node
+      publishers:
+        - {topic: state, message_size: 8 B}
+      timers:
+        - {name: Control, period: 10 ms, execution_time: 4 us, publishes: [state]}
+""",
+)
