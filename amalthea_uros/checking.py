@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 from os import PathLike
 from pathlib import Path
@@ -11,6 +12,7 @@ from amalthea_uros.garbage import paused_garbage_collection
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run
+from amalthea_uros.validate.repair import repair
 from amalthea_uros.validate.rule import ModelRule, Profile
 
 StrPath = str | PathLike[str]
@@ -55,14 +57,43 @@ def check_files(paths: Sequence[StrPath], rules: Collection[str]) -> list[Findin
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
     """
-    model, findings = read_model(paths)
+    model, findings = _read(paths)
     told = [finding for finding in findings if not _is_told_by(finding, rules)]
     return sorted([*told, *check(model, rules)], key=by_place)
 
 
-def read_model(paths: Sequence[StrPath]) -> tuple[Model, Sequence[Finding]]:
+def fix_files(paths: Sequence[StrPath], rules: Iterable[str]) -> Counter[str]:
+    """Repair what rules find in AMALTHEA models and can be repaired in one way only, and write the files that changed.
+
+    Parameters
+    ----------
+    rules : ids of the rules
+
+    Returns
+    -------
+    Counter : how many objects were repaired, by the id of the rule.
+
+    Raises
+    ------
+    ReadError : a file cannot be read.
+    WriteError : a file cannot be written; then none was touched.
+    """
+    from amalthea_uros.xmi.load import load
+    from amalthea_uros.xmi.save import save_documents
+
+    repairs = repair(load(*paths), [rule for rule in map(registry.rule, rules) if isinstance(rule, ModelRule)])
+    save_documents(repairs.changed, repairs.rewritten)
+    return repairs.done
+
+
+def is_description(path: StrPath) -> bool:
+    """Whether a file is an `app.yaml`, by its name."""
+    return Path(path).suffix in (".yaml", ".yml")
+
+
+def _read(paths: Sequence[StrPath]) -> tuple[Model, Sequence[Finding]]:
     """The model of files, or the one that a description becomes, whose objects know its lines; and what there was to say."""
-    if len(paths) == 1 and Path(paths[0]).suffix in (".yaml", ".yml"):
+    if len(paths) == 1 and is_description(paths[0]):
         from amalthea_uros.pipeline import build
 
         built = build(paths[0])

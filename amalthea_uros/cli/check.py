@@ -3,21 +3,46 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import IO
 
 import click
 
-from amalthea_uros.checking import check_files
+from amalthea_uros.checking import check_files, fix_files, is_description
+from amalthea_uros.cli.configuration import configuration_of
 from amalthea_uros.cli.output import Output, output_option
-from amalthea_uros.diagnostics import Severity
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report.check import WRITERS, write_statistics
 from amalthea_uros.validate.rule import Profile
 from amalthea_uros.validate.selection import Selection
 from amalthea_uros.validate.suppress import baseline_text, fingerprint, is_ignored, read_baseline
 
-_SEVERITIES = list(Severity)
+_SEVERITIES = list(map(str, Severity))
+
+
+class _Several(click.ParamType[str]):
+    """One word, or several with commas between them."""
+
+    def __init__(self, name: str, allowed: Sequence[str] = ()) -> None:
+        self.name = name
+        self.allowed = allowed
+
+    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Check the words."""
+        for word in value.split(","):
+            if self.allowed and word not in self.allowed:
+                self.fail(f"{word!r} is not one of {', '.join(self.allowed)}", param, ctx)
+        return value
+
+
+def _several(_context: click.Context, _parameter: click.Parameter, values: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(word for value in values for word in value.split(","))
+
+
+_PROFILES = _Several("PROFILE", tuple(map(str, Profile)))
+_RULES = _Several("RULE")
 
 
 @click.command("check")
@@ -25,19 +50,18 @@ _SEVERITIES = list(Severity)
 @click.option(
     "--profile",
     "profiles",
+    type=_PROFILES,
     multiple=True,
-    type=click.Choice(list(map(str, Profile))),
-    help="Rules for a purpose; all by default.",
+    callback=_several,
+    help=f"Only rules for a purpose: {', '.join(Profile)}. May be repeated, also with commas.",
 )
-@click.option("--select", "selected", multiple=True, metavar="RULE", help="Only these rules; * stands for anything.")
-@click.option("--ignore", "ignored", multiple=True, metavar="RULE", help="Not these rules.")
 @click.option(
-    "--fail-on",
-    type=click.Choice(list(map(str, Severity))),
-    default="error",
-    show_default=True,
-    help="From which severity on the exit code is 1.",
+    "--select", "selected", type=_RULES, multiple=True, callback=_several, help="Only these rules; * stands for anything."
 )
+@click.option("--ignore", "ignored", type=_RULES, multiple=True, callback=_several, help="Not these rules.")
+@click.option("--fail-on", type=click.Choice(_SEVERITIES), help="From which severity on the exit code is 1; error by default.")
+@click.option("--each", is_flag=True, help="Every .amxmi file is a model of its own; otherwise they are one model together.")
+@click.option("--fix", is_flag=True, help="Repair what can be repaired in one way only, then check.")
 @click.option("--statistics", is_flag=True, help="Show how often each rule fires instead of each finding.")
 @click.option("--baseline", type=click.Path(path_type=Path), metavar="FILE", help="Hide the findings that a baseline accepts.")
 @click.option("--write-baseline", type=click.Path(path_type=Path), metavar="FILE", help="Accept all findings of today.")
@@ -47,7 +71,9 @@ def command(
     profiles: tuple[str, ...],
     selected: tuple[str, ...],
     ignored: tuple[str, ...],
-    fail_on: str,
+    fail_on: str | None,
+    each: bool,
+    fix: bool,
     statistics: bool,
     baseline: Path | None,
     write_baseline: Path | None,
@@ -56,15 +82,19 @@ def command(
     """Check models by rules.
 
     MODEL_OR_YAML is an app.yaml, or one or several .amxmi files or a folder with some. What is odd about the files themselves is told,
-    too. `amuros explain RULE` tells more about a rule.
+    too. `amuros explain RULE` tells more about a rule. Settings of a project stand in `[tool.amuros.check]` of its pyproject.toml, or
+    in `[check]` of amuros.toml; what is given here takes their place.
     """
-    selection = Selection(profiles=tuple(map(Profile, profiles)), selected=selected, ignored=ignored)
-    for pattern in selection.unknown():
-        raise click.BadParameter(f"there is no rule {pattern!r}; `amuros rules` lists them", param_hint="--select")
-    accepted = _accepted(baseline)
+    settings = configuration_of(paths[0])
+    selection = _selection(profiles or settings.profile, selected or settings.select, ignored or settings.ignore)
+    groups = list(_groups(paths, each))
+    if fix:
+        _fix(groups, selection)
+    accepted = _accepted(baseline or settings.baseline)
     findings = [
         finding
-        for finding in check_files(paths, selection.rules())
+        for group in groups
+        for finding in check_files(group, selection.rules())
         if not (selection.is_ignored(finding.rule) or is_ignored(finding) or fingerprint(finding) in accepted)
     ]
     if write_baseline is not None:
@@ -73,8 +103,35 @@ def command(
     for output in outputs:
         writer = write_statistics if statistics and output.format == "text" else WRITERS[output.format]
         output.write(partial(writer, findings, model))
-    failing = _SEVERITIES[: _SEVERITIES.index(Severity(fail_on)) + 1]
-    sys.exit(1 if any(finding.severity in failing for finding in findings) else 0)
+    sys.exit(1 if _fails(findings, fail_on or settings.fail_on) else 0)
+
+
+def _selection(profiles: Sequence[str], selected: Sequence[str], ignored: Sequence[str]) -> Selection:
+    selection = Selection(profiles=tuple(map(Profile, profiles)), selected=tuple(selected), ignored=tuple(ignored))
+    for pattern in selection.unknown():
+        raise click.BadParameter(f"there is no rule {pattern!r}; `amuros rules` lists them", param_hint="--select")
+    return selection
+
+
+def _groups(paths: Iterable[Path], each: bool) -> Iterable[list[Path]]:
+    """What belongs together: a description is always a model of its own."""
+    models = []
+    for path in paths:
+        if each or is_description(path):
+            yield [path]
+        else:
+            models.append(path)
+    if models:
+        yield models
+
+
+def _fix(groups: Iterable[Sequence[Path]], selection: Selection) -> None:
+    for group in groups:
+        if is_description(group[0]):
+            click.echo(f"{group[0]}: a description is not repaired, its author knows what is meant", err=True)
+            continue
+        for rule, number in fix_files(group, selection.rules()).items():
+            click.echo(f"{' '.join(map(str, group))}: {rule} repaired at {number} object{'s' if number > 1 else ''}", err=True)
 
 
 def _accepted(baseline: Path | None) -> set[str]:
@@ -82,6 +139,11 @@ def _accepted(baseline: Path | None) -> set[str]:
         return read_baseline(baseline) if baseline is not None else set()
     except ValueError as error:
         raise click.BadParameter(str(error), param_hint="--baseline") from None
+
+
+def _fails(findings: Iterable[Finding], fail_on: str) -> bool:
+    failing = _SEVERITIES[: _SEVERITIES.index(fail_on) + 1]
+    return any(finding.severity in failing for finding in findings)
 
 
 def _write(text: str, stream: IO[str]) -> None:

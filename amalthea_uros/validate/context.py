@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TypeVar, cast
 
-from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.element import Element, references_of
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.metamodel.naming import unique_name
 
@@ -52,6 +52,12 @@ class Context:
     def names(self) -> Counter[str]:
         """How often each name occurs by which objects are referred to."""
         return Counter(unique_name(element) for element in self.model.walk() if element.is_referable)
+
+    @cached_property
+    def referred(self) -> frozenset[Element]:
+        """The objects to which some other refers."""
+        values = (value for element in self.model.walk() for _, value in references_of(element))
+        return frozenset(target for value in values for target in (value if isinstance(value, list) else (value,)))
 
     def all(self, cls: type[E]) -> Sequence[E]:
         """All objects of a class and its subclasses."""

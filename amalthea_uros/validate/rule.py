@@ -49,6 +49,9 @@ class Rule:
 #: What is wrong with an object, one sentence for each thing.
 Check = Callable[[Any, Context], Iterator[str]]
 
+#: Repairs an object of which something is wrong, and says whether it did: it does so only where there is one way to.
+Fix = Callable[[Any, Context], bool]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModelRule(Rule):
@@ -58,6 +61,8 @@ class ModelRule(Rule):
     ----------
     target : the class whose objects, and those of its subclasses, are looked at
     check : what is wrong with one of them
+    fix : repairs one of them
+    in_canonical_form : nothing is wrong any more where the file is written as EMF writes it
     example_version : AMALTHEA version of the failing example
     since, until : AMALTHEA versions for which it is meant; None: any
     is_about_files : it tells of what reading found odd in a file, such as unknown elements
@@ -65,7 +70,9 @@ class ModelRule(Rule):
 
     target: type[Element]
     check: Check
+    fix: Fix | None = None
     example_version: str = "3.3.0"
     since: str | None = None
     until: str | None = None
     is_about_files: bool = False
+    in_canonical_form: bool = False

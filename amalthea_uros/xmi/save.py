@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -27,9 +28,27 @@ def save(model: Model, path: StrPath | None = None, *, canonical: bool = False, 
     WriteError : values that the AMALTHEA version does not allow (all of them are named), or a file that cannot be written.
         Either all files are prepared without error or none is touched.
     """
+    _save([(document, target, canonical) for document, target in _targets(model, path)], compress)
+
+
+def save_documents(documents: Iterable[Document], canonical: Collection[Document] = ()) -> None:
+    """Write some documents of a model to where they were read from.
+
+    Parameters
+    ----------
+    canonical : those of them that are laid out as EMF does
+
+    Raises
+    ------
+    WriteError : as for `save`.
+    """
+    _save([(document, _own_path(document), document in canonical) for document in documents], compress=None)
+
+
+def _save(files: Iterable[tuple[Document, Path, bool]], compress: bool | None) -> None:
     prepared = []
     problems: list[Finding] = []
-    for document, target in _targets(model, path):
+    for document, target, canonical in files:
         try:
             prepared.append((target, _file_text(document, canonical, compress)))
         except WriteError as error:

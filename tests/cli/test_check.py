@@ -1,9 +1,11 @@
 """`amuros check` as its user sees it."""
 
 import json
+import re
 from xml.etree import ElementTree
 
 import pytest
+import yaml
 from support import MODEL, ROOT
 from test_cli import amuros
 
@@ -136,3 +138,95 @@ def test_of_what_is_found_very_often_the_first_are_shown(tmp_path):
     assert max(map(len, run.stdout.splitlines())) < 150
     run = amuros("check", path, "--select", "INC-SW-LABELSIZE", "--output", "json")
     assert len(json.loads(run.stdout)["findings"]) == 150
+
+
+def test_several_profiles_and_rules(bad):
+    both = amuros("check", bad, "--profile", "inchron,timing").stdout
+    assert "INC-HW-PU-CLOCK" in both
+    assert "TIM-CLOCK" in both
+    assert both == amuros("check", bad, "--profile", "inchron", "--profile", "timing").stdout
+    assert "TIM-CLOCK" not in amuros("check", bad, "--select", "INC-CO-*,INC-HW-*").stdout
+    assert "'nothing' is not one of schema, emf," in amuros("check", bad, "--profile", "inchron,nothing").stderr
+
+
+CHECK = "[check]\n"
+TOOL = "[tool.amuros.check]\n"
+
+
+@pytest.mark.parametrize(("name", "table"), [("amuros.toml", CHECK), ("pyproject.toml", TOOL)])
+def test_settings_of_a_project(name, table, bad, tmp_path):
+    folder = tmp_path / "models"
+    folder.mkdir()
+    model = bad.rename(folder / bad.name)
+    settings = tmp_path / name
+    settings.write_text(table + 'profile = ["inchron"]\nignore = ["INC-HW-*"]\nfail-on = "warning"\n')
+    run = amuros("check", model)
+    assert "INC-HW-PU-CLOCK" not in run.stdout
+    assert "INC-CO-KIND" in run.stdout
+    assert "TIM-CLOCK" not in run.stdout
+    assert run.returncode == 1
+    # What is said on the command line takes their place.
+    assert "INC-HW-PU-CLOCK" in amuros("check", model, "--ignore", "INC-CO-*").stdout
+    assert "TIM-CLOCK" in amuros("check", model, "--profile", "timing").stdout
+    assert amuros("check", model, "--fail-on", "error").returncode == 0
+    # A baseline stands beside the settings.
+    amuros("check", model, "--write-baseline", tmp_path / "accepted.json")
+    settings.write_text(table + 'baseline = "accepted.json"\nprofile = ["inchron"]\nignore = ["INC-HW-*"]\n')
+    assert amuros("check", model).stdout == "no findings\n"
+
+
+def test_the_nearest_settings_count(bad, tmp_path):
+    (tmp_path / "pyproject.toml").write_text(TOOL + 'select = ["INC-CO-*"]\n')
+    (tmp_path / "amuros.toml").write_text(CHECK + 'select = ["TIM-*"]\n')
+    assert "INC-CO" not in amuros("check", bad).stdout
+    # A file without our table is none of ours.
+    (tmp_path / "amuros.toml").unlink()
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    (inner / "pyproject.toml").write_text("[project]\nname = 'x'\n")
+    assert "INC-CO-KIND" in amuros("check", bad.rename(inner / "bad.amxmi")).stdout
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[check", "this is no TOML"),
+        (CHECK + "selct = ['INC-*']", "there is no setting 'selct'\n  help: Did you mean 'select'?"),
+        (CHECK + "select = 'INC-*'", "'select' has to be a list of texts"),
+        (CHECK + "profile = ['inchrn']", "'profile' cannot be 'inchrn'"),
+        (CHECK + "fail-on = 'never'", "'fail-on' cannot be 'never'\n  help: It is one of error, warning, info."),
+        (CHECK + "baseline = 1", "'baseline' has to be a text"),
+        ("check = 1", "it has to be a table"),
+    ],
+)
+def test_settings_that_are_wrong(text, message, bad, tmp_path):
+    (tmp_path / "amuros.toml").write_text(text)
+    run = amuros("check", bad)
+    assert run.returncode == 2
+    assert message in run.stderr
+    assert "Traceback" not in run.stderr
+
+
+def test_each_file_on_its_own_or_together(tmp_path):
+    stimuli, tasks = tmp_path / "stimuli.amxmi", tmp_path / "tasks.amxmi"
+    stimuli.write_text(MODEL.format('<stimuliModel><stimuli xsi:type="am:SingleStimulus" name="S"/></stimuliModel>'))
+    tasks.write_text(MODEL.format('<swModel><tasks name="T" stimuli="S?type=SingleStimulus"/></swModel>'))
+    select = ("--select", "AM-EMF-INTRINSIC/proxy-resolves")
+    assert amuros("check", stimuli, tasks, *select).stdout == "no findings\n"
+    assert "refers to 'S?type=SingleStimulus', which is nowhere" in amuros("check", "--each", stimuli, tasks, *select).stdout
+    # Descriptions are always models of their own.
+    run = amuros("check", ADVANCED, stimuli, ADVANCED.with_name("bodas-test-simple.yaml"), "--select", "INC-CO-KIND")
+    assert run.stdout.count("INC-CO-KIND warning") == 2
+
+
+def test_the_hooks_for_pre_commit():
+    hooks = {hook["id"]: hook for hook in yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text())}
+    for hook in hooks.values():
+        assert hook["entry"].startswith("amuros ")
+        assert hook["language"] == "python"
+    files = re.compile(hooks["amuros-check"]["files"])
+    assert all(map(files.search, ["app.yaml", "models/app.yml", "a.amxmi", "models/b.amxmi"]))
+    assert not any(map(files.search, ["myapp.yaml", "a.amxmi.txt", "docker-compose.yaml"]))
+    # As it calls the command: with the files behind the arguments.
+    command = hooks["amuros-check"]["entry"].split()[1:]
+    assert amuros(*command, ADVANCED, ADVANCED.with_suffix(".amxmi")).returncode == 0

@@ -26,7 +26,8 @@ def per_class(find: Callable[[type[Element], str], T]) -> Callable[[type[Element
 
 
 def stored_features(cls: type[Element], version: str) -> dict[str, FeatureFact]:
-    """The features of a class that stand in files of a version."""
+    """The features of a class that stand in files of a version, in the order in which EMF writes them."""
     declared = facts(version)
-    found = {name: declared.feature(cls.__name__, feature.xml_name) for name, feature in features_of(cls).items()}
-    return {name: fact for name, fact in found.items() if fact is not None and fact.stored}
+    names = {feature.xml_name: name for name, feature in features_of(cls).items()}
+    stored = declared.features(cls.__name__) if cls.__name__ in declared.classes else ()
+    return {names[fact.name]: fact for fact in stored if fact.stored}

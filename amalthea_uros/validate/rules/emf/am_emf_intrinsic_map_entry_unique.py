@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.versions import facts
+from amalthea_uros.validate.content import is_same
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
@@ -31,6 +32,18 @@ def _maps(cls: type[Element], version: str) -> tuple[tuple[str, str], ...]:
     )
 
 
+def _fix(element: Element, context: Context) -> bool:
+    """Drop entries that repeat another one; which of two values counts nobody but the author knows."""
+    repaired = False
+    for name, _ in _maps(type(element), context.version_of(element)):
+        entries = element.__dict__.get(name, [])
+        for entry in list(entries):
+            if any(is_same(entry, other) for other in entries[: entries.index(entry)]):
+                entries.remove(entry)
+                repaired = True
+    return repaired
+
+
 def _shown(key: str | Element | None) -> str:
     return repr(key.qualified_name if isinstance(key, Element) else key)
 
@@ -41,6 +54,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Element,
     check=_check,
+    fix=_fix,
     rationale="Only one of the values counts, and it is not said which. APP4MC reports it when it validates the model.",
     remedy="Give each key once.",
     fails="""

@@ -6,7 +6,9 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import IReferable
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.naming import unique_name
+from amalthea_uros.validate.content import new_name
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
@@ -17,12 +19,28 @@ def _check(element: IReferable, context: Context) -> Iterator[str]:
         yield f"{element.qualified_name!r} is the name of several objects of class {type(element).__name__} in this file"
 
 
+def _fix(element: IReferable, context: Context) -> bool:
+    # References reach the first object of a name, so that the others are free to have another one.
+    if element in context.referred or context.once(_firsts)[unique_name(element)] is element:
+        return False
+    element.name = new_name(element.name or "", type(element), context)
+    return True
+
+
+def _firsts(context: Context) -> dict[str, Element]:
+    found: dict[str, Element] = {}
+    for element in context.all(IReferable):
+        found.setdefault(unique_name(element), element)
+    return found
+
+
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/unique-id",
     title="name that another object of the file has, too",
     severity=Severity.ERROR,
     target=IReferable,
     check=_check,
+    fix=_fix,
     rationale="References go by class and name, and reach one of the objects only. APP4MC reports it when it validates the model.",
     remedy="Give each its own name, or put one into another namespace.",
     fails="""

@@ -5,16 +5,32 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import RelativePeriodicStimulus, TimeUniformDistribution
+from amalthea_uros.metamodel.classes import RelativePeriodicStimulus, Time, TimeUniformDistribution
+from amalthea_uros.metamodel.magnitudes import TIMES, picoseconds
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: RelativePeriodicStimulus, context: Context) -> Iterator[str]:
-    distance = element.next_occurrence
-    bounds = [distance.lower_bound, distance.upper_bound] if isinstance(distance, TimeUniformDistribution) else []
-    if len({bound.unit for bound in bounds if bound is not None}) > 1:
+    if len({bound.unit for bound in _bounds(element)}) > 1:
         yield f"the bounds of the next occurrence of {element.name!r} have different units"
+
+
+def _bounds(stimulus: RelativePeriodicStimulus) -> list[Time]:
+    distance = stimulus.next_occurrence
+    bounds = [distance.lower_bound, distance.upper_bound] if isinstance(distance, TimeUniformDistribution) else []
+    return [bound for bound in bounds if bound is not None]
+
+
+def _fix(element: RelativePeriodicStimulus, context: Context) -> bool:
+    """State both bounds in the finer unit, in which both are whole numbers."""
+    times = [(bound, picoseconds(bound)) for bound in _bounds(element)]
+    unit = min((bound.unit for bound, _ in times if bound.unit in TIMES), key=TIMES.__getitem__, default=None)
+    if unit is None or any(time is None for _, time in times):
+        return False
+    for bound, time in times:
+        bound.value, bound.unit = (time or 0) // TIMES[unit], unit
+    return True
 
 
 RULE = ModelRule(
@@ -23,6 +39,7 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=RelativePeriodicStimulus,
     check=_check,
+    fix=_fix,
     rationale="The value is wrong by powers of 1000, without a word.",
     remedy="State both bounds in the same unit.",
     fails="""

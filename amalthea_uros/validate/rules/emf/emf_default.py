@@ -1,0 +1,58 @@
+"""Attributes that say nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Amalthea
+from amalthea_uros.metamodel.defaults import default_value
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.versions import facts
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
+
+
+def _check(element: Amalthea, context: Context) -> Iterator[str]:
+    document = element.document
+    if document is None or document.source is None:
+        return
+    version = document.facts_version
+    number = sum(part.__dict__.get(name) == value for part in element.walk() for name, value in _omitted(type(part), version))
+    if number:
+        yield f"{number} attributes state what they stand for anyway, which EMF leaves out"
+
+
+@per_class
+def _omitted(cls: type[Element], version: str) -> tuple[tuple[str, object], ...]:
+    """The attributes that EMF leaves out while they have a certain value, and that value."""
+    declared = facts(version)
+    found = (
+        (name, default_value(declared, cls.__name__, fact.name))
+        for name, fact in stored_features(cls, version).items()
+        if fact.default is None
+    )
+    return tuple((name, value) for name, value in found if value is not None)
+
+
+RULE = ModelRule(
+    id="EMF-DEFAULT",
+    title="attributes with their default value",
+    severity=Severity.INFO,
+    target=Amalthea,
+    check=_check,
+    rationale="They say nothing, and the next tool that saves the model drops them.",
+    remedy="Let amuros check --fix, amuros fmt or APP4MC write the file.",
+    fails="""
+<swModel>
+  <tasks name="T" preemption="_undefined_"/>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <tasks name="T" preemption="preemptive"/>
+</swModel>
+""",
+    in_canonical_form=True,
+)

@@ -1,0 +1,58 @@
+"""Order of the elements of a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Amalthea
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
+
+
+def _check(element: Amalthea, context: Context) -> Iterator[str]:
+    document = element.document
+    if document is None or document.source is None:
+        return
+    index, version = document.source.index, document.facts_version
+    moved = 0
+    for holder in element.walk():
+        places = [index[part] for part in _parts(holder, version) if part in index]
+        moved += sum(place > later for place, later in pairwise(places))
+    if moved:
+        yield f"at {moved} places objects stand in another order than EMF writes them"
+
+
+def _parts(holder: Element, version: str) -> Iterator[Element]:
+    for name in _containments(type(holder), version):
+        value = holder.__dict__.get(name)
+        yield from value if isinstance(value, list) else () if value is None else (value,)
+
+
+@per_class
+def _containments(cls: type[Element], version: str) -> tuple[str, ...]:
+    return tuple(name for name, fact in stored_features(cls, version).items() if fact.kind is Kind.CONTAINMENT)
+
+
+RULE = ModelRule(
+    id="EMF-ORDER",
+    title="objects in another order than EMF writes them",
+    severity=Severity.INFO,
+    target=Amalthea,
+    check=_check,
+    rationale="The next tool that saves the model moves them, and what really changed drowns in the difference.",
+    remedy="Let amuros check --fix, amuros fmt or APP4MC write the file.",
+    fails="""
+<stimuliModel/>
+<swModel/>
+""",
+    passes="""
+<swModel/>
+<stimuliModel/>
+""",
+    in_canonical_form=True,
+)
