@@ -6,6 +6,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import IO, Any
+from urllib.parse import quote
 
 from amalthea_uros import __version__
 from amalthea_uros.diagnostics import Finding, Severity
@@ -66,7 +67,7 @@ def _result(finding: Finding, index: int) -> dict[str, Any]:
 
 def _place(path: Path, line: int | None, column: int | None) -> dict[str, Any]:
     below = relative(path)
-    artifact = {"uri": path.resolve().as_uri()} if below is None else {"uri": below, "uriBaseId": _ROOT}
+    artifact = {"uri": path.resolve().as_uri()} if below is None else {"uri": quote(below), "uriBaseId": _ROOT}
     place: dict[str, Any] = {"artifactLocation": artifact}
     if line:
         place["region"] = {"startLine": line, "startColumn": column or 1}
