@@ -50,7 +50,7 @@ def test_the_links_of_a_page(page):
         assert (page.parent / target).exists(), target
 
 
-RULE = r"(?:XMI|XSD|YML|CFG|APP|UR|BLD|EXT|ANA|CHN|CHK)\d{3}|(?:INC|TIM|AM|TA|DOC)-[A-Za-z/.-]+"
+RULE = r"(?:XMI|XSD|YML|CFG|APP|UR|BLD|EXT|ANA|CHN|CHK)\d{3}|(?:INC|TIM|AM|EMF|TA|DOC)-[A-Za-z/.-]+"
 
 
 def test_every_finding_is_documented():
