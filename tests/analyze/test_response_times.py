@@ -2,6 +2,7 @@
 
 import json
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
 from hypothesis import assume, given
@@ -13,7 +14,6 @@ from amalthea_uros.analyze.arrivals import Periodic
 from amalthea_uros.analyze.cost import Cost, Part
 from amalthea_uros.analyze.schedule import Released
 from amalthea_uros.analyze.task import Task
-from amalthea_uros.analyze.utilization import liu_layland
 
 
 def vectors(name, accept=lambda case: True):
@@ -51,7 +51,18 @@ def test_published_and_independent_figures(case):
 
 @pytest.mark.parametrize("case", vectors("textbook", lambda case: case["scheduling"] == "utilization_bound"))
 def test_liu_and_layland_1973(case):
-    assert liu_layland(case["n"]) == pytest.approx(case["expected"], rel=1e-15)
+    """Up to the bound of theorem 5 any tasks end within their periods, also those that just reach it."""
+    count, bound = case["n"], case["expected"]
+    # The worst case of the proof: periods in the ratio of 2 ** (1 / n), each cost the distance to the next period.
+    periods = [round(10**9 * 2 ** (index / count)) for index in range(count)]
+    costs = [(then - first) for first, then in pairwise([*periods, 2 * periods[0]])]
+    assert sum(cost / period for cost, period in zip(costs, periods, strict=True)) == pytest.approx(bound, rel=1e-8)
+    tasks = [
+        Task(name=f"t{index}", arrivals=Periodic(period), cost=Cost.constant(cost), priority=-index)
+        for index, (period, cost) in enumerate(zip(periods, costs, strict=True))
+    ]
+    responses = levels.response_times(tasks)
+    assert all(response.worst <= period for response, period in zip(responses, periods, strict=True))
 
 
 def test_lehoczky_1990_has_its_worst_response_at_the_fifth_job():

@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 from amalthea_uros.analyze.chains.expand import Unfolded, UnfoldError, combined, sequences, unfold
 from amalthea_uros.analyze.chains.methods import Methods
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.resolve import Carrier, Resolver, Route
+from amalthea_uros.analyze.chains.resolve import GAPS, Resolver, Route
 from amalthea_uros.analyze.chains.result import ChainResult
 from amalthea_uros.analyze.chains.spots import UnresolvedError
 from amalthea_uros.analyze.chains.stages import Stage, communication_of, hop_text, stages
-from amalthea_uros.analyze.chains.timing import Timed, Timing, UntimedError
+from amalthea_uros.analyze.chains.timed import Timed
+from amalthea_uros.analyze.chains.timing import Timing, UntimedError
 from amalthea_uros.analyze.known import Known
 from amalthea_uros.analyze.task import Claim, Response
 from amalthea_uros.perf.events import Event, EventChain
@@ -40,47 +41,43 @@ class Evaluation:
         known_events = self.known.system.events_by_name
         try:
             unfolded, left_out = unfold(chain, self.known.system)
-            by_events = {
-                events: self.resolver.routes([known_events[name] for name in events]) for events in sequences(unfolded)
-            }
+            ways = {events: self.resolver.routes([known_events[name] for name in events]) for events in sequences(unfolded)}
         except (UnfoldError, UnresolvedError) as error:
             self.known.notes.warning("CHN001", f"the chain {chain.name!r} is not evaluated: {error}", chain)
             return ChainResult(name=chain.name, communication="", reason=str(error))
-        for event in left_out:
-            message = f"the chain {chain.name!r} does not start or end with {event!r}, as a part of it does; that is left out"
-            self.known.notes.warning("CHN005", message, chain)
-        for event, guess in self.resolver.spots.guesses.items():
-            message = f"nothing in the model makes the event {event!r} occur; it is taken to do so {guess}"
-            self.known.notes.warning("CHN004", message, self.known.system.events_by_name[event])
-        self._note_gaps(chain, [route for found in by_events.values() for route in found])
-        every = [route for found in by_events.values() for route in found]
-        how = communication_of(stage for route in every for stage in stages(route, self.known.settings.communication))
-        told = tuple(_route_text(route) for found in by_events.values() for route in found)
-        values: dict[tuple[str, ...], list[Value]] = {}
-        reason = why = ""
-        for events, found in by_events.items():
-            try:
-                methods = [self._methods(route) for route in found]
-                values[events] = _worst_of([list(method.values()) for method in methods])
-                why = why or methods[0].why
-            except UntimedError as error:
-                reason = str(error)
-                values[events] = []
-        everything = _combine(unfolded, values)
+        routes = [route for found in ways.values() for route in found]
+        self._note(chain, left_out, routes)
+        found = self._evaluated(ways)
+        everything = _combine(unfolded, found.values)
         tightest = _tightest(everything)
-        if not reason and not any(value.quantity is Quantity.MAX_REACTION_TIME for value in tightest):
-            reason = self._why_unbounded([route for found in by_events.values() for route in found])
+        has_bound = any(value.quantity is Quantity.MAX_REACTION_TIME for value in tightest)
+        reason = found.reason or ("" if has_bound else found.why_unbounded)
         if reason:
             self.known.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {reason}", chain)
         return ChainResult(
             name=chain.name,
-            communication=how,
-            routes=told,
+            communication=communication_of(stage for route in routes for stage in self._stages(route)),
+            routes=tuple(map(_route_text, routes)),
             values=tightest,
             everything=tuple(everything),
-            why=why,
+            why=found.why,
             reason=reason,
         )
+
+    def _evaluated(self, ways: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
+        """The values of each way through a chain, and why they are what they are."""
+        found = _Evaluated()
+        for events, routes in ways.items():
+            try:
+                methods = [self._methods(route) for route in routes]
+            except UntimedError as error:
+                found.reason = str(error)
+                found.values[events] = []
+                continue
+            found.values[events] = _worst_of([list(method.values()) for method in methods])
+            found.why = found.why or methods[0].why
+            found.why_unbounded = found.why_unbounded or next((m.why_unbounded for m in methods if m.why_unbounded), "")
+        return found
 
     def pair(self, first: Event, then: Event) -> tuple[Value, ...]:
         """The tightest values from one event to another, whether there is a chain between them or not.
@@ -92,40 +89,58 @@ class Evaluation:
         found = self.resolver.routes([first, then])
         return _tightest(_worst_of([list(self._methods(route).values()) for route in found]))
 
-    def _note_gaps(self, chain: EventChain, routes: Sequence[Route]) -> None:
+    def _note(self, chain: EventChain, left_out: Iterable[str], routes: Sequence[Route]) -> None:
+        """What had to be assumed of a chain."""
+        notes = self.known.notes
+        for event in left_out:
+            message = f"the chain {chain.name!r} does not start or end with {event!r}, as a part of it does; that is left out"
+            notes.warning("CHN005", message, chain)
+        for event, guess in self.resolver.spots.guesses.items():
+            message = f"nothing in the model makes the event {event!r} occur; it is taken to do so {guess}"
+            notes.warning("CHN004", message, self.known.system.events_by_name[event])
         for route in routes:
             for hop, first, then in zip(route.hops, route.events, route.events[1:], strict=False):
-                if hop.carrier in (Carrier.NOTHING, Carrier.NEXT_JOB):
+                if hop.carrier in GAPS:
                     message = (
                         f"in the chain {chain.name!r} nothing carries the effect from {first!r} to {then!r}; "
                         "it is evaluated as if there were a variable between them"
                     )
-                    self.known.notes.warning("CHN002", message, chain)
+                    notes.warning("CHN002", message, chain)
+
+    def _stages(self, route: Route) -> list[Stage]:
+        return stages(route, self.known.settings.communication)
 
     def _methods(self, route: Route) -> Methods:
-        found = stages(route, self.known.settings.communication)
-        timed = [self.timing.group(group, follower) for group, follower in _with_followers(_groups(found))]
         parts: list[list[Timed]] = []
         before = None
-        for group, each in zip(_groups(found), timed, strict=True):
+        for group, follower in _with_followers(_groups(self._stages(route))):
             controller = self._controller(group[0])
             if controller != before or not parts:
                 parts.append([])
-            parts[-1].append(each)
+            parts[-1].append(self.timing.group(group, follower))
             before = controller
-        return Methods(parts, self.timing.unit, route.gaps == 0)
+        return Methods(parts, self.timing.unit, is_certain=route.gaps == 0)
 
     def _controller(self, stage: Stage) -> str:
         placed = self.known.placed.get(stage.process.name)
         return self.controllers.get(placed.core, "") if placed is not None else ""
 
-    def _why_unbounded(self, routes: Iterable[Route]) -> str:
-        for route in routes:
-            for group, follower in _with_followers(_groups(stages(route, self.known.settings.communication))):
-                timed = self.timing.group(group, follower)
-                if not timed.step.is_regular:
-                    return f"nothing says how long {timed.step.name!r} may stay away"
-        return ""
+
+@dataclass(slots=True)
+class _Evaluated:
+    """Values by the events of a way through a chain.
+
+    Attributes
+    ----------
+    why : why the tightest ones are what they are
+    why_unbounded : why some are not there
+    reason : why a way has none at all
+    """
+
+    values: dict[tuple[str, ...], list[Value]] = field(default_factory=dict)
+    why: str = ""
+    why_unbounded: str = ""
+    reason: str = ""
 
 
 def controllers(system: System) -> dict[str, str]:
@@ -195,14 +210,14 @@ def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[Value]]) 
         else:
             known = [time for time in times.values() if time is not None]
             time = (max if value.quantity.is_upper else min)(known)
-        claims = {way.claim for way in each.values() if way is not None}
-        # The greatest of the smallest is not the smallest of the greatest: of alternatives it is a bound.
-        is_exact = claims == {Claim.EXACT} and not reacts
         found.append(
             Value(
                 quantity=value.quantity,
                 value=time,
-                claim=Claim.EXACT if is_exact else Claim.BOUND,
+                # The greatest of the smallest is not the smallest of the greatest: of alternatives it is a bound.
+                claim=Claim.BOUND
+                if reacts or any(way.claim is not Claim.EXACT for way in each.values() if way)
+                else Claim.EXACT,
                 method=value.method,
                 source=value.source,
             )

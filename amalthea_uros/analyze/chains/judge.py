@@ -7,7 +7,7 @@ forward to the first response that it has caused, an age constraint from each re
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from amalthea_uros.analyze.arrivals import Arrivals, Periodic
 from amalthea_uros.analyze.chains.evaluate import Evaluation
@@ -16,8 +16,9 @@ from amalthea_uros.analyze.chains.places import Place
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
 from amalthea_uros.analyze.chains.resolve import Carrier
 from amalthea_uros.analyze.chains.result import ChainResult
-from amalthea_uros.analyze.chains.spots import Spot, UnresolvedError, When
+from amalthea_uros.analyze.chains.spots import UnresolvedError
 from amalthea_uros.analyze.chains.timing import UntimedError
+from amalthea_uros.analyze.chains.windows import UnknownError, Windows
 from amalthea_uros.analyze.core import known_releases
 from amalthea_uros.analyze.result import RequirementResult, Verdict
 from amalthea_uros.perf.constraints import (
@@ -32,7 +33,7 @@ from amalthea_uros.perf.constraints import (
     OrderConstraint,
     RepetitionConstraint,
 )
-from amalthea_uros.perf.events import Event, EventSet, LabelChange, LabelEvent
+from amalthea_uros.perf.events import LabelChange, LabelEvent
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.software import AccessKind, Call, LabelAccess
 from amalthea_uros.units import Time
@@ -41,16 +42,16 @@ _REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
 _AGE = (Quantity.MIN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE)
 
 
-class _UnknownError(Exception):
-    """A constraint cannot be judged; the text says why."""
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Judge:
     """Judges the constraints of a system."""
 
     evaluation: Evaluation
     chains: Mapping[str, ChainResult]
+    windows: Windows = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.windows = Windows(self.evaluation)
 
     def all(self) -> Iterator[RequirementResult]:
         """All constraints, those with two limits as two."""
@@ -58,7 +59,7 @@ class Judge:
         for constraint in (*constraints.constraints, *constraints.data_ages, *constraints.orders):
             try:
                 yield from self._one(constraint)
-            except (_UnknownError, UnresolvedError, UntimedError) as error:
+            except (UnknownError, UnresolvedError, UntimedError) as error:
                 yield RequirementResult(
                     name=constraint.name,
                     object="",
@@ -79,7 +80,7 @@ class Judge:
             case RepetitionConstraint():
                 yield from self._repetition(constraint)
             case EventSynchronization(events=events, tolerance=tolerance):
-                yield self._upper(constraint, ", ".join(events), "spread", tolerance, self._spread(events))
+                yield _result(constraint, ", ".join(events), "spread", tolerance, self.windows.spread(events))
             case ChainSynchronization():
                 yield self._chain_synchronization(constraint)
             case DataAgeConstraint():
@@ -92,38 +93,38 @@ class Judge:
     def _latency(self, constraint: LatencyConstraint) -> Iterator[RequirementResult]:
         chain = self.chains.get(constraint.chain)
         if chain is None:
-            raise _UnknownError(f"the chain {constraint.chain!r} is not part of the model")
+            raise UnknownError(f"the chain {constraint.chain!r} is not part of the model")
         least, most = _AGE if constraint.kind is LatencyKind.AGE else _REACTION
         kind = str(constraint.kind)
         if constraint.maximum is not None:
             value = _time(chain.value(most))
-            yield self._upper(constraint, chain.name, kind, constraint.maximum, value, chain.reason)
+            yield _result(constraint, chain.name, kind, constraint.maximum, value, chain.reason)
         if constraint.minimum is not None:
             value = _time(chain.value(least))
-            yield self._lower(constraint, chain.name, kind, constraint.minimum, value, chain.reason)
+            yield _result(constraint, chain.name, kind, constraint.minimum, value, chain.reason, is_upper=False)
 
     def _delay(self, constraint: DelayConstraint) -> Iterator[RequirementResult]:
-        source, target = self._event(constraint.source), self._event(constraint.target)
+        source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
         if constraint.matching is not Matching.REACTION:
             hops = {hop.carrier for route in self.evaluation.resolver.routes([source, target]) for hop in route.hops}
             if not hops <= {Carrier.JOB, Carrier.TRIGGER}:
-                raise _UnknownError(
+                raise UnknownError(
                     "where data are overwritten or read again, occurrences do not belong to each other one by one"
                 )
         values = {value.quantity: value for value in self.evaluation.pair(source, target)}
         least, most = _REACTION
         what = f"{constraint.source} to {constraint.target}"
         if constraint.upper is not None:
-            yield self._upper(constraint, what, "delay", constraint.upper, _time(values.get(most)))
+            yield _result(constraint, what, "delay", constraint.upper, _time(values.get(most)))
         if constraint.lower is not None:
-            yield self._lower(constraint, what, "delay", constraint.lower, _time(values.get(least)))
+            yield _result(constraint, what, "delay", constraint.lower, _time(values.get(least)), is_upper=False)
 
     def _chain_synchronization(self, constraint: ChainSynchronization) -> RequirementResult:
         found = [self.chains.get(name) for name in constraint.chains]
         system = self.evaluation.known.system
         chains = [system.chains[name] for name in constraint.chains if name in system.chains]
         if None in found or len(chains) < 2:
-            raise _UnknownError("it needs two chains of the model")
+            raise UnknownError("it needs two chains of the model")
         is_start = constraint.end is ChainEnd.STIMULUS
         ends = [chain.stimulus if is_start else chain.response for chain in chains]
         value: Time | None
@@ -133,10 +134,8 @@ class Judge:
             earliest = [_time(each.value(_REACTION[0])) for each in found if each is not None]
             value = _difference(latest, earliest)
         else:
-            value = self._spread([end for end in ends if end is not None])
-        return self._upper(
-            constraint, ", ".join(constraint.chains), f"spread at the {constraint.end}", constraint.tolerance, value
-        )
+            value = self.windows.spread([end for end in ends if end is not None])
+        return _result(constraint, ", ".join(constraint.chains), f"spread at the {constraint.end}", constraint.tolerance, value)
 
     def _data_age(self, constraint: DataAgeConstraint) -> Iterator[RequirementResult]:
         """From each write of the runnable to the reads that still see it."""
@@ -157,79 +156,30 @@ class Judge:
             values = {value.quantity: value for value in self.evaluation.pair(written, read)}
             what = f"{constraint.label} in {name}"
             if latest is not None:
-                yield self._upper(constraint, what, "age", latest, _time(values.get(_AGE[1])))
+                yield _result(constraint, what, "age", latest, _time(values.get(_AGE[1])))
             if earliest is not None:
-                yield self._lower(constraint, what, "age", earliest, _time(values.get(_AGE[0])))
+                yield _result(constraint, what, "age", earliest, _time(values.get(_AGE[0])), is_upper=False)
 
     # Events
 
-    def _event(self, name: str) -> Event:
-        event = self.evaluation.known.system.events_by_name.get(name)
-        if event is None or isinstance(event, EventSet):
-            raise _UnknownError(f"there is no single event {name!r} in the model")
-        return event
-
     def _repetition(self, constraint: RepetitionConstraint) -> Iterator[RequirementResult]:
-        spot = self._spot(constraint.event)
+        spot = self.windows.spot(constraint.event)
         arrivals = self.evaluation.known.arrivals.get(spot.process.name)
         if arrivals is None:
-            raise _UnknownError(f"the arrivals of {spot.process.name!r} are not known")
-        early, late = self._window(spot)
+            raise UnknownError(f"the arrivals of {spot.process.name!r} are not known")
+        early, late = self.windows.of(spot)
         span = max(1, constraint.span)
         if constraint.upper is not None:
             longest = _longest(arrivals, span)
             value = None if longest is None else longest + late - early
-            yield self._upper(constraint, constraint.event, "repetition", constraint.upper, value)
+            yield _result(constraint, constraint.event, "repetition", constraint.upper, value)
         if constraint.lower is not None:
             value = max(0, arrivals.span(span + 1) - (late - early))
-            yield self._lower(constraint, constraint.event, "repetition", constraint.lower, value)
+            yield _result(constraint, constraint.event, "repetition", constraint.lower, value, is_upper=False)
         if constraint.jitter is not None:
             own = arrivals.jitter if isinstance(arrivals, Periodic) and not arrivals.sporadic else None
             value = None if own is None else own + late - early
-            yield self._upper(constraint, constraint.event, "jitter", constraint.jitter, value)
-
-    def _spot(self, name: str) -> Spot:
-        spots = self.evaluation.resolver.spots.of(self._event(name))
-        if len(spots) > 1:
-            raise _UnknownError(f"the event {name!r} occurs in several places")
-        if any(counter.prescaler > 1 for counter in (spots[0].place.counters if spots[0].place else ())):
-            raise _UnknownError(f"the event {name!r} occurs in some jobs only")
-        return spots[0]
-
-    def _window(self, spot: Spot) -> tuple[Time, Time]:
-        """How long behind the activation an event occurs, at the earliest and at the latest."""
-        response = self.evaluation.responses.get(spot.process.name)
-        if response is None or response.worst is None:
-            raise _UnknownError(f"the response time of {spot.process.name!r} is not known, or has no bound")
-        known = self.evaluation.known
-        least = known.costs[spot.process.name].best // known.demands.grains(known.placed[spot.process.name].core)
-        match spot.when:
-            case When.ACTIVATION:
-                return 0, 0
-            case When.START:
-                return 0, response.worst - least
-            case When.END:
-                return response.best, response.worst
-        return 0, response.worst
-
-    def _spread(self, events: Sequence[str]) -> Time:
-        """How far apart events of processes of the same period can occur."""
-        windows = []
-        periods = set()
-        for name in events:
-            spot = self._spot(name)
-            releases = known_releases(spot.process, self.evaluation.known.system)
-            if releases is None:
-                raise _UnknownError(f"the releases of {spot.process.name!r} are not known")
-            periods.add(releases.period)
-            early, late = self._window(spot)
-            offset = releases.offset % releases.period
-            windows.append((offset + early, offset + late))
-        if not windows:
-            raise _UnknownError("it names no events")
-        if len(periods) > 1:
-            raise _UnknownError("its events have different periods, so that not each of them has a partner")
-        return max(late for _, late in windows) - min(early for early, _ in windows)
+            yield _result(constraint, constraint.event, "jitter", constraint.jitter, value)
 
     # Order
 
@@ -254,39 +204,23 @@ class Judge:
                 verdict=Verdict.MET if holds else Verdict.MISSED,
             )
 
-    # Results
 
-    def _upper(
-        self, constraint: Named, what: str, quantity: str, limit: Time, value: Time | None, reason: str = ""
-    ) -> RequirementResult:
-        verdict = Verdict.UNKNOWN if value is None else Verdict.MET if value <= limit else Verdict.MISSED
-        return RequirementResult(
-            name=constraint.name,
-            object=what,
-            quantity=quantity,
-            is_upper=True,
-            limit=limit,
-            value=value,
-            verdict=verdict,
-            reason=reason if value is None else "",
-        )
-
-    def _lower(
-        self, constraint: Named, what: str, quantity: str, limit: Time, value: Time | None, reason: str = ""
-    ) -> RequirementResult:
-        # Nothing is faster than at once.
-        value = 0 if value is None and not reason else value
-        verdict = Verdict.UNKNOWN if value is None else Verdict.MET if value >= limit else Verdict.MISSED
-        return RequirementResult(
-            name=constraint.name,
-            object=what,
-            quantity=quantity,
-            is_upper=False,
-            limit=limit,
-            value=value,
-            verdict=verdict,
-            reason=reason if value is None else "",
-        )
+def _result(
+    constraint: Named, what: str, quantity: str, limit: Time, value: Time | None, reason: str = "", is_upper: bool = True
+) -> RequirementResult:
+    if not is_upper and value is None and not reason:
+        value = 0  # nothing is faster than at once
+    keeps = value is not None and (value <= limit if is_upper else value >= limit)
+    return RequirementResult(
+        name=constraint.name,
+        object=what,
+        quantity=quantity,
+        is_upper=is_upper,
+        limit=limit,
+        value=value,
+        verdict=Verdict.UNKNOWN if value is None else Verdict.MET if keeps else Verdict.MISSED,
+        reason=reason if value is None else "",
+    )
 
 
 def _time(value: Value | None) -> Time | None:
@@ -303,7 +237,7 @@ def _cycles(time: Time | None, cycles: int | None, period: Time | None) -> Time 
     if time is not None or cycles is None:
         return time
     if period is None:
-        raise _UnknownError("activations are no time where the period of the writer is not known")
+        raise UnknownError("activations are no time where the period of the writer is not known")
     return cycles * period
 
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from amalthea_uros.analyze.chains import becker, bi, davare, duerr, hamann, job_chains, kloda
 from amalthea_uros.analyze.chains.periodic import Step
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.timing import Timed, in_picoseconds
-from amalthea_uros.analyze.chains.track import Track
+from amalthea_uros.analyze.chains.timed import Timed
+from amalthea_uros.analyze.chains.timing import in_picoseconds
 from amalthea_uros.analyze.task import Claim
 from amalthea_uros.units import Time
 
@@ -55,6 +55,12 @@ class Methods:
         if varying is not None:
             return f"bounds: execution times around {varying!r} vary, or it is not certain when it is served"
         return "exact: all releases are known, and execution times are constant or do not matter"
+
+    @property
+    def why_unbounded(self) -> str:
+        """Why there is no bound of the reaction time; "" if there is one."""
+        irregular = next((timed.step.name for part in self.parts for timed in part if not timed.step.is_regular), None)
+        return f"nothing says how long {irregular!r} may stay away" if irregular is not None else ""
 
     def values(self) -> Iterator[Value]:
         """All of them."""
@@ -170,11 +176,8 @@ class Methods:
 
 
 def _follow(part: Sequence[Timed], widest: bool) -> Followed | None:
-    tracks: list[Track] = []
-    for timed in part:
-        track = timed.widest if widest else timed.narrowest
-        if track is None or not len(track.releases):
-            return None
-        tracks.append(track)
-    settled = max(timed.settled for timed in part)
-    return job_chains.follow(tracks, settled)
+    known = [timed.tracks for timed in part if timed.tracks is not None]
+    tracks = [each.widest if widest else each.narrowest for each in known]
+    if len(known) < len(part) or not all(len(track.releases) for track in tracks):
+        return None
+    return job_chains.follow(tracks, max(each.settled for each in known))

@@ -13,9 +13,7 @@ from itertools import pairwise, product
 
 from amalthea_uros.analyze.chains.places import Place
 from amalthea_uros.analyze.chains.spots import Spot, Spots, UnresolvedError, When
-from amalthea_uros.perf.events import (
-    Event,
-)
+from amalthea_uros.perf.events import Event
 from amalthea_uros.perf.software import (
     AccessKind,
     Call,
@@ -46,6 +44,10 @@ class Carrier(StrEnum):
     NOTHING = "nothing"
 
 
+#: The effect is taken over as if there were a variable.
+GAPS = (Carrier.NOTHING, Carrier.NEXT_JOB)
+
+
 @dataclass(frozen=True, slots=True)
 class Hop:
     """From one event to the next.
@@ -73,7 +75,7 @@ class Route:
     @property
     def gaps(self) -> int:
         """How often nothing carries the effect."""
-        return sum(hop.carrier is Carrier.NOTHING for hop in self.hops)
+        return sum(hop.carrier in GAPS for hop in self.hops)
 
 
 @dataclass(slots=True)
@@ -107,8 +109,6 @@ class Resolver:
 
     def _route(self, events: tuple[str, ...], spots: tuple[Spot, ...]) -> Route:
         return Route(events, spots, tuple(self._hop(first, then) for first, then in pairwise(spots)))
-
-    # Hops
 
     def _hop(self, first: Spot, then: Spot) -> Hop:
         if first.process.name == then.process.name:

@@ -21,6 +21,7 @@ from amalthea_uros.analyze.chains.moments import Moments, is_inside, is_logical,
 from amalthea_uros.analyze.chains.periodic import Step
 from amalthea_uros.analyze.chains.spots import When
 from amalthea_uros.analyze.chains.stages import At, Fire, Moment, Read, Stage
+from amalthea_uros.analyze.chains.timed import Timed, Tracks
 from amalthea_uros.analyze.chains.track import Track
 from amalthea_uros.analyze.core import known_releases
 from amalthea_uros.analyze.cost import Cost
@@ -37,29 +38,6 @@ if TYPE_CHECKING:
 
 class UntimedError(Exception):
     """Nothing bounds when jobs of a stage come; the text says why."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Timed:
-    """A stage, with those that it triggers, in time.
-
-    Attributes
-    ----------
-    widest : earliest reads and latest writes; None where releases are not known
-    narrowest : latest reads and earliest writes
-    settled : time behind which both repeat
-    is_exact : whether both are what happens
-    is_logical : whether only releases and periods decide
-    reason : why releases are not known
-    """
-
-    step: Step
-    widest: Track | None = None
-    narrowest: Track | None = None
-    settled: Time = 0
-    is_exact: bool = False
-    is_logical: bool = False
-    reason: str = ""
 
 
 @dataclass(slots=True)
@@ -101,18 +79,17 @@ class Timing:
         if len(counters) > 1:
             return Timed(step=step, reason=f"it is not known which jobs of {base.process.name!r} take part")
         if is_logical(base.enter) and is_logical(base.leave):
-            timed = self._logical(releases)
+            tracks = self._logical(releases)
         else:
-            timed = self._by_schedule(base, releases) or self._by_response(base, releases)
-        assert timed.widest is not None
-        assert timed.narrowest is not None
-        return replace(
-            timed,
-            step=step,
-            widest=self._part(_later(timed.widest, behind), counters, releases, hurries, timed.settled),
-            narrowest=self._part(_later(timed.narrowest, least), counters, releases, False, timed.settled),
-            is_exact=timed.is_exact and not triggered,
+            tracks = self._by_schedule(base, releases) or self._by_response(base, releases)
+        widest, narrowest = _later(tracks.widest, behind), _later(tracks.narrowest, least)
+        tracks = replace(
+            tracks,
+            widest=self._part(widest, counters, releases, hurries, tracks.settled),
+            narrowest=self._part(narrowest, counters, releases, False, tracks.settled),
+            is_exact=tracks.is_exact and not triggered,
         )
+        return Timed(step=step, tracks=tracks)
 
     # What is known of processes
 
@@ -190,12 +167,12 @@ class Timing:
 
     # Tracks
 
-    def _logical(self, releases: Periodic) -> Timed:
+    def _logical(self, releases: Periodic) -> Tracks:
         period, offset = releases.period * self.unit, releases.offset * self.unit
         track = logical.track(period, offset, period)
-        return Timed(step=_NO_STEP, widest=track, narrowest=track, settled=offset, is_exact=True, is_logical=True)
+        return Tracks(widest=track, narrowest=track, settled=offset, is_exact=True, is_logical=True)
 
-    def _by_schedule(self, stage: Stage, releases: Periodic) -> Timed | None:
+    def _by_schedule(self, stage: Stage, releases: Periodic) -> Tracks | None:
         placed = self.known.placed.get(stage.process.name)
         if placed is None:
             return None
@@ -214,8 +191,7 @@ class Timing:
             )
 
         certain = all(place.is_certain for place in stage.places) or not any(map(is_inside, (stage.enter, stage.leave)))
-        return Timed(
-            step=_NO_STEP,
+        return Tracks(
             widest=track(early.at(stage.enter, False), late.at(stage.leave, True)),
             narrowest=track(late.at(stage.enter, True), early.at(stage.leave, False)),
             settled=found.settled * self.unit // grains,
@@ -235,7 +211,7 @@ class Timing:
             until=track.until // grains,
         )
 
-    def _by_response(self, stage: Stage, releases: Periodic) -> Timed:
+    def _by_response(self, stage: Stage, releases: Periodic) -> Tracks:
         response, cost = self._response(stage.process), self.known.costs[stage.process.name]
         placed = self.known.placed[stage.process.name]
         grains = self.known.demands.grains(placed.core)
@@ -260,8 +236,7 @@ class Timing:
         def track(reads: Numbers, writes: Numbers) -> Track:
             return Track(releases=times, reads=reads, writes=writes, cycle=period, until=offset + 2 * period)
 
-        return Timed(
-            step=_NO_STEP,
+        return Tracks(
             widest=track(at(stage.enter, False), at(stage.leave, True)),
             narrowest=track(at(stage.enter, True), at(stage.leave, False)),
             settled=offset,
@@ -284,9 +259,6 @@ class Timing:
                 until=track.until,
             )
         return replace(track, hurries=hurries)
-
-
-_NO_STEP = Step(period=0, response=0)
 
 
 def _later(track: Track, behind: Time) -> Track:

@@ -72,9 +72,9 @@ class Track:
 
 def reach(tracks: Sequence[Track]) -> Time:
     """More time than any chain through the tracks takes: at each step a job may be missed, and then another one."""
-    return sum(_longest_gap(track) + int((track.writes - track.reads).max()) for track in tracks)
+    return sum(2 * _longest_gap(track) + int((track.writes - track.reads).max()) for track in tracks)
 
 
 def _longest_gap(track: Track) -> Time:
-    """The longest time between two reads that follow each other, twice."""
-    return 2 * int(np.diff(track.reads).max()) if len(track.reads) > 1 else 2 * track.cycle
+    """The longest time between two reads that follow each other."""
+    return int(np.diff(track.reads).max()) if len(track.reads) > 1 else track.cycle
