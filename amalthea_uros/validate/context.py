@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from typing import TypeVar, cast
 
@@ -30,28 +30,27 @@ class Context:
         return found
 
     @cached_property
+    def versions(self) -> frozenset[str]:
+        """The AMALTHEA versions whose facts hold for some of the objects."""
+        return frozenset(document.facts_version for document in self.model.documents)
+
+    @cached_property
     def _only_version(self) -> str | None:
-        versions = {document.facts_version for document in self.model.documents}
-        return versions.pop() if len(versions) == 1 else None
+        return next(iter(self.versions)) if len(self.versions) == 1 else None
 
     def version_of(self, element: Element) -> str:
         """The AMALTHEA version whose facts hold for an object."""
         return self._only_version or cast("Document", element.document).facts_version
 
     @cached_property
-    def names_in_files(self) -> Counter[tuple[Document, str]]:
-        """How often each name occurs in a file."""
-        return Counter(
-            (document, unique_name(element))
-            for document in self.model.documents
-            for element in document.root.walk()
-            if element.is_referable
-        )
-
-    @cached_property
-    def names(self) -> Counter[str]:
-        """How often each name occurs by which objects are referred to."""
-        return Counter(unique_name(element) for element in self.model.walk() if element.is_referable)
+    def namesakes(self) -> dict[Element, list[Element]]:
+        """The objects that others of their class share their name with, and all that do."""
+        by_name: dict[str, list[Element]] = {}
+        for kind, found in self._by_type.items():
+            if kind.is_referable:
+                for element in found:
+                    by_name.setdefault(unique_name(element), []).append(element)
+        return {element: same for same in by_name.values() if len(same) > 1 for element in same}
 
     @cached_property
     def referred(self) -> frozenset[Element]:
@@ -64,6 +63,10 @@ class Context:
         if cls not in self._once:
             self._once[cls] = [element for kind, found in self._by_type.items() if issubclass(kind, cls) for element in found]
         return cast("Sequence[E]", self._once[cls])
+
+    def by_class(self, cls: type[Element]) -> Iterator[tuple[type[Element], Sequence[Element]]]:
+        """The objects of a class and its subclasses, by their own class."""
+        return ((kind, found) for kind, found in self._by_type.items() if issubclass(kind, cls))
 
     def uses(self, cls: type[Element], feature: str) -> Counter[Element]:
         """How often each object is referred to by a feature of objects of a class."""

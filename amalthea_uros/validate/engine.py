@@ -18,10 +18,7 @@ def run(model: Model, rules: Iterable[ModelRule]) -> list[Finding]:
 
 
 def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
-    versions = {document.facts_version for document in context.model.documents}
-    if not any((rule.since or "") <= version <= (rule.until or "9") for version in versions):
-        return
-    for element in context.all(rule.target):
+    for element in _concerned(rule, context):
         try:
             messages = list(rule.check(element, context))
         except Exception as error:
@@ -30,6 +27,14 @@ def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
             continue
         for message in messages:
             yield _finding(rule.id, rule.severity, message, element, rule.remedy)
+
+
+def _concerned(rule: ModelRule, context: Context) -> Iterator[Element]:
+    """The objects that a rule is about."""
+    versions = [version for version in context.versions if (rule.since or "") <= version <= (rule.until or "9")]
+    for cls, found in context.by_class(rule.target):
+        if any(rule.concerns is None or rule.concerns(cls, version) for version in versions):
+            yield from found
 
 
 def _finding(rule: str, severity: Severity, message: str, element: Element, remedy: str) -> Finding:

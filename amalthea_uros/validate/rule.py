@@ -61,6 +61,7 @@ class ModelRule(Rule):
     ----------
     target : the class whose objects, and those of its subclasses, are looked at
     check : what is wrong with one of them
+    concerns : whether anything can be wrong with objects of a class in an AMALTHEA version; the others are passed over
     fix : repairs one of them
     in_canonical_form : nothing is wrong any more where the file is written as EMF writes it
     example_version : AMALTHEA version of the failing example
@@ -70,6 +71,7 @@ class ModelRule(Rule):
 
     target: type[Element]
     check: Check
+    concerns: Callable[[type[Element], str], object] | None = None
     fix: Fix | None = None
     example_version: str = "3.3.0"
     since: str | None = None

@@ -36,6 +36,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Element,
     check=_check,
+    concerns=_limited,
     rationale="The value has no meaning there, such as a counter that divides by 0. APP4MC reports it when it validates the model.",
     remedy="State a value within the limit.",
     fails="""

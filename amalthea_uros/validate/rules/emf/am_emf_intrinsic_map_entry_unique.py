@@ -16,8 +16,10 @@ from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
 
 def _check(element: Element, context: Context) -> Iterator[str]:
     for name, xml_name in _maps(type(element), context.version_of(element)):
-        count = Counter(entry.key for entry in element.__dict__.get(name, ()))
-        for key, times in count.items():
+        entries = element.__dict__.get(name, ())
+        if len(entries) < 2:
+            continue
+        for key, times in Counter(entry.key for entry in entries).items():
             if times > 1:
                 yield f"{xml_name} has the key {_shown(key)} {times} times"
 
@@ -54,6 +56,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Element,
     check=_check,
+    concerns=_maps,
     fix=_fix,
     rationale="Only one of the values counts, and it is not said which. APP4MC reports it when it validates the model.",
     remedy="Give each key once.",

@@ -38,6 +38,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Element,
     check=_check,
+    concerns=_bounded,
     rationale="The number of values is part of what the feature means. APP4MC reports it when it validates the model.",
     remedy="State as many as the message says.",
     fails="""

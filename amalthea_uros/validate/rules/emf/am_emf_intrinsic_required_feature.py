@@ -33,6 +33,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Element,
     check=_check,
+    concerns=_required,
     rationale="Other objects, and the tools that read the model, rely on it. APP4MC reports it when it validates the model.",
     remedy="Give it a value.",
     fails="""

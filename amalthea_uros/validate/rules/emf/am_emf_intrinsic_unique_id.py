@@ -7,31 +7,26 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import IReferable
 from amalthea_uros.metamodel.element import Element
-from amalthea_uros.metamodel.naming import unique_name
 from amalthea_uros.validate.content import new_name
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: IReferable, context: Context) -> Iterator[str]:
-    document = element.document
-    if element.name and document and context.names_in_files[document, unique_name(element)] > 1:
+    if element.name and len(_in_file(element, context)) > 1:
         yield f"{element.qualified_name!r} is the name of several objects of class {type(element).__name__} in this file"
+
+
+def _in_file(element: IReferable, context: Context) -> list[Element]:
+    return [other for other in context.namesakes.get(element, ()) if other.document is element.document]
 
 
 def _fix(element: IReferable, context: Context) -> bool:
     # References reach the first object of a name, so that the others are free to have another one.
-    if element in context.referred or context.once(_firsts)[unique_name(element)] is element:
+    if element in context.referred or context.namesakes[element][0] is element:
         return False
     element.name = new_name(element.name or "", type(element), context)
     return True
-
-
-def _firsts(context: Context) -> dict[str, Element]:
-    found: dict[str, Element] = {}
-    for element in context.all(IReferable):
-        found.setdefault(unique_name(element), element)
-    return found
 
 
 RULE = ModelRule(
