@@ -44,6 +44,7 @@ bench: $(READY)
 	$(BIN)/python benchmarks/build.py
 	$(BIN)/python benchmarks/response_times.py
 	$(BIN)/python benchmarks/chains.py
+	$(BIN)/python benchmarks/check.py
 
 # The pages are Markdown; their examples are executed and their output is compared.
 docs: $(READY)

@@ -14,12 +14,16 @@ from amalthea_uros.checking import check_files, fix_files, is_description
 from amalthea_uros.cli.configuration import configuration_of
 from amalthea_uros.cli.output import Output, output_option
 from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.errors import ReadError
 from amalthea_uros.report.check import WRITERS, write_statistics
 from amalthea_uros.validate.rule import Profile
 from amalthea_uros.validate.selection import Selection
 from amalthea_uros.validate.suppress import baseline_text, fingerprint, is_ignored, read_baseline
 
 _SEVERITIES = list(map(str, Severity))
+
+#: Findings about a file of which nothing can be said.
+_UNREADABLE = ("XMI", "YML00")
 
 
 class _Several(click.ParamType[str]):
@@ -91,10 +95,10 @@ def command(
     if fix:
         _fix(groups, selection)
     accepted = _accepted(baseline or settings.baseline)
+    told, is_readable = _told(groups, selection)
     findings = [
         finding
-        for group in groups
-        for finding in check_files(group, selection.rules())
+        for finding in told
         if not (selection.is_ignored(finding.rule) or is_ignored(finding) or fingerprint(finding) in accepted)
     ]
     if write_baseline is not None:
@@ -103,7 +107,7 @@ def command(
     for output in outputs:
         writer = write_statistics if statistics and output.format == "text" else WRITERS[output.format]
         output.write(partial(writer, findings, model))
-    sys.exit(1 if _fails(findings, fail_on or settings.fail_on) else 0)
+    sys.exit(2 if not is_readable else 1 if _fails(findings, fail_on or settings.fail_on) else 0)
 
 
 def _selection(profiles: Sequence[str], selected: Sequence[str], ignored: Sequence[str]) -> Selection:
@@ -132,6 +136,19 @@ def _fix(groups: Iterable[Sequence[Path]], selection: Selection) -> None:
             continue
         for rule, number in fix_files(group, selection.rules()).items():
             click.echo(f"{' '.join(map(str, group))}: {rule} repaired at {number} object{'s' if number > 1 else ''}", err=True)
+
+
+def _told(groups: Iterable[Sequence[Path]], selection: Selection) -> tuple[list[Finding], bool]:
+    """All findings, also those that keep a model from being read or built, and whether every file could be read."""
+    found: list[Finding] = []
+    is_readable = True
+    for group in groups:
+        try:
+            found += check_files(group, selection.rules())
+        except ReadError as error:
+            found += error.findings
+            is_readable &= not any(finding.rule.startswith(_UNREADABLE) for finding in error.findings)
+    return found, is_readable
 
 
 def _accepted(baseline: Path | None) -> set[str]:

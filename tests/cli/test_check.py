@@ -93,11 +93,25 @@ def test_rules_are_explained_and_listed():
 
 
 def test_files_that_cannot_be_read(tmp_path):
-    assert amuros("check", tmp_path / "none.amxmi").returncode == 2
-    (tmp_path / "app.yaml").write_text("nothing")
-    run = amuros("check", tmp_path / "app.yaml")
-    assert run.returncode in (1, 2)
-    assert "Traceback" not in run.stderr
+    missing, empty = tmp_path / "none.amxmi", tmp_path / "app.yaml"
+    empty.write_text("a: [")
+    for path, rule in ((missing, "XMI001"), (empty, "YML001")):
+        run = amuros("check", path, "--output", "json")
+        assert run.returncode == 2
+        assert [finding["rule"] for finding in json.loads(run.stdout)["findings"]] == [rule]
+    # What can be read is checked all the same.
+    run = amuros("check", "--each", missing, ADVANCED)
+    assert run.returncode == 2
+    assert "INC-CO-KIND" in run.stdout
+
+
+def test_a_description_that_becomes_no_system_is_told_to_all_outputs(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text(ADVANCED.read_text().replace("period: 1 ms, execution_time: {base", "period: 10 ms, execution_time: {base"))
+    run = amuros("check", path, "--output", "sarif")
+    assert run.returncode == 1
+    results = json.loads(run.stdout)["runs"][0]["results"]
+    assert ("UR103", "error") in [(result["ruleId"], result["level"]) for result in results]
 
 
 def test_a_comment_in_the_line_accepts_a_finding(tmp_path):

@@ -1,0 +1,47 @@
+"""All rules on all models that are at hand."""
+
+from collections import Counter
+
+import pytest
+from support import ROOT, SHARED, corpus, hand_written
+
+from amalthea_uros import check, load
+from amalthea_uros.errors import ReadError
+
+SAMPLES = [pytest.param(path, id=path.name) for path in sorted((ROOT / "samples").glob("*.amxmi"))]
+
+#: Rules that fire on more than half of the published models, and why that is no mistake of theirs.
+FREQUENT: dict[str, str] = {}
+
+
+@pytest.mark.parametrize("path", [*SAMPLES, *corpus(), *hand_written()])
+def test_no_rule_fails(path):
+    try:
+        model = load(path)
+    except ReadError:
+        pytest.skip("the file cannot be read")
+    findings = check(model)
+    assert [str(finding) for finding in findings if finding.rule == "CHK001"] == []
+    # Every finding has a place, and knows its object.
+    assert all(finding.location.line and finding.object for finding in findings if not finding.rule.startswith("XSD"))
+
+
+@pytest.mark.parametrize("path", SAMPLES)
+def test_samples_are_sound(path):
+    assert [str(finding) for finding in check(load(path)) if finding.severity == "error"] == []
+
+
+def models_by_rule():
+    """On how many published models each rule fires, and how many models there are."""
+    firing, number = Counter(), 0
+    for parameter in corpus():
+        (path,) = parameter.values
+        firing.update({finding.rule for finding in check(load(path))})
+        number += 1
+    return firing, number
+
+
+@pytest.mark.skipif(not (SHARED / "corpus" / "inventory.json").exists(), reason="the published models are not at hand")
+def test_a_rule_that_fires_on_most_models_is_explained():
+    firing, number = models_by_rule()
+    assert {rule for rule, times in firing.items() if times > number / 2} == FREQUENT.keys()
