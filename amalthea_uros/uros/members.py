@@ -29,12 +29,22 @@ def members_of(work: Work, callbacks: Sequence[Callback]) -> Mapping[str, Member
     for callback in callbacks:
         # Inside the executor, a callback is one of its functions; otherwise it is a task of the same name.
         member = found.get(body_name(callback) if callback.in_executor else callback.name)
-        if member is not None:
-            found[callback.name] = _with_topics(member, [callback])
+        found[callback.name] = _with_topics(member or _without_task(callback), [callback])
     executor = work.description.middleware.executor.name
-    if executor in found:
-        found[executor] = _with_topics(found[executor], callbacks)
+    if callbacks:
+        found[executor] = _with_topics(found.get(executor) or _nothing(executor), callbacks)
     return found
+
+
+def _without_task(callback: Callback) -> Member:
+    """A callback for which no task was found, of which there is an error already: no other one shall follow from that."""
+    section = callback.section
+    reads = {*section.reads, *([callback.buffer] if callback.buffer else [])}
+    return replace(_nothing(callback.name), reads=frozenset(reads), writes=frozenset(section.writes))
+
+
+def _nothing(process: str) -> Member:
+    return _member(process, None, (), {})
 
 
 def _member(process: str, runnable: str | None, parts: Iterable[Runnable], by_stimulus: Mapping[str, str]) -> Member:

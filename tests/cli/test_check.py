@@ -111,7 +111,7 @@ def test_a_description_that_becomes_no_system_is_told_to_all_outputs(tmp_path):
     run = amuros("check", path, "--output", "sarif")
     assert run.returncode == 1
     results = json.loads(run.stdout)["runs"][0]["results"]
-    assert ("UR103", "error") in [(result["ruleId"], result["level"]) for result in results]
+    assert ("UR101", "error") in [(result["ruleId"], result["level"]) for result in results]
 
 
 def test_a_comment_in_the_line_accepts_a_finding(tmp_path):

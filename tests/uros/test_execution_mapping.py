@@ -256,3 +256,10 @@ def test_received_frames_interrupt(author):
     (traffic,) = assembly.traffic
     assert (traffic.length, traffic.frames, traffic.bus_time) == (16, 3, 3 * 135 * 4 * US)
     assert float(traffic.share) == pytest.approx(3 * 135 * 4e-6 / 20e-3)
+
+
+def test_from_a_callback_without_a_task_no_other_mistake_follows(author):
+    chain = "\n    chains:\n      - {name: c, path: [Sub, Timer]}\n    requirements:\n      - {process: Timer, response_time: 1 ms}\n"
+    text = app(executor="period: 10 ms, execution_time: 12 us", sub="rate: 50 Hz, execution_time: 2 us, writes: [x]")
+    findings = author.findings(text + chain)
+    assert [rule for _, rule, _ in findings] == ["UR101"]
