@@ -2,19 +2,32 @@
 
 from __future__ import annotations
 
+import re
+
 import click
 
+from amalthea_uros.resources import resource_folder
 from amalthea_uros.validate import registry
 
 
 @click.command("explain")
 @click.argument("identifier", metavar="RULE")
 def command(identifier: str) -> None:
-    """Tell what a rule looks for, why, and what to do, with an example."""
+    """Tell what a rule looks for, why, and what to do, with an example; or what another finding means."""
     profile = registry.profile_of(identifier)
     if profile is None:
-        raise click.BadParameter(f"there is no rule {identifier!r}; `amuros rules` lists them")
+        click.echo(_finding(identifier.upper()))
+        return
     rule = registry.rule(identifier)
     click.echo(f"{rule.id}: {rule.title} ({rule.severity}, profile {profile})\n")
     click.echo(f"{rule.rationale}\n{rule.remedy}\n")
     click.echo(f"It fires at:\n{rule.fails.rstrip()}\n\nIt does not at:\n{rule.passes.rstrip()}")
+
+
+def _finding(identifier: str) -> str:
+    """What the page of the findings says of one that no rule makes."""
+    page = (resource_folder("docs") / "findings.md").read_text(encoding="utf-8")
+    found = re.search(rf"^\| {re.escape(identifier)} \| ([^|]*) \| (.*) \|$", page, re.MULTILINE)
+    if found is None:
+        raise click.BadParameter(f"there is no rule {identifier!r}; `amuros rules` lists them")
+    return f"{identifier}: {found[2]} ({found[1]})"

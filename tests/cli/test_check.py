@@ -89,6 +89,8 @@ def test_rules_are_explained_and_listed():
     assert run.stdout.startswith("INC-HW-PU-CLOCK: processing unit without a clock (error, profile inchron)")
     assert "segmentation fault" in run.stdout
     assert "there is no rule 'X'" in amuros("explain", "X").stderr
+    # Findings that no rule makes are explained, too.
+    assert amuros("explain", "xmi020").stdout == "XMI020: a reference to an object that is not there (warning)\n"
     assert "INC-EC-CYCLE" in amuros("rules").stdout
 
 
