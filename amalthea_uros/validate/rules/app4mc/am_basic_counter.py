@@ -21,7 +21,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Counter,
     check=_check,
-    rationale="It would take effect before the first occurrence; APP4MC reports it when it validates the model.",
+    rationale="It would take effect before the first occurrence. APP4MC reports it when it validates the model.",
     remedy="State an offset of 0 or more.",
     fails="""
 <swModel>

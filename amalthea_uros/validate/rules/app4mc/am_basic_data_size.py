@@ -11,8 +11,8 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: AbstractMemoryElement, context: Context) -> Iterator[str]:
-    if element.size is not None and element.size.value is not None and element.size.value <= 0:
-        yield f"the size of {element.name!r} is {element.size.value}"
+    if element.size is not None and (element.size.value or 0) <= 0:
+        yield f"the size of {element.name!r} is {element.size.value or 0}"
 
 
 RULE = ModelRule(

@@ -13,8 +13,8 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: Frequency, context: Context) -> Iterator[str]:
     holder = element.container
     decides = isinstance(holder, FrequencyDomain) or (isinstance(holder, ClockFunction) and holder.y_offset is element)
-    if decides and element.value is not None and element.value <= 0:
-        yield f"the frequency is {element.value}"
+    if decides and (element.value or 0) <= 0:
+        yield f"the frequency is {element.value or 0}"
 
 
 RULE = ModelRule(

@@ -13,7 +13,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
     parts = [chain for item in element.items if (chain := getattr(item, "event_chain", None)) is not None]
-    if element.item_type == "parallel" or not parts:
+    if element.item_type == "parallel" or not parts or any(part.unresolved is not None for part in parts):
         return
     if element.stimulus is not parts[0].stimulus:
         yield "the first segment does not start with the stimulus of the chain"

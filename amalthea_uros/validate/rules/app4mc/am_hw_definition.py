@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ProcessingUnitDefinition
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.app4mc._features import shared_categories
 
 
 def _check(element: ProcessingUnitDefinition, context: Context) -> Iterator[str]:
-    count = Counter(feature.container for feature in element.features)
-    for feature in element.features:
-        if count[feature.container] > 1:
+    for features in shared_categories(element).values():
+        for feature in features:
             yield f"the feature {feature.name!r} is not the only one of its category"
 
 

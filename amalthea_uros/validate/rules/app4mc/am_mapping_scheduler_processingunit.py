@@ -8,12 +8,11 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Scheduler, SchedulerAllocation
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.app4mc._scheduling import GROUPING, algorithm_of
 
 
 def _check(element: Scheduler, context: Context) -> Iterator[str]:
-    definition = getattr(element, "definition", None)
-    is_grouping = definition is not None and definition.name == "Grouping"
-    if not is_grouping and not context.uses(SchedulerAllocation, "scheduler")[element]:
+    if algorithm_of(element) != GROUPING and not context.uses(SchedulerAllocation, "scheduler")[element]:
         yield f"no scheduler allocation refers to {element.name!r}"
 
 

@@ -1,0 +1,72 @@
+"""Connection between ports of types that do not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import HwPort, HwStructure, PortType, ProcessingUnit
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+
+_TYPES = (PortType.INITIATOR, PortType.RESPONDER)
+
+
+def _check(element: HwStructure, context: Context) -> Iterator[str]:
+    for connection in element.connections:
+        first, second = connection.port1, connection.port2
+        if first is None or second is None or first is second or not {first.port_type, second.port_type}.issubset(_TYPES):
+            continue
+        outer = {_is_outer(first, element), _is_outer(second, element)}
+        if outer == {True, False} and first.port_type != second.port_type:
+            yield f"the connection {connection.name!r} delegates a port of type {first.port_type} to one of type {second.port_type}"
+        elif outer in ({True}, {False}) and first.port_type == second.port_type:
+            yield f"the connection {connection.name!r} joins two ports of the type {first.port_type}"
+
+
+def _is_outer(port: HwPort, structure: HwStructure) -> bool | None:
+    """True for a port of the structure itself, False for one of what is directly in it, None for any other."""
+    holder = port.container
+    if holder is structure:
+        return True
+    if holder is not None and isinstance(holder.container, ProcessingUnit):
+        holder = holder.container  # the port is one of a cache
+    return False if holder is not None and holder.container is structure else None
+
+
+RULE = ModelRule(
+    id="AM-HW-Structure",
+    title="connection between ports of types that do not fit",
+    severity=Severity.ERROR,
+    target=HwStructure,
+    check=_check,
+    rationale="One side of a connection asks, the other one answers; a port of a structure stands for one of the same type inside. "
+    "APP4MC reports it when it validates the model.",
+    remedy="Join an initiator with a responder, and delegate ports of a structure to ports of the same type.",
+    fails="""
+<hwModel>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core">
+      <ports name="p" portType="initiator"/>
+    </modules>
+    <modules xsi:type="am:Memory" name="RAM">
+      <ports name="p" portType="initiator"/>
+    </modules>
+    <connections name="wire" port1="core/p?type=HwPort" port2="RAM/p?type=HwPort"/>
+  </structures>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core">
+      <ports name="p" portType="initiator"/>
+    </modules>
+    <modules xsi:type="am:Memory" name="RAM">
+      <ports name="p" portType="responder"/>
+    </modules>
+    <connections name="wire" port1="core/p?type=HwPort" port2="RAM/p?type=HwPort"/>
+  </structures>
+</hwModel>
+""",
+)

@@ -1,0 +1,45 @@
+"""Category of which there are several features."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ProcessingUnitDefinition
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.app4mc._features import shared_categories
+
+
+def _check(element: ProcessingUnitDefinition, context: Context) -> Iterator[str]:
+    for category, features in shared_categories(element).items():
+        yield f"{element.name!r} has {len(features)} features of the category {category.name!r}"
+
+
+RULE = ModelRule(
+    id="DOC-Feature-Single",
+    title="category of which there are several features",
+    severity=Severity.ERROR,
+    target=ProcessingUnitDefinition,
+    check=_check,
+    rationale="It is not known which of them an execution need means. The documentation of APP4MC asks for at most one of a category.",
+    remedy="Refer to one feature of each category.",
+    fails="""
+<hwModel>
+  <definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="I/a?type=HwFeature I/b?type=HwFeature"/>
+  <featureCategories name="I">
+    <features name="a"/>
+    <features name="b"/>
+  </featureCategories>
+</hwModel>
+""",
+    passes="""
+<hwModel>
+  <definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="I/a?type=HwFeature"/>
+  <featureCategories name="I">
+    <features name="a"/>
+    <features name="b"/>
+  </featureCategories>
+</hwModel>
+""",
+)

@@ -1,0 +1,65 @@
+"""Scheduler with a parent or children other than its algorithm asks for."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Scheduler, TaskAllocation, TaskScheduler
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.app4mc._scheduling import GROUPING, algorithm_of, parent_of
+
+
+def _check(element: TaskScheduler, context: Context) -> Iterator[str]:
+    algorithm, definition = algorithm_of(element), element.definition
+    needs_parent = algorithm == GROUPING or (definition is not None and definition.requires_parent_scheduler is True)
+    if needs_parent and parent_of(element) is None:
+        yield f"{element.name!r} has no scheduler above it, which {algorithm} needs"
+    children = context.once(_children)[element]
+    if definition is not None and definition.has_exactly_one_child is True and children != 1:
+        yield f"{element.name!r} serves {children} tasks and schedulers, where {algorithm} serves exactly one"
+
+
+def _children(context: Context) -> Counter[Scheduler | None]:
+    tasks = {
+        (allocation.task, allocation.scheduler) for allocation in context.all(TaskAllocation) if allocation.task is not None
+    }
+    children: Counter[Scheduler | None] = Counter(scheduler for _, scheduler in tasks)
+    children.update(parent_of(scheduler) for scheduler in context.all(TaskScheduler))
+    return children
+
+
+RULE = ModelRule(
+    id="DOC-Grouping-Parent",
+    title="scheduler with a parent or children other than its algorithm asks for",
+    severity=Severity.ERROR,
+    target=TaskScheduler,
+    check=_check,
+    rationale="A group decides nothing itself, and other algorithms, too, work only below another scheduler or for a single child. "
+    "The documentation of APP4MC asks for it.",
+    remedy="Associate the scheduler with the one above it, and give it as many tasks and schedulers as its algorithm serves.",
+    fails="""
+<osModel>
+  <schedulerDefinitions name="Grouping" requiresParentScheduler="true"/>
+  <schedulerDefinitions name="OSEK"/>
+  <operatingSystems name="OS">
+    <taskSchedulers name="group" definition="Grouping?type=SchedulerDefinition"/>
+    <taskSchedulers name="main" definition="OSEK?type=SchedulerDefinition"/>
+  </operatingSystems>
+</osModel>
+""",
+    passes="""
+<osModel>
+  <schedulerDefinitions name="Grouping" requiresParentScheduler="true"/>
+  <schedulerDefinitions name="OSEK"/>
+  <operatingSystems name="OS">
+    <taskSchedulers name="group" definition="Grouping?type=SchedulerDefinition">
+      <parentAssociation parent="main?type=TaskScheduler"/>
+    </taskSchedulers>
+    <taskSchedulers name="main" definition="OSEK?type=SchedulerDefinition"/>
+  </operatingSystems>
+</osModel>
+""",
+)

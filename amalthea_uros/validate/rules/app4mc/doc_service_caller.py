@@ -1,0 +1,63 @@
+"""Service that a process calls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Process, Runnable
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.app4mc._running import direct_calls
+
+
+def _check(element: Runnable, context: Context) -> Iterator[str]:
+    if element.service:
+        for process in context.once(_processes).get(element, {}):
+            yield f"the service {element.name!r} is called by {process.name!r} itself"
+
+
+def _processes(context: Context) -> dict[Runnable, dict[Process, None]]:
+    """The processes that call each runnable themselves."""
+    found: dict[Runnable, dict[Process, None]] = {}
+    for caller, called in context.once(direct_calls).items():
+        if isinstance(caller, Process):
+            for runnable in called:
+                found.setdefault(runnable, {})[caller] = None
+    return found
+
+
+RULE = ModelRule(
+    id="DOC-Service-Caller",
+    title="service that a process calls",
+    severity=Severity.INFO,
+    target=Runnable,
+    check=_check,
+    rationale="A service does something for other runnables. The documentation of APP4MC asks for it to be called by them only.",
+    remedy="Call it from a runnable, or do not mark it as a service.",
+    fails="""
+<swModel>
+  <tasks name="T">
+    <activityGraph>
+      <items xsi:type="am:RunnableCall" runnable="S?type=Runnable"/>
+    </activityGraph>
+  </tasks>
+  <runnables name="S" service="true"/>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <tasks name="T">
+    <activityGraph>
+      <items xsi:type="am:RunnableCall" runnable="R?type=Runnable"/>
+    </activityGraph>
+  </tasks>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:RunnableCall" runnable="S?type=Runnable"/>
+    </activityGraph>
+  </runnables>
+  <runnables name="S" service="true"/>
+</swModel>
+""",
+)

@@ -1,0 +1,74 @@
+"""Task that no processing unit may run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import TaskAllocation
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.app4mc._scheduling import responsibilities
+
+
+def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
+    task, scheduler = element.task, element.scheduler
+    if task is None or scheduler is None or scheduler.unresolved is not None:
+        return
+    served = context.once(responsibilities).get(scheduler, [])
+    if not served:
+        yield f"{task.qualified_name!r} runs nowhere: {scheduler.name!r} decides for no processing unit"
+    elif element.affinity and set(served).isdisjoint(element.affinity):
+        yield f"{task.qualified_name!r} runs nowhere: {scheduler.name!r} decides for none of the processing units of its affinity"
+
+
+RULE = ModelRule(
+    id="DOC-Task-Affinity-Intersection",
+    title="task that no processing unit may run",
+    severity=Severity.ERROR,
+    target=TaskAllocation,
+    check=_check,
+    rationale="A task runs on the processing units of its affinity for which its scheduler decides, or on all of these if it has none. "
+    "The documentation of APP4MC asks for at least one.",
+    remedy="Name processing units in the affinity that are in the responsibility of the scheduler.",
+    fails="""
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<hwModel>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="a"/>
+    <modules xsi:type="am:ProcessingUnit" name="b"/>
+  </structures>
+</hwModel>
+<osModel>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S"/>
+  </operatingSystems>
+</osModel>
+<mappingModel>
+  <schedulerAllocation scheduler="S?type=TaskScheduler" responsibility="a?type=ProcessingUnit"/>
+  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler" affinity="b?type=ProcessingUnit"/>
+</mappingModel>
+""",
+    passes="""
+<swModel>
+  <tasks name="T"/>
+</swModel>
+<hwModel>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="a"/>
+    <modules xsi:type="am:ProcessingUnit" name="b"/>
+  </structures>
+</hwModel>
+<osModel>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S"/>
+  </operatingSystems>
+</osModel>
+<mappingModel>
+  <schedulerAllocation scheduler="S?type=TaskScheduler" responsibility="a?type=ProcessingUnit"/>
+  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler" affinity="a?type=ProcessingUnit"/>
+</mappingModel>
+""",
+)

@@ -1,0 +1,81 @@
+"""Chunk larger than what is transmitted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import (
+    Channel,
+    ChannelAccess,
+    DataSize,
+    LabelAccess,
+    TransmissionPolicy,
+    TypeDefinition,
+    TypeRef,
+)
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.app4mc._sizes import is_larger
+
+
+def _check(element: TransmissionPolicy, context: Context) -> Iterator[str]:
+    chunk, whole = element.chunk_size, _transmitted(element.container)
+    if chunk is not None and whole is not None and is_larger(chunk, whole):
+        yield f"a chunk of {chunk.value} {chunk.unit} is larger than the {whole.value} {whole.unit} that are transmitted"
+
+
+def _transmitted(access: Element | None) -> DataSize | None:
+    """The size of the label, or of an element of the channel, if it is known."""
+    match access:
+        case LabelAccess(data=data) if data is not None:
+            return data.size
+        case ChannelAccess(data=Channel(element_type=TypeDefinition(size=size))):
+            return size
+        case ChannelAccess(data=Channel(element_type=TypeRef(type_def=TypeDefinition(size=size)))):
+            return size
+    return None
+
+
+RULE = ModelRule(
+    id="DOC-Transmission-Chunk",
+    title="chunk larger than what is transmitted",
+    severity=Severity.ERROR,
+    target=TransmissionPolicy,
+    check=_check,
+    rationale="A chunk is a part of a label, or of an element of a channel. The documentation of APP4MC asks for it.",
+    remedy="State a chunk size up to the size of the label, or of the type of the elements of the channel.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:LabelAccess" access="read" data="L?type=Label">
+        <transmissionPolicy>
+          <chunkSize value="8" unit="B"/>
+        </transmissionPolicy>
+      </items>
+    </activityGraph>
+  </runnables>
+  <labels name="L">
+    <size value="32" unit="bit"/>
+  </labels>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:LabelAccess" access="read" data="L?type=Label">
+        <transmissionPolicy>
+          <chunkSize value="4" unit="B"/>
+        </transmissionPolicy>
+      </items>
+    </activityGraph>
+  </runnables>
+  <labels name="L">
+    <size value="32" unit="bit"/>
+  </labels>
+</swModel>
+""",
+)

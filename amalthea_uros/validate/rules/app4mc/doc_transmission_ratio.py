@@ -1,0 +1,50 @@
+"""Transmitted share outside of 0 to 1."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import TransmissionPolicy
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+
+
+def _check(element: TransmissionPolicy, context: Context) -> Iterator[str]:
+    if element.transmit_ratio is not None and not 0 <= element.transmit_ratio <= 1:
+        yield f"the transmit ratio is {element.transmit_ratio}"
+
+
+RULE = ModelRule(
+    id="DOC-Transmission-Ratio",
+    title="transmitted share outside of 0 to 1",
+    severity=Severity.ERROR,
+    target=TransmissionPolicy,
+    check=_check,
+    rationale="It is the part of the data that is transmitted, not a percentage. The documentation of APP4MC asks for 0 to 1.",
+    remedy="State a transmit ratio from 0 to 1.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:LabelAccess" access="read" data="L?type=Label">
+        <transmissionPolicy transmitRatio="50.0"/>
+      </items>
+    </activityGraph>
+  </runnables>
+  <labels name="L"/>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:LabelAccess" access="read" data="L?type=Label">
+        <transmissionPolicy transmitRatio="0.5"/>
+      </items>
+    </activityGraph>
+  </runnables>
+  <labels name="L"/>
+</swModel>
+""",
+)

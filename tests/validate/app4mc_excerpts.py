@@ -1,0 +1,57 @@
+"""Excerpts of models for the rules of the profile app4mc, and what these say of them."""
+
+import pytest
+from support import MODEL
+
+from amalthea_uros import check, load
+
+
+def messages(folder, rule, *excerpts, version="3.3.0"):
+    """What a rule says of a model whose files have these contents."""
+    paths = [folder / f"{number}.amxmi" for number in range(len(excerpts))]
+    for path, excerpt in zip(paths, excerpts, strict=True):
+        path.write_text(MODEL.format(excerpt).replace("3.3.0", version))
+    read = load(*paths)
+    # Nothing is wrong that is not meant to be.
+    assert not read.findings or any("gone" in excerpt for excerpt in excerpts), read.findings
+    return [finding.message for finding in check(read, [rule])]
+
+
+def assert_said(said, parts):
+    assert len(said) == len(parts), said
+    assert all(part in message for part, message in zip(parts, said, strict=True)), said
+
+
+def cases(*groups):
+    """A test for each case: a rule, the content of a model, and parts of what is said of it, in order."""
+    found = [pytest.param(*case, id=f"{case[0]}-{number}") for group in groups for number, case in enumerate(group)]
+    return pytest.mark.parametrize(("rule", "excerpt", "said"), found)
+
+
+ECU = '<hwModel>{}<structures name="ECU">{}</structures></hwModel>'
+
+
+def port(name, kind="", interface=""):
+    stated = "".join(f' {key}="{value}"' for key, value in (("portType", kind), ("portInterface", interface)) if value)
+    return f'<ports name="{name}"{stated}/>'
+
+
+def module(cls, name, *content, features=""):
+    return f'<modules xsi:type="am:{cls}" name="{name}" {features}>{"".join(content)}</modules>'
+
+
+def connection(name, first, second, tag="connections"):
+    ends = "".join(f' port{n}="{end}?type=HwPort"' for n, end in ((1, first), (2, second)) if end)
+    return f'<{tag} name="{name}"{ends}/>'
+
+
+def runnable(name, *items, parameters="", features=""):
+    return f'<runnables name="{name}" {features}><activityGraph>{"".join(items)}</activityGraph>{parameters}</runnables>'
+
+
+def call(called, arguments=""):
+    return f'<items xsi:type="am:RunnableCall" runnable="{called}?type=Runnable">{arguments}</items>'
+
+
+def process(tag, name, *items):
+    return f'<{tag} name="{name}"><activityGraph>{"".join(items)}</activityGraph></{tag}>'
