@@ -22,7 +22,10 @@ from amalthea_uros.metamodel.classes import (
     TaskScheduler,
     Value,
 )
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.naming import name_of
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.execution import executing
 
 
 def policy(scheduler: Scheduler | None) -> str | None:
@@ -110,3 +113,10 @@ def _cores(context: Context) -> dict[Process, frozenset[ProcessingUnit]]:
 
 def _real(units: Iterable[ProcessingUnit]) -> Iterator[ProcessingUnit]:
     return (unit for unit in units if unit.unresolved is None)
+
+
+def units(item: Element, context: Context) -> list[ProcessingUnit]:
+    """The processing units on which something is executed, by their names."""
+    known = cores(context)
+    found = {unit for process in executing(item, context) for unit in known.get(process, ())}
+    return sorted(found, key=name_of)

@@ -6,23 +6,20 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ExecutionNeed, ProcessingUnit, ProcessingUnitDefinition
-from amalthea_uros.metamodel.naming import name_of
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.execution import executing
 from amalthea_uros.validate.load import ticks_per_unit
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.scheduling import cores
+from amalthea_uros.validate.scheduling import units
 from amalthea_uros.validate.wording import listed
 
 
 def _check(element: ExecutionNeed, context: Context) -> Iterator[str]:
     types = context.once(_types)
-    used = {unit: None for process in executing(element, context) for unit in cores(context).get(process, ())}
     for key in (entry.key or "" for entry in element.needs):
         if types and all(ticks_per_unit(kind, key) is None for kind in types):
             yield f"the need {key!r} is no feature category of any processing unit in use"
-        elif missing := [unit for unit in used if ticks_per_unit(unit.definition, key) is None]:
-            yield f"nothing says what the need {key!r} takes on {listed(sorted(missing, key=name_of))}"
+        elif missing := [unit for unit in units(element, context) if ticks_per_unit(unit.definition, key) is None]:
+            yield f"nothing says what the need {key!r} takes on {listed(missing)}"
 
 
 def _types(context: Context) -> set[ProcessingUnitDefinition | None]:
