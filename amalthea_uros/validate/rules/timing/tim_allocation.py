@@ -1,7 +1,8 @@
-"""Process without a place."""
+"""Process whose place is not known."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
@@ -11,19 +12,31 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: Process, context: Context) -> Iterator[str]:
-    times = context.uses(TaskAllocation, "task")[element] + context.uses(ISRAllocation, "isr")[element]
-    if isinstance(element, Task | ISR) and not times:
+    if not isinstance(element, Task | ISR):
+        return
+    times = context.once(_allocations)[element]
+    if times == 0:
         yield f"{element.name!r} is allocated to no scheduler and no interrupt controller"
+    elif times > 1:
+        yield f"{element.name!r} is allocated {times} times"
+
+
+def _allocations(context: Context) -> Counter[Process]:
+    """How often each process is allocated to a scheduler or an interrupt controller."""
+    tasks = (allocation.task for allocation in context.all(TaskAllocation) if allocation.scheduler is not None)
+    isrs = (allocation.isr for allocation in context.all(ISRAllocation) if allocation.controller is not None)
+    return Counter(process for process in (*tasks, *isrs) if process is not None)
 
 
 RULE = ModelRule(
     id="TIM-ALLOCATION",
-    title="process without a place",
+    title="process whose place is not known",
     severity=Severity.WARNING,
     target=Process,
     check=_check,
-    rationale="It is not known which core serves it, and by which policy; its load is missing everywhere.",
-    remedy="Allocate it to a task scheduler or an interrupt controller.",
+    rationale="It is not known which core serves it, and by which policy; its load is missing everywhere, or counted in one of several "
+    "places.",
+    remedy="Allocate it to one task scheduler or interrupt controller.",
     fails="""
 <swModel>
   <tasks name="T"/>

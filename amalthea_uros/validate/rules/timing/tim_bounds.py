@@ -5,23 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import DiscreteValueGaussDistribution
+from amalthea_uros.metamodel.classes import IDiscreteValueDeviation
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.quantities import bounds
 from amalthea_uros.validate.rule import ModelRule
 
 
-def _check(element: DiscreteValueGaussDistribution, context: Context) -> Iterator[str]:
-    if element.lower_bound is None or element.upper_bound is None:
-        yield "the Gauss distribution lacks a bound"
+def _check(element: IDiscreteValueDeviation, context: Context) -> Iterator[str]:
+    for bound, side in zip(bounds(element), ("lower", "upper"), strict=True):
+        if bound is None:
+            yield f"the {type(element).__name__} has no {side} bound"
 
 
 RULE = ModelRule(
     id="TIM-BOUNDS",
     title="distribution without bounds",
     severity=Severity.WARNING,
-    target=DiscreteValueGaussDistribution,
+    target=IDiscreteValueDeviation,
     check=_check,
-    rationale="Without an upper bound there is no worst case.",
+    rationale="Without an upper bound there is no worst case, without a lower bound no best case: what it belongs to stays unknown.",
     remedy="State the lower and the upper bound.",
     fails="""
 <swModel>

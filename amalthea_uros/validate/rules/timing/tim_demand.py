@@ -5,26 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import ISR, ExecutionNeed, Process, RunnableCall, Task, Ticks
-from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.classes import ISR, ExecutionNeed, IExecutable, Process, Task, Ticks
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.execution import callers
+from amalthea_uros.validate.graphs import bottom_up
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: Process, context: Context) -> Iterator[str]:
-    if isinstance(element, Task | ISR) and not any(isinstance(part, Ticks | ExecutionNeed) for part in _executed(element)):
+    if isinstance(element, Task | ISR) and element not in context.once(_demanding):
         yield f"neither {element.name!r} nor a runnable that it calls has an execution time"
 
 
-def _executed(process: Process) -> Iterator[Element]:
-    pending: list[Element] = [process]
-    seen = set()
-    while pending:
-        for part in pending.pop().walk():
-            yield part
-            if isinstance(part, RunnableCall) and part.runnable is not None and part.runnable not in seen:
-                seen.add(part.runnable)
-                pending.append(part.runnable)
+def _demanding(context: Context) -> set[IExecutable]:
+    """The processes and runnables that take time, themselves or by what they call."""
+    ticks = (item for item in context.all(Ticks) if item.default is not None or item.extended)
+    needs = (item for item in context.all(ExecutionNeed) if item.needs)
+    holders = (item.enclosing(IExecutable) for item in (*ticks, *needs))
+    return set(bottom_up((holder for holder in holders if holder is not None), lambda item: callers(item, context)))
 
 
 RULE = ModelRule(

@@ -5,22 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import IntegerObject, SchedulingParameter, TaskAllocation
+from amalthea_uros.metamodel.classes import TaskAllocation
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.scheduling import deciding, is_by_priority, priority
 
 
 def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
-    definition = element.scheduler.definition if element.scheduler is not None else None
-    if definition is not None and definition.name in ("FixedPriorityPreemptive", "OSEK") and _priority(element) is None:
-        yield f"the task {element.task.name if element.task else ''!r} has no priority"
-
-
-def _priority(allocation: TaskAllocation) -> int | None:
-    for parameter in allocation.scheduling_parameters:
-        if isinstance(parameter, SchedulingParameter) and parameter.key is not None and parameter.key.name == "priority":
-            return parameter.value.value if isinstance(parameter.value, IntegerObject) else None
-    return None
+    if element.task is not None and is_by_priority(deciding(element.scheduler)) and priority(element) is None:
+        yield f"the task {element.task.name!r} has no priority"
 
 
 RULE = ModelRule(

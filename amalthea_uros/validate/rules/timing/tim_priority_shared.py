@@ -5,31 +5,42 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import IntegerObject, Scheduler, SchedulingParameter, Task, TaskAllocation
+from amalthea_uros.metamodel.classes import ProcessingUnit, Scheduler, Task, TaskAllocation
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.scheduling import cores, deciding, is_by_priority, policy, priority
+from amalthea_uros.validate.wording import listed
+
+#: Scheduler, processing units and priority.
+_Place = tuple[Scheduler, frozenset[ProcessingUnit], int]
 
 
 def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
-    priority = _priority(element)
-    same = [task for task in context.once(_by_priority).get((element.scheduler, priority), []) if task is not element.task]
-    if same and element.task is not None and priority is not None:
-        yield f"{element.task.name!r} has the priority {priority}, as {', '.join(repr(task.name) for task in same)} have"
+    place = _place(element, context)
+    tasks = context.once(_by_place).get(place, []) if place is not None else []
+    others = [task for task in tasks if task is not element.task]
+    if element.task is not None and place is not None and others:
+        have = "has" if len(others) == 1 else "have"
+        yield f"{element.task.name!r} has the priority {place[-1]}, as {listed(others)} {have}"
 
 
-def _by_priority(context: Context) -> dict[tuple[Scheduler | None, int | None], list[Task]]:
-    found: dict[tuple[Scheduler | None, int | None], list[Task]] = {}
+def _by_place(context: Context) -> dict[_Place, list[Task]]:
+    found: dict[_Place, dict[Task, None]] = {}
     for allocation in context.all(TaskAllocation):
-        if allocation.task is not None:
-            found.setdefault((allocation.scheduler, _priority(allocation)), []).append(allocation.task)
-    return found
+        place = _place(allocation, context)
+        if place is not None and allocation.task is not None:
+            found.setdefault(place, {})[allocation.task] = None
+    return {place: list(tasks) for place, tasks in found.items()}
 
 
-def _priority(allocation: TaskAllocation) -> int | None:
-    for parameter in allocation.scheduling_parameters:
-        if isinstance(parameter, SchedulingParameter) and parameter.key is not None and parameter.key.name == "priority":
-            return parameter.value.value if isinstance(parameter.value, IntegerObject) else None
-    return None
+def _place(allocation: TaskAllocation, context: Context) -> _Place | None:
+    """Where and with what priority a task is served, if others of the same priority have to wait for it."""
+    scheduler, own = deciding(allocation.scheduler), priority(allocation)
+    # Under round robin it is meant that tasks share a priority.
+    if scheduler is None or own is None or not is_by_priority(scheduler) or policy(scheduler) == "PriorityBasedRoundRobin":
+        return None
+    units = cores(context).get(allocation.task, frozenset()) if allocation.task is not None else frozenset()
+    return scheduler, units, own
 
 
 RULE = ModelRule(

@@ -5,36 +5,41 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import Runnable, RunnableCall
+from amalthea_uros.metamodel.classes import Runnable
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.execution import waited_for
+from amalthea_uros.validate.graphs import circles
 from amalthea_uros.validate.rule import ModelRule
+
+#: Longer ways are not told in full.
+_MOST = 12
 
 
 def _check(element: Runnable, context: Context) -> Iterator[str]:
-    calls = context.once(_calls)
-    # Who called first whom on the way from this runnable.
-    callers: dict[Runnable, Runnable] = {}
+    circle = context.once(_circles).get(element)
+    if circle is None:
+        return
+    # Who called whom first on the way from this runnable.
+    first: dict[Runnable, Runnable] = {}
     pending = [element]
-    while pending:
+    while element not in first:
         caller = pending.pop()
-        for called in calls.get(caller, []):
-            if called not in callers:
-                callers[called] = caller
+        for called in waited_for(caller, context):
+            if called in circle and called not in first:
+                first[called] = caller
                 pending.append(called)
-    if element in callers:
-        path = [element, callers[element]]
-        while path[-1] is not element:
-            path.append(callers[path[-1]])
-        yield f"{element.name!r} calls itself: {' -> '.join(runnable.name or '' for runnable in reversed(path))}"
+    path = [element, first[element]]
+    while path[-1] is not element:
+        path.append(first[path[-1]])
+    names = [runnable.name or "" for runnable in reversed(path)]
+    if len(names) > _MOST:
+        names[_MOST - 2 : -1] = ["..."]
+    yield f"{element.name!r} calls itself: {' -> '.join(names)}"
 
 
-def _calls(context: Context) -> dict[Runnable, list[Runnable]]:
-    found: dict[Runnable, list[Runnable]] = {}
-    for call in context.all(RunnableCall):
-        caller = call.enclosing(Runnable)
-        if caller is not None and call.runnable is not None:
-            found.setdefault(caller, []).append(call.runnable)
-    return found
+def _circles(context: Context) -> dict[Runnable, set[Runnable]]:
+    found = circles(context.all(Runnable), lambda caller: waited_for(caller, context))
+    return {runnable: circle for circle in found for runnable in circle}
 
 
 RULE = ModelRule(

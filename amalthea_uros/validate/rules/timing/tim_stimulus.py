@@ -5,14 +5,43 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import ISR, Process, Task
+from amalthea_uros.metamodel.classes import (
+    ISR,
+    EventStimulus,
+    InterProcessStimulus,
+    InterProcessTrigger,
+    Process,
+    Stimulus,
+    Task,
+)
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.execution import executing
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.wording import listed
 
 
 def _check(element: Process, context: Context) -> Iterator[str]:
-    if isinstance(element, Task | ISR) and not element.stimuli:
-        yield f"nothing activates {element.name!r}"
+    if isinstance(element, Task | ISR) and not any(_occurs(stimulus, context) for stimulus in element.stimuli):
+        if element.stimuli:
+            yield f"nothing activates {element.name!r}: nothing triggers {listed(element.stimuli)}"
+        else:
+            yield f"nothing activates {element.name!r}"
+
+
+def _occurs(stimulus: Stimulus, context: Context) -> bool:
+    """Whether a stimulus comes from outside, or something in the model triggers it."""
+    match stimulus:
+        case InterProcessStimulus(unresolved=None):
+            return stimulus in context.once(_triggered)
+        case EventStimulus(unresolved=None):
+            return bool(stimulus.triggering_events)
+    return True
+
+
+def _triggered(context: Context) -> set[Stimulus]:
+    """The stimuli that a process triggers."""
+    triggers = (trigger for trigger in context.all(InterProcessTrigger) if executing(trigger, context))
+    return {trigger.stimulus for trigger in triggers if trigger.stimulus is not None}
 
 
 RULE = ModelRule(
@@ -22,7 +51,7 @@ RULE = ModelRule(
     target=Process,
     check=_check,
     rationale="It never runs, so that neither its response time nor its load means anything.",
-    remedy="Give it a stimulus, or remove it.",
+    remedy="Give it a stimulus, trigger the one that it has, or remove it.",
     fails="""
 <swModel>
   <tasks name="T"/>

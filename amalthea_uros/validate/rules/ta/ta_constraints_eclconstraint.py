@@ -1,0 +1,42 @@
+"""Latency that would have to be longer than it may be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import EventChainLatencyConstraint
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.ta._bounds import reversed_times
+
+
+def _check(element: EventChainLatencyConstraint, context: Context) -> Iterator[str]:
+    yield from reversed_times("latency", element.minimum, element.maximum)
+
+
+RULE = ModelRule(
+    id="TA-Constraints-ECLConstraint",
+    title="least latency above the greatest",
+    severity=Severity.ERROR,
+    target=EventChainLatencyConstraint,
+    check=_check,
+    rationale="No latency is like that; the constraint is always broken. APP4MC reports it when it validates the model.",
+    remedy="Swap the two, or correct one of them.",
+    fails="""
+<constraintsModel>
+  <timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L" type="Reaction">
+    <minimum value="3" unit="ms"/>
+    <maximum value="2" unit="ms"/>
+  </timingConstraints>
+</constraintsModel>
+""",
+    passes="""
+<constraintsModel>
+  <timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L" type="Reaction">
+    <minimum value="1" unit="ms"/>
+    <maximum value="2" unit="ms"/>
+  </timingConstraints>
+</constraintsModel>
+""",
+)

@@ -1,0 +1,42 @@
+"""Distance of repetitions that would have to be longer than it may be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import RepetitionConstraint
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.ta._bounds import reversed_times
+
+
+def _check(element: RepetitionConstraint, context: Context) -> Iterator[str]:
+    yield from reversed_times("distance", element.lower, element.upper)
+
+
+RULE = ModelRule(
+    id="TA-Constraints-RepetitionConstraint",
+    title="least distance above the greatest",
+    severity=Severity.ERROR,
+    target=RepetitionConstraint,
+    check=_check,
+    rationale="No distance is like that; the constraint is always broken. APP4MC reports it when it validates the model.",
+    remedy="Swap the two, or correct one of them.",
+    fails="""
+<constraintsModel>
+  <timingConstraints xsi:type="am:RepetitionConstraint" name="R" span="1">
+    <lower value="3" unit="ms"/>
+    <upper value="2" unit="ms"/>
+  </timingConstraints>
+</constraintsModel>
+""",
+    passes="""
+<constraintsModel>
+  <timingConstraints xsi:type="am:RepetitionConstraint" name="R" span="1">
+    <lower value="1" unit="ms"/>
+    <upper value="2" unit="ms"/>
+  </timingConstraints>
+</constraintsModel>
+""",
+)

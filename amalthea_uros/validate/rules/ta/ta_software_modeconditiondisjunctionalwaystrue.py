@@ -1,0 +1,67 @@
+"""Conditions of which one is always true."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import BaseObject, ConditionDisjunction, EnumMode, ModeConditionDisjunction, ModeLabel
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.ta._modes import by_label
+
+
+def _check(element: BaseObject, context: Context) -> Iterator[str]:
+    if not isinstance(element, ConditionDisjunction | ModeConditionDisjunction):
+        return
+    # Only single conditions count, not those within conjunctions.
+    for label, (accepted, rejected) in by_label(element.entries).items():
+        if _literals(label) <= set(accepted):
+            yield f"{label.name!r} may be any of its literals"
+        for literal in accepted:
+            if literal in rejected:
+                yield f"{label.name!r} may be {literal!r}, and anything else"
+
+
+def _literals(label: ModeLabel) -> set[str | None]:
+    return {literal.name for literal in label.mode.literals} if isinstance(label.mode, EnumMode) else set()
+
+
+RULE = ModelRule(
+    id="TA-Software-ModeConditionDisjunctionAlwaysTrue",
+    title="conditions of which one is always true",
+    severity=Severity.WARNING,
+    target=BaseObject,
+    check=_check,
+    rationale="What depends on it always happens. APP4MC reports it when it validates the model.",
+    remedy="Leave the condition away, or require less.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <executionCondition>
+      <entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="on"/>
+      <entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="off"/>
+    </executionCondition>
+  </runnables>
+  <modes xsi:type="am:EnumMode" name="M">
+    <literals name="on"/>
+    <literals name="off"/>
+  </modes>
+  <modeLabels name="L" mode="M?type=EnumMode"/>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <executionCondition>
+      <entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="on"/>
+    </executionCondition>
+  </runnables>
+  <modes xsi:type="am:EnumMode" name="M">
+    <literals name="on"/>
+    <literals name="off"/>
+  </modes>
+  <modeLabels name="L" mode="M?type=EnumMode"/>
+</swModel>
+""",
+)

@@ -1,0 +1,46 @@
+"""Runnable that is its own server."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Runnable, ServerCall
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+
+
+def _check(element: ServerCall, context: Context) -> Iterator[str]:
+    caller = element.enclosing(Runnable)
+    if caller is not None and element.server_runnable is caller:
+        yield f"{caller.name!r} calls itself as a server"
+
+
+RULE = ModelRule(
+    id="TA-Software-ServerCall",
+    title="runnable that is its own server",
+    severity=Severity.ERROR,
+    target=ServerCall,
+    check=_check,
+    rationale="It waits for its own end, or has no end. APP4MC reports it when it validates the model.",
+    remedy="Call another runnable.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:SynchronousServerCall" serverRunnable="R?type=Runnable"/>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:SynchronousServerCall" serverRunnable="Q?type=Runnable"/>
+    </activityGraph>
+  </runnables>
+  <runnables name="Q"/>
+</swModel>
+""",
+)

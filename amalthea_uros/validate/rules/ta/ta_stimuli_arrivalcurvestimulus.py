@@ -1,0 +1,70 @@
+"""Event of the operating system that is never set."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import EventMask, OsEvent, SetEvent, WaitEvent
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+
+
+def _check(element: OsEvent, context: Context) -> Iterator[str]:
+    # The id is that of APP4MC, where it speaks of something else.
+    if element in context.once(_awaited) and element not in context.once(_set):
+        yield f"{element.name!r} is waited for, and nothing sets it"
+
+
+def _awaited(context: Context) -> set[OsEvent]:
+    return _in_masks(item.event_mask for item in context.all(WaitEvent))
+
+
+def _set(context: Context) -> set[OsEvent]:
+    return _in_masks(item.event_mask for item in context.all(SetEvent))
+
+
+def _in_masks(masks: Iterable[EventMask | None]) -> set[OsEvent]:
+    return {event for mask in masks if mask is not None for event in mask.events}
+
+
+RULE = ModelRule(
+    id="TA-Stimuli-ArrivalCurveStimulus",
+    title="event that is waited for and never set",
+    severity=Severity.ERROR,
+    target=OsEvent,
+    check=_check,
+    rationale="Who waits for it waits forever. APP4MC reports it when it validates the model.",
+    remedy="Set the event somewhere, or do not wait for it.",
+    fails="""
+<swModel>
+  <tasks name="T">
+    <activityGraph>
+      <items xsi:type="am:WaitEvent">
+        <eventMask events="E?type=OsEvent"/>
+      </items>
+    </activityGraph>
+  </tasks>
+  <events name="E"/>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <tasks name="T">
+    <activityGraph>
+      <items xsi:type="am:WaitEvent">
+        <eventMask events="E?type=OsEvent"/>
+      </items>
+    </activityGraph>
+  </tasks>
+  <tasks name="U">
+    <activityGraph>
+      <items xsi:type="am:SetEvent">
+        <eventMask events="E?type=OsEvent"/>
+      </items>
+    </activityGraph>
+  </tasks>
+  <events name="E"/>
+</swModel>
+""",
+)

@@ -1,0 +1,49 @@
+"""Stimulus of a varying rate that nothing drives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import VariableRateStimulus
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+
+
+def _check(element: VariableRateStimulus, context: Context) -> Iterator[str]:
+    if element.scenario is None:
+        yield f"{element.name!r} has no scenario"
+
+
+RULE = ModelRule(
+    id="TA-Stimuli-VariableRateStimulusScenario",
+    title="varying rate without a scenario",
+    severity=Severity.ERROR,
+    target=VariableRateStimulus,
+    check=_check,
+    rationale="It is not known when it occurs, only how often. APP4MC reports it when it validates the model.",
+    remedy="Give it a scenario with a clock.",
+    fails="""
+<stimuliModel>
+  <stimuli xsi:type="am:VariableRateStimulus" name="S">
+    <step value="1" unit="s"/>
+    <occurrencesPerStep xsi:type="am:ContinuousValueConstant" value="9.0"/>
+  </stimuli>
+</stimuliModel>
+""",
+    passes="""
+<stimuliModel>
+  <stimuli xsi:type="am:VariableRateStimulus" name="S">
+    <step value="1" unit="s"/>
+    <occurrencesPerStep xsi:type="am:ContinuousValueConstant" value="9.0"/>
+    <scenario clock="C?type=ClockStepList"/>
+  </stimuli>
+  <clocks xsi:type="am:ClockStepList" name="C">
+    <entries>
+      <frequency value="50" unit="Hz"/>
+      <time value="0" unit="s"/>
+    </entries>
+  </clocks>
+</stimuliModel>
+""",
+)

@@ -1,0 +1,20 @@
+"""The parts and the ends of event chains."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from amalthea_uros.metamodel.classes import AbstractEventChain, Event, EventChainContainer, EventChainReference, EventSet
+
+
+def parts(chain: AbstractEventChain) -> list[AbstractEventChain]:
+    """The chains of which a chain consists."""
+    items = [item for item in chain.items if isinstance(item, EventChainContainer | EventChainReference)]
+    return [item.event_chain for item in items if item.event_chain is not None]
+
+
+def events(end: Event | None) -> Sequence[Event]:
+    """The events that an end of a chain stands for: those of a set all."""
+    if isinstance(end, EventSet):
+        return end.events
+    return (end,) if end is not None else ()

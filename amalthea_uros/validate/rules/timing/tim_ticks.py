@@ -1,0 +1,53 @@
+"""Ticks without a value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Ticks
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.scheduling import units
+from amalthea_uros.validate.wording import listed
+
+
+def _check(element: Ticks, context: Context) -> Iterator[str]:
+    if element.default is not None:
+        return
+    stated = {entry.key for entry in element.extended if entry.value is not None}
+    if not stated:
+        yield "the ticks have no value"
+    elif missing := [unit for unit in units(element, context) if unit.definition not in stated]:
+        yield f"the ticks have no value for {listed(missing)}"
+
+
+RULE = ModelRule(
+    id="TIM-TICKS",
+    title="ticks without a value",
+    severity=Severity.WARNING,
+    target=Ticks,
+    check=_check,
+    rationale="Where they have no value they take no time, or the demand of what executes them is not known.",
+    remedy="State a default, or a value for each processing unit definition on which they are executed.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks"/>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueConstant" value="1"/>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+""",
+)

@@ -1,0 +1,82 @@
+"""Execution need that is no time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import ExecutionNeed, ProcessingUnit, ProcessingUnitDefinition
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.load import ticks_per_unit
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.scheduling import units
+from amalthea_uros.validate.wording import listed
+
+
+def _check(element: ExecutionNeed, context: Context) -> Iterator[str]:
+    types = context.once(_types)
+    for key in (entry.key or "" for entry in element.needs):
+        if types and all(ticks_per_unit(kind, key) is None for kind in types):
+            yield f"the need {key!r} is no feature category of any processing unit in use"
+        elif missing := [unit for unit in units(element, context) if ticks_per_unit(unit.definition, key) is None]:
+            yield f"nothing says what the need {key!r} takes on {listed(missing)}"
+
+
+def _types(context: Context) -> set[ProcessingUnitDefinition | None]:
+    return {unit.definition for unit in context.all(ProcessingUnit)}
+
+
+RULE = ModelRule(
+    id="TIM-UNIT",
+    title="execution need in a unit that a processing unit does not know",
+    severity=Severity.WARNING,
+    target=ExecutionNeed,
+    check=_check,
+    rationale="There it becomes no time, so that neither the demand nor the response times of what executes it are known.",
+    remedy="Name a feature category in the need, and give each processing unit definition on which it is executed a feature of "
+    "it that is not 0.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:ExecutionNeed">
+        <needs key="MATRIX">
+          <value xsi:type="am:DiscreteValueConstant" value="100"/>
+        </needs>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+<hwModel>
+  <definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="Matrix/cost?type=HwFeature"/>
+  <featureCategories name="Matrix">
+    <features name="cost" value="4.0"/>
+  </featureCategories>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core" definition="D?type=ProcessingUnitDefinition"/>
+  </structures>
+</hwModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:ExecutionNeed">
+        <needs key="Matrix">
+          <value xsi:type="am:DiscreteValueConstant" value="100"/>
+        </needs>
+      </items>
+    </activityGraph>
+  </runnables>
+</swModel>
+<hwModel>
+  <definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="Matrix/cost?type=HwFeature"/>
+  <featureCategories name="Matrix">
+    <features name="cost" value="4.0"/>
+  </featureCategories>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core" definition="D?type=ProcessingUnitDefinition"/>
+  </structures>
+</hwModel>
+""",
+)

@@ -1,0 +1,122 @@
+"""Who decides for a process: its scheduler, policy, priority and processing units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import takewhile
+
+from amalthea_uros.metamodel.classes import (
+    BigIntegerObject,
+    IntegerObject,
+    InterruptController,
+    ISchedulingParameterContainer,
+    ISRAllocation,
+    LongObject,
+    Process,
+    ProcessingUnit,
+    Scheduler,
+    SchedulerAllocation,
+    SchedulingParameter,
+    SchedulingParameters,
+    TaskAllocation,
+    TaskScheduler,
+    Value,
+)
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.naming import name_of
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.execution import executing
+
+
+def policy(scheduler: Scheduler | None) -> str | None:
+    """The name of the policy of a scheduler: until 1.2 that of a class, since 2.0 that of a definition."""
+    definition = scheduler.definition if scheduler is not None else None
+    if definition is not None:
+        return definition.name or None
+    algorithm = scheduler.scheduling_algorithm if isinstance(scheduler, TaskScheduler | InterruptController) else None
+    return type(algorithm).__name__ if algorithm is not None else None
+
+
+def is_by_priority(scheduler: Scheduler | None) -> bool:
+    """Whether a scheduler serves the highest priority first."""
+    return (policy(scheduler) or "").lower() in _BY_PRIORITY
+
+
+#: Names of such policies, in small letters; since 2.0 they are known by nothing else.
+_BY_PRIORITY = {
+    *("fixedprioritypreemptive", "fixed priority preemptive", "fpp", "osek", "autosar"),
+    *("fixedprioritypreemptivewithbudgetenforcement", "prioritybasedroundrobin"),
+}
+
+
+def deciding(scheduler: TaskScheduler | None) -> TaskScheduler | None:
+    """The scheduler that decides for those below another one: a grouping leaves that to its parent."""
+    return next((one for one in _upwards(scheduler) if policy(one) != "Grouping"), None)
+
+
+def _upwards(scheduler: Scheduler | None) -> Iterator[TaskScheduler]:
+    seen: set[Scheduler] = set()
+    while isinstance(scheduler, TaskScheduler) and scheduler not in seen:
+        seen.add(scheduler)
+        yield scheduler
+        scheduler = scheduler.parent_association.parent if scheduler.parent_association is not None else None
+
+
+def parameter(container: ISchedulingParameterContainer, name: str, scheduler: Scheduler | None) -> Value | None:
+    """The value of a parameter that a scheduler takes: what is stated, or else the default of its definition."""
+    stated = [entry for entry in container.scheduling_parameters if isinstance(entry, SchedulingParameter)]
+    value = next((entry.value for entry in stated if entry.key is not None and entry.key.name == name), None)
+    definition = scheduler.definition if scheduler is not None else None
+    if value is not None or definition is None:
+        return value
+    return next((key.default_value for key in definition.process_parameters if key.name == name), None)
+
+
+def priority(allocation: TaskAllocation) -> int | None:
+    """The priority of a task, or of the group in which it is; None if there is none."""
+    scheduler = deciding(allocation.scheduler)
+    below = takewhile(lambda one: one is not scheduler, _upwards(allocation.scheduler))
+    groups = [one.parent_association for one in below if one.parent_association is not None]
+    return next((found for one in (allocation, *groups) if (found := _priority(one, scheduler)) is not None), None)
+
+
+def _priority(container: ISchedulingParameterContainer, scheduler: TaskScheduler | None) -> int | None:
+    for stated in container.scheduling_parameters:
+        if isinstance(stated, SchedulingParameters):  # until 1.2
+            return stated.priority
+    value = parameter(container, "priority", scheduler)
+    return value.value if isinstance(value, IntegerObject | LongObject | BigIntegerObject) else None
+
+
+def cores(context: Context) -> Mapping[Process, frozenset[ProcessingUnit]]:
+    """The processing units on which each process may run; only of processes that have any."""
+    return context.once(_cores)
+
+
+def _cores(context: Context) -> dict[Process, frozenset[ProcessingUnit]]:
+    served: dict[Scheduler, set[ProcessingUnit]] = {}
+    for allocation in context.all(SchedulerAllocation):
+        if allocation.scheduler is not None:
+            served.setdefault(allocation.scheduler, set()).update(_real(allocation.responsibility))
+    found: dict[Process, set[ProcessingUnit]] = {}
+    for place in context.all(TaskAllocation):
+        if place.task is not None:
+            # A scheduler without processing units of its own lives on those of its parent.
+            here = next((units for one in _upwards(place.scheduler) if (units := served.get(one))), set())
+            wanted = set(place.affinity)
+            found.setdefault(place.task, set()).update(here & wanted if wanted else here)
+    for interrupt in context.all(ISRAllocation):
+        if interrupt.isr is not None and interrupt.controller is not None:
+            found.setdefault(interrupt.isr, set()).update(served.get(interrupt.controller, ()))
+    return {process: frozenset(units) for process, units in found.items() if units}
+
+
+def _real(units: Iterable[ProcessingUnit]) -> Iterator[ProcessingUnit]:
+    return (unit for unit in units if unit.unresolved is None)
+
+
+def units(item: Element, context: Context) -> list[ProcessingUnit]:
+    """The processing units on which something is executed, by their names."""
+    known = cores(context)
+    found = {unit for process in executing(item, context) for unit in known.get(process, ())}
+    return sorted(found, key=name_of)

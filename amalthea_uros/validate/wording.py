@@ -1,0 +1,25 @@
+"""How several things are named in one sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.naming import name_of
+
+
+def listed(elements: Iterable[Element], most: int = 5) -> str:
+    """The names of some objects; of many only the first."""
+    return joined([repr(name_of(element)) for element in elements], most)
+
+
+def joined(texts: Iterable[str], most: int = 5) -> str:
+    """Some texts; of many only the first.
+
+    >>> joined("ab"), joined("abcd", most=2)
+    ('a and b', 'a, b and 2 more')
+    """
+    every = list(texts)
+    if len(every) > most:
+        every[most:] = [f"{len(every) - most} more"]
+    return " and ".join(filter(None, [", ".join(every[:-1]), *every[-1:]]))
