@@ -20,7 +20,7 @@ StrPath = str | PathLike[str]
 #: What reading tells in general, and the rules that tell it of each object.
 _TOLD_BY_RULES = {
     "XMI020": ("AM-EMF-INTRINSIC/proxy-resolves",),
-    "XMI021": ("AM-EMF-INTRINSIC/unique-id", "INC-IO-NAME"),
+    "XMI021": ("AM-EMF-SCOPE", "INC-IO-NAME"),
 }
 
 

@@ -12,9 +12,9 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: IReferable, context: Context) -> Iterator[str]:
-    name = unique_name(element)
-    if element.name and context.names[name] > 1:
-        yield f"there are {context.names[name]} objects {name!r}"
+    same = context.namesakes.get(element)
+    if element.name and same is not None:
+        yield f"there are {len(same)} objects {unique_name(element)!r}"
 
 
 RULE = ModelRule(
