@@ -42,6 +42,10 @@ class Context:
         """The AMALTHEA version whose facts hold for an object."""
         return self._only_version or cast("Document", element.document).facts_version
 
+    def is_part_of(self, element: Element, document: Document) -> bool:
+        """Whether an object stands in a document."""
+        return len(self.model.documents) == 1 or element.document is document
+
     @cached_property
     def namesakes(self) -> dict[Element, list[Element]]:
         """The objects that others of their class share their name with, and all that do."""
@@ -64,8 +68,8 @@ class Context:
             self._once[cls] = [element for kind, found in self._by_type.items() if issubclass(kind, cls) for element in found]
         return cast("Sequence[E]", self._once[cls])
 
-    def by_class(self, cls: type[Element]) -> Iterator[tuple[type[Element], Sequence[Element]]]:
-        """The objects of a class and its subclasses, by their own class."""
+    def by_class(self, cls: type[Element] | tuple[type[Element], ...]) -> Iterator[tuple[type[Element], Sequence[Element]]]:
+        """The objects of a class, or of several, and of their subclasses, by their own class."""
         return ((kind, found) for kind, found in self._by_type.items() if issubclass(kind, cls))
 
     def uses(self, cls: type[Element], feature: str) -> Counter[Element]:

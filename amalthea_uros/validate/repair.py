@@ -35,7 +35,8 @@ def repair(model: Model, rules: Iterable[ModelRule]) -> Repairs:
             continue
         # What other rules changed counts.
         context = Context(model)
-        for element in [element for element in context.all(rule.target) if any(rule.check(element, context))]:
+        concerned = [element for _, found in context.by_class(rule.target) for element in found]
+        for element in [element for element in concerned if any(rule.check(element, context))]:
             document = element.document
             if document is not None and (rule.fix is None or rule.fix(element, context)):
                 repairs.done[rule.id] += 1

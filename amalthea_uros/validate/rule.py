@@ -59,7 +59,7 @@ class ModelRule(Rule):
 
     Attributes
     ----------
-    target : the class whose objects, and those of its subclasses, are looked at
+    target : the class, or classes, whose objects, and those of their subclasses, are looked at
     check : what is wrong with one of them
     concerns : whether anything can be wrong with objects of a class in an AMALTHEA version; the others are passed over
     fix : repairs one of them
@@ -69,7 +69,7 @@ class ModelRule(Rule):
     is_about_files : it tells of what reading found odd in a file, such as unknown elements
     """
 
-    target: type[Element]
+    target: type[Element] | tuple[type[Element], ...]
     check: Check
     concerns: Callable[[type[Element], str], object] | None = None
     fix: Fix | None = None

@@ -18,8 +18,15 @@ def _check(element: Amalthea, context: Context) -> Iterator[str]:
     document = element.document
     if document is None or document.source is None:
         return
-    version = document.facts_version
-    number = sum(part.__dict__.get(name) == value for part in element.walk() for name, value in _omitted(type(part), version))
+    omitted = [
+        part.__dict__.get(name) == value
+        for cls, parts in context.by_class(Element)
+        if (features := _omitted(cls, document.facts_version))
+        for part in parts
+        if context.is_part_of(part, document)
+        for name, value in features
+    ]
+    number = sum(omitted)
     if number:
         yield f"{number} attributes state what they stand for anyway, which EMF leaves out"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
 from amalthea_uros.diagnostics import Severity
@@ -18,17 +18,19 @@ def _check(element: Amalthea, context: Context) -> Iterator[str]:
     document = element.document
     if document is None or document.source is None:
         return
-    index, version = document.source.index, document.facts_version
+    index = document.source.index
     moved = 0
-    for holder in element.walk():
-        places = [index[part] for part in _parts(holder, version) if part in index]
-        moved += sum(place > later for place, later in pairwise(places))
+    for cls, holders in context.by_class(Element):
+        names = _containments(cls, document.facts_version)
+        for holder in holders if names else ():
+            places = [index[part] for part in _parts(holder, names) if part in index]
+            moved += sum(place > later for place, later in pairwise(places))
     if moved:
         yield f"at {moved} places objects stand in another order than EMF writes them"
 
 
-def _parts(holder: Element, version: str) -> Iterator[Element]:
-    for name in _containments(type(holder), version):
+def _parts(holder: Element, names: Iterable[str]) -> Iterator[Element]:
+    for name in names:
         value = holder.__dict__.get(name)
         yield from value if isinstance(value, list) else () if value is None else (value,)
 
