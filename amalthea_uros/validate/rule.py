@@ -59,6 +59,7 @@ class ModelRule(Rule):
     target : the class whose objects, and those of its subclasses, are looked at
     check : what is wrong with one of them
     example_version : AMALTHEA version of the failing example
+    beside : content of a second file, of AMALTHEA 3.3.0, that makes a model with each of the examples
     since, until : AMALTHEA versions for which it is meant; None: any
     is_about_files : it tells of what reading found odd in a file, such as unknown elements
     """
@@ -66,6 +67,7 @@ class ModelRule(Rule):
     target: type[Element]
     check: Check
     example_version: str = "3.3.0"
+    beside: str | None = None
     since: str | None = None
     until: str | None = None
     is_about_files: bool = False
