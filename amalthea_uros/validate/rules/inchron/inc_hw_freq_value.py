@@ -8,12 +8,11 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import FrequencyDomain, ProcessingUnit
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._importer import amount
 
 
 def _check(element: FrequencyDomain, context: Context) -> Iterator[str]:
-    value = element.default_value
-    is_used = context.uses(ProcessingUnit, "frequency_domain")[element] > 0
-    if is_used and (value is None or not value.unit or not (value.value or 0) > 0):
+    if context.uses(ProcessingUnit, "frequency_domain")[element] and not amount(element.default_value) > 0:
         yield f"the frequency domain {element.name!r} of a processing unit has no frequency above zero with a unit"
 
 

@@ -8,12 +8,13 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Cache, HwModule, Memory
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._importer import has_unit
 
 
 def _check(element: HwModule, context: Context) -> Iterator[str]:
     if isinstance(element, Memory | Cache):
         size = element.definition.size if element.definition is not None else None
-        if size is None or not size.unit:
+        if size is None or not has_unit(size):
             yield f"the memory {element.name!r} has no definition with a size"
 
 

@@ -2,28 +2,37 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import Amalthea
+from amalthea_uros.metamodel.classes import INamespaceMember, IReferable
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.naming import unique_name
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
-def _check(element: Element, context: Context) -> Iterator[str]:
-    if element.is_referable and not isinstance(element, Amalthea):
-        name = unique_name(element)
-        if context.names[name] > 1:
-            yield f"there are {context.names[name]} objects {name!r}"
+def _check(element: IReferable, context: Context) -> Iterator[str]:
+    name = unique_name(element)
+    if context.names[name] > 1:
+        yield f"there are {context.names[name]} objects {name!r}"
+    elif isinstance(element, INamespaceMember) and element.namespace is not None:
+        count = context.once(_plain_names)[type(element), element.name]
+        if count > 1:
+            yield f"there are {count} objects {element.name!r} of the class {type(element).__name__} in different namespaces"
+
+
+def _plain_names(context: Context) -> Counter[tuple[type[Element], str | None]]:
+    """How often a name occurs in a class, whatever the namespace."""
+    return Counter((type(member), member.name) for member in context.all(INamespaceMember) if isinstance(member, IReferable))
 
 
 RULE = ModelRule(
     id="INC-IO-NAME",
     title="name that is not unique",
     severity=Severity.WARNING,
-    target=Element,
+    target=IReferable,
     check=_check,
     rationale="A reference picks one of the objects; am2inc keeps all of them under the same name.",
     remedy="Give each object of a class a name of its own.",

@@ -6,13 +6,17 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Label, MemoryMapping
+from amalthea_uros.metamodel.naming import name_of
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: MemoryMapping, context: Context) -> Iterator[str]:
-    if element.memory is None or not isinstance(element.abstract_element, Label):
+    mapped = element.abstract_element
+    if mapped is None or element.memory is None:
         yield "the memory mapping lacks its memory or its label"
+    elif not isinstance(mapped, Label):
+        yield f"the mapping of the {type(mapped).__name__} {name_of(mapped)!r} is dropped"
 
 
 RULE = ModelRule(

@@ -5,21 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import Scheduler, SchedulerAllocation
+from amalthea_uros.metamodel.classes import IAnnotatable, Scheduler, SchedulerAllocation
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
-def _check(element: Scheduler, context: Context) -> Iterator[str]:
-    if not any(a.scheduler is element and a.responsibility for a in context.all(SchedulerAllocation)):
+def _check(element: IAnnotatable, context: Context) -> Iterator[str]:
+    if isinstance(element, Scheduler) and element not in context.once(_responsible):
         yield f"no scheduler allocation makes {element.name!r} responsible for a processing unit"
+    if isinstance(element, SchedulerAllocation) and element.scheduler is None:
+        yield "the scheduler allocation names no scheduler"
+
+
+def _responsible(context: Context) -> set[Scheduler | None]:
+    return {allocation.scheduler for allocation in context.all(SchedulerAllocation) if allocation.responsibility}
 
 
 RULE = ModelRule(
     id="INC-MAP-SCHED",
     title="scheduler without a core",
     severity=Severity.WARNING,
-    target=Scheduler,
+    target=IAnnotatable,
     check=_check,
     rationale="am2inc makes a scheduler without a core, without a word.",
     remedy="Give it a scheduler allocation with a responsibility.",
