@@ -19,7 +19,11 @@ StrPath = str | PathLike[str]
 
 #: What reading tells in general, and the rules that tell it of each object.
 _TOLD_BY_RULES = {
-    "XMI020": ("AM-EMF-INTRINSIC/proxy-resolves",),
+    "XMI010": ("INC-IO-FEATURE",),
+    "XMI011": ("INC-IO-FEATURE",),
+    "XMI012": ("INC-IO-FEATURE",),
+    "XMI013": ("INC-IO-FEATURE",),
+    "XMI020": ("AM-EMF-INTRINSIC/proxy-resolves", "INC-IO-REF"),
     "XMI021": ("AM-EMF-SCOPE", "INC-IO-NAME"),
 }
 
@@ -57,9 +61,11 @@ def check_files(paths: Sequence[StrPath], rules: Collection[str]) -> list[Findin
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
     """
-    model, findings = _read(paths)
-    told = [finding for finding in findings if not _is_told_by(finding, rules)]
-    return sorted([*told, *check(model, rules)], key=by_place)
+    model, told = _read(paths)
+    findings = check(model, rules)
+    places = {(finding.rule, _line(finding)) for finding in findings}
+    general = [finding for finding in told if _is_wanted(finding, rules) and not _is_repeated(finding, places)]
+    return sorted([*general, *findings], key=by_place)
 
 
 def fix_files(paths: Sequence[StrPath], rules: Iterable[str]) -> Counter[str]:
@@ -104,9 +110,16 @@ def _read(paths: Sequence[StrPath]) -> tuple[Model, Sequence[Finding]]:
     return model, model.findings
 
 
-def _is_told_by(finding: Finding, rules: Collection[str]) -> bool:
-    """Whether a finding of reading or building is left to the rules: one of them tells it, or it belongs to none that is wanted."""
+def _is_wanted(finding: Finding, rules: Collection[str]) -> bool:
+    """Whether a finding of reading or building belongs to no rule, or to one that is wanted and has no check of its own."""
     profile = registry.profile_of(finding.rule)
-    if profile is not None:
-        return profile is not Profile.MICRO_ROS or finding.rule not in rules
-    return any(rule in rules for rule in _TOLD_BY_RULES.get(finding.rule, ()))
+    return profile is None or (profile is Profile.MICRO_ROS and finding.rule in rules)
+
+
+def _is_repeated(finding: Finding, places: Collection[tuple[str, object]]) -> bool:
+    """Whether rules tell the same at the same line."""
+    return any((rule, _line(finding)) in places for rule in _TOLD_BY_RULES.get(finding.rule, ()))
+
+
+def _line(finding: Finding) -> tuple[Path, int | None] | None:
+    return (finding.location.path, finding.location.line) if finding.location is not None else None

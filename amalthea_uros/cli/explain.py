@@ -8,6 +8,7 @@ import click
 
 from amalthea_uros.resources import resource_folder
 from amalthea_uros.validate import registry
+from amalthea_uros.validate.rule import ModelRule
 
 
 @click.command("explain")
@@ -21,6 +22,8 @@ def command(identifier: str) -> None:
     rule = registry.rule(identifier)
     click.echo(f"{rule.id}: {rule.title} ({rule.severity}, profile {profile})\n")
     click.echo(f"{rule.rationale}\n{rule.remedy}\n")
+    if isinstance(rule, ModelRule) and rule.beside is not None:
+        click.echo(f"Beside another file of the model with\n{rule.beside.rstrip()}\n")
     click.echo(f"It fires at:\n{rule.fails.rstrip()}\n\nIt does not at:\n{rule.passes.rstrip()}")
 
 

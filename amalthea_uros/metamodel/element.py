@@ -238,6 +238,12 @@ def extras_of(element: Element) -> Extras:
     return found
 
 
+def extras_if_any(element: Element) -> Extras | None:
+    """The extras of an object, only to be looked at: unlike asking for `Element.extras` it does not count as a change."""
+    found: Extras | None = element.__dict__.get("_extras")
+    return found
+
+
 def references_of(element: Element) -> Iterator[tuple[str, Any]]:
     """The references of an object that are set: feature name, and the target or the list of targets."""
     for name, value in element.__dict__.items():

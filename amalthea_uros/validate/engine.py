@@ -8,7 +8,7 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import Milder, ModelRule
 
 
 def run(model: Model, rules: Iterable[ModelRule]) -> list[Finding]:
@@ -25,8 +25,9 @@ def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
             message = f"the rule {rule.id} failed at this object: {type(error).__name__}: {error}"
             yield _finding("CHK001", Severity.ERROR, message, element, "Please report it, with the model if you can.")
             continue
-        for message in messages:
-            yield _finding(rule.id, rule.severity, message, element, rule.remedy)
+        for told in messages:
+            message, severity = told if isinstance(told, Milder) else (told, rule.severity)
+            yield _finding(rule.id, severity, message, element, rule.remedy)
 
 
 def _concerned(rule: ModelRule, context: Context) -> Iterator[Element]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
+from typing import Any, NamedTuple
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.element import Element
@@ -46,8 +46,15 @@ class Rule:
     passes: str
 
 
+class Milder(NamedTuple):
+    """A sentence about something that matters less than what a rule else finds."""
+
+    message: str
+    severity: Severity = Severity.WARNING
+
+
 #: What is wrong with an object, one sentence for each thing.
-Check = Callable[[Any, Context], Iterator[str]]
+Check = Callable[[Any, Context], Iterator[str | Milder]]
 
 #: Repairs an object of which something is wrong, and says whether it did: it does so only where there is one way to.
 Fix = Callable[[Any, Context], bool]
@@ -65,6 +72,7 @@ class ModelRule(Rule):
     fix : repairs one of them
     in_canonical_form : nothing is wrong any more where the file is written as EMF writes it
     example_version : AMALTHEA version of the failing example
+    beside : content of a second file, of AMALTHEA 3.3.0, that makes a model with each of the examples
     since, until : AMALTHEA versions for which it is meant; None: any
     is_about_files : it tells of what reading found odd in a file, such as unknown elements
     """
@@ -74,6 +82,7 @@ class ModelRule(Rule):
     concerns: Callable[[type[Element], str], object] | None = None
     fix: Fix | None = None
     example_version: str = "3.3.0"
+    beside: str | None = None
     since: str | None = None
     until: str | None = None
     is_about_files: bool = False

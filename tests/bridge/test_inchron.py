@@ -21,7 +21,7 @@ def test_a_sample(sample, version):
     if sample.stem == "drive-and-lift" and version == "1.2.0":
         pytest.skip("1.2.0 has no deadlines")
     built = pipeline.build(sample, version)
-    found = problems(built.model)
+    found = [problem for problem in problems(built.model) if problem[1] != "I"]
     assert [problem for problem in found if problem[1] == "E"] == []
     assert {rule for rule, _, _ in found} == wishes(built.assembly)
 

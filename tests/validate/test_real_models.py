@@ -7,6 +7,13 @@ from support import ROOT, SHARED, corpus, hand_written
 
 from amalthea_uros import check, load
 from amalthea_uros.errors import ReadError
+from amalthea_uros.metamodel import classes
+from amalthea_uros.metamodel.classes import Amalthea
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.model import Document, Model
+from amalthea_uros.validate import registry
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
 
 SAMPLES = [pytest.param(path, id=path.name) for path in sorted((ROOT / "samples").glob("*.amxmi"))]
 
@@ -45,3 +52,15 @@ def models_by_rule():
 def test_a_rule_that_fires_on_most_models_is_explained():
     firing, number = models_by_rule()
     assert {rule for rule, times in firing.items() if times > number / 2} == FREQUENT.keys()
+
+
+CLASSES = [cls for cls in vars(classes).values() if isinstance(cls, type) and issubclass(cls, Element) and not cls.is_abstract]
+
+
+@pytest.mark.parametrize("identifier", registry.ids())
+def test_no_rule_fails_where_nothing_is_set(identifier):
+    rule = registry.rule(identifier)
+    if isinstance(rule, ModelRule):
+        context = Context(Model([Document(Amalthea())]))
+        for element in (cls() for cls in CLASSES if issubclass(cls, rule.target)):
+            list(rule.check(element, context))

@@ -11,13 +11,28 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: EventChain, context: Context) -> Iterator[str]:
-    if _contains(element, (element,)):
-        yield f"the chain {element.name!r} is part of itself"
+    if element in context.once(_endless):
+        yield f"the chain {element.name!r} refers to itself, or leads to one that does"
 
 
-def _contains(chain: EventChain, above: tuple[EventChain, ...]) -> bool:
-    inner = [part.event_chain for part in chain.walk() if isinstance(part, EventChainReference)]
-    return any(each in above or _contains(each, (*above, each)) for each in inner if each is not None)
+def _endless(context: Context) -> set[EventChain]:
+    """The chains that are left when those are taken away, again and again, that refer to no other one that is left."""
+    holders: dict[EventChain, list[EventChain]] = {}
+    left: dict[EventChain, int] = dict.fromkeys(context.all(EventChain), 0)
+    for reference in context.all(EventChainReference):
+        holder = reference.enclosing(EventChain)
+        if holder is not None and reference.event_chain in left:
+            holders.setdefault(reference.event_chain, []).append(holder)
+            left[holder] += 1
+    pending = [chain for chain, count in left.items() if not count]
+    while pending:
+        chain = pending.pop()
+        del left[chain]
+        for holder in holders.get(chain, []):
+            left[holder] -= 1
+            if not left[holder]:
+                pending.append(holder)
+    return set(left)
 
 
 RULE = ModelRule(

@@ -8,13 +8,18 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._chains import ends, is_parallel, parts
 
 
 def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
-    branches = [chain for item in element.items if (chain := getattr(item, "event_chain", None)) is not None]
-    ends = (element.stimulus, element.response)
-    if element.item_type == "parallel" and any((b.stimulus, b.response) != ends for b in branches):
-        yield f"a branch of the chain {element.name or ''!r} has other ends than the chain"
+    if not is_parallel(element):
+        return
+    branches = parts(element)
+    for branch in branches:
+        if ends(branch) != ends(element):
+            yield f"the branch {branch.name or ''!r} has other ends than its chain {element.name or ''!r}"
+    if len(branches) < len(element.items):
+        yield f"a branch of {element.name or ''!r} names no chain, and is passed over"
 
 
 RULE = ModelRule(
@@ -39,6 +44,9 @@ RULE = ModelRule(
     <items xsi:type="am:EventChainContainer">
       <eventChain stimulus="b?type=ProcessEvent" response="b?type=ProcessEvent"/>
     </items>
+    <items xsi:type="am:EventChainContainer">
+      <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
+    </items>
   </eventChains>
 </constraintsModel>
 """,
@@ -53,6 +61,9 @@ RULE = ModelRule(
 </swModel>
 <constraintsModel>
   <eventChains name="C" itemType="parallel" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
+    <items xsi:type="am:EventChainContainer">
+      <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
+    </items>
     <items xsi:type="am:EventChainContainer">
       <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
     </items>

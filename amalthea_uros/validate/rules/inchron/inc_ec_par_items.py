@@ -8,12 +8,13 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._chains import is_parallel, parts
 
 
 def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
-    branches = [chain for item in element.items if (chain := getattr(item, "event_chain", None)) is not None]
-    if element.item_type == "parallel" and any(not branch.items for branch in branches):
-        yield f"a branch of the chain {element.name or ''!r} has no items"
+    for branch in parts(element) if is_parallel(element) else []:
+        if not branch.items:
+            yield f"the branch {branch.name or ''!r} of the chain {element.name or ''!r} has no items"
 
 
 RULE = ModelRule(
@@ -38,6 +39,9 @@ RULE = ModelRule(
     <items xsi:type="am:EventChainContainer">
       <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
     </items>
+    <items xsi:type="am:EventChainContainer">
+      <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
+    </items>
   </eventChains>
 </constraintsModel>
 """,
@@ -52,6 +56,13 @@ RULE = ModelRule(
 </swModel>
 <constraintsModel>
   <eventChains name="C" itemType="parallel" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
+    <items xsi:type="am:EventChainContainer">
+      <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
+        <items xsi:type="am:EventChainContainer">
+          <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
+        </items>
+      </eventChain>
+    </items>
     <items xsi:type="am:EventChainContainer">
       <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
         <items xsi:type="am:EventChainContainer">

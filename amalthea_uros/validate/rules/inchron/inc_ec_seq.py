@@ -8,14 +8,18 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._chains import is_parallel, parts
 
 
 def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
-    segments = [chain for item in element.items if (chain := getattr(item, "event_chain", None)) is not None]
-    if element.item_type != "parallel" and segments:
-        ends = [element.stimulus, *(segment.response for segment in segments)]
-        if [segment.stimulus for segment in segments] != ends[:-1] or ends[-1] is not element.response:
-            yield f"the segments of the chain {element.name or ''!r} do not fit together"
+    if is_parallel(element) or not element.items:
+        return
+    name, segments = element.name or "", parts(element)
+    if len(segments) < len(element.items):
+        yield f"an item of the chain {name!r} names no chain, and is passed over"
+    expected = [element.stimulus, *(segment.response for segment in segments)]
+    if segments and ([segment.stimulus for segment in segments] != expected[:-1] or expected[-1] is not element.response):
+        yield f"the segments of the chain {name!r} do not fit together"
 
 
 RULE = ModelRule(

@@ -1,39 +1,33 @@
-"""Event that is no moment."""
+"""Event that is no moment, or chain with one."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import EntityEvent, LabelEvent, ProcessEvent, RunnableEvent, Task
+from amalthea_uros.metamodel.classes import AbstractEventChain, Event
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._chains import events_read
+from amalthea_uros.validate.rules.inchron._events import CONVERTED, is_converted, moments
 
 
-def _check(element: EntityEvent, context: Context) -> Iterator[str]:
-    if not isinstance(element, ProcessEvent | RunnableEvent | LabelEvent):
-        return
-    allowed = _allowed(element)
-    if element.entity is None or element.event_type not in allowed:
-        yield f"the event {element.name!r} names no object, or none of {', '.join(sorted(allowed))}"
-
-
-def _allowed(event: ProcessEvent | RunnableEvent | LabelEvent) -> set[str]:
-    match event:
-        case RunnableEvent():
-            return {"start", "terminate"}
-        case LabelEvent():
-            return {"read", "write"}
-        case ProcessEvent(entity=Task()):
-            return {"activate", "start", "terminate", "resume", "wait", "release"}
-    return {"activate", "start", "terminate"}
+def _check(element: Event | AbstractEventChain, context: Context) -> Iterator[str]:
+    if isinstance(element, CONVERTED):
+        if element.entity is None:
+            yield f"the event {element.name!r} names no object"
+        elif element.event_type not in moments(element):
+            yield f"the event {element.name!r} is none of {', '.join(sorted(moments(element)))}"
+    for event in events_read(element) if isinstance(element, AbstractEventChain) else ():
+        if isinstance(event, CONVERTED) and not is_converted(event):
+            yield f"the chain {element.name or ''!r} is dropped because of the event {event.name!r}"
 
 
 RULE = ModelRule(
     id="INC-EV-TYPE",
-    title="event that is no moment",
+    title="event that is no moment, or chain with one",
     severity=Severity.WARNING,
-    target=EntityEvent,
+    target=(*CONVERTED, AbstractEventChain),
     check=_check,
     rationale="A chain with it is dropped, with a warning.",
     remedy="Name the object, and one of activate, start, terminate; start, terminate of runnables; read, write of labels.",

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import HwPort
+from amalthea_uros.metamodel.classes import HwModule, HwPort
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: HwPort, context: Context) -> Iterator[str]:
-    if not (element.bit_width or 0) > 0:
-        yield f"the port {element.name!r} has no bit width above zero"
+    if isinstance(element.container, HwModule) and not (element.bit_width or 0) > 0:
+        yield f"the port {element.name!r} of {element.container.name!r} has no bit width above zero"
 
 
 RULE = ModelRule(
@@ -29,7 +29,9 @@ RULE = ModelRule(
     <defaultValue value="300" unit="MHz"/>
   </domains>
   <structures name="ECU">
-    <ports name="p"/>
+    <modules xsi:type="am:Memory" name="RAM">
+      <ports name="p"/>
+    </modules>
   </structures>
 </hwModel>
 """,
@@ -39,7 +41,9 @@ RULE = ModelRule(
     <defaultValue value="300" unit="MHz"/>
   </domains>
   <structures name="ECU">
-    <ports name="p" bitWidth="32"/>
+    <modules xsi:type="am:Memory" name="RAM">
+      <ports name="p" bitWidth="32"/>
+    </modules>
   </structures>
 </hwModel>
 """,

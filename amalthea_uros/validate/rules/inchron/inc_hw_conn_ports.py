@@ -1,29 +1,32 @@
-"""Connection that joins no initiator and responder."""
+"""Connection or port that is dropped."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import HwConnection
+from amalthea_uros.metamodel.classes import HwConnection, HwModule, HwPort
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
-def _check(element: HwConnection, context: Context) -> Iterator[str]:
-    types = {port.port_type for port in (element.port1, element.port2) if port is not None}
-    if types != {"initiator", "responder"}:
-        yield f"the connection {element.name!r} does not join an initiator and a responder"
+def _check(element: HwConnection | HwPort, context: Context) -> Iterator[str]:
+    if isinstance(element, HwConnection):
+        types = {port.port_type for port in (element.port1, element.port2) if port is not None}
+        if types != {"initiator", "responder"}:
+            yield f"the connection {element.name!r} does not join an initiator and a responder"
+    if isinstance(element, HwPort) and isinstance(element.container, HwModule) and element.port_type in (None, "_undefined_"):
+        yield f"the port {element.name!r} of {element.container.name!r} is neither an initiator nor a responder"
 
 
 RULE = ModelRule(
     id="INC-HW-CONN-PORTS",
-    title="connection that joins no initiator and responder",
+    title="connection or port that is dropped",
     severity=Severity.WARNING,
-    target=HwConnection,
+    target=(HwConnection, HwPort),
     check=_check,
-    rationale="am2inc drops it without a word.",
-    remedy="Join one port of the type initiator and one of the type responder.",
+    rationale="am2inc drops ports without a type, and connections that join no initiator and responder, without a word.",
+    remedy="State the types of ports, and join one initiator and one responder.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock">

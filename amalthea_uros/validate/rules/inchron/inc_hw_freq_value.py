@@ -5,16 +5,34 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import FrequencyDomain, ProcessingUnit
+from amalthea_uros.metamodel.classes import FrequencyDomain, HwStructure, ProcessingUnit
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import Milder, ModelRule
+from amalthea_uros.validate.rules.inchron._importer import amount
 
 
-def _check(element: FrequencyDomain, context: Context) -> Iterator[str]:
-    value = element.default_value
-    is_used = context.uses(ProcessingUnit, "frequency_domain")[element] > 0
-    if is_used and (value is None or not value.unit or not (value.value or 0) > 0):
-        yield f"the frequency domain {element.name!r} of a processing unit has no frequency above zero with a unit"
+def _check(element: FrequencyDomain, context: Context) -> Iterator[str | Milder]:
+    cores = context.once(_cores).get(element, [])
+    if not cores or amount(element.default_value) > 0:
+        return
+    message = f"the frequency domain {element.name!r} of a processing unit has no frequency above zero with a unit"
+    is_compared = any(_has_others(core) for core in cores)
+    yield message if element.default_value is None and is_compared else Milder(message)
+
+
+def _cores(context: Context) -> dict[FrequencyDomain, list[ProcessingUnit]]:
+    found: dict[FrequencyDomain, list[ProcessingUnit]] = {}
+    for core in context.all(ProcessingUnit):
+        if core.frequency_domain is not None:
+            found.setdefault(core.frequency_domain, []).append(core)
+    return found
+
+
+def _has_others(core: ProcessingUnit) -> bool:
+    """Whether there are other processing units in the same structure, with the clocks of which its own is compared."""
+    holder = core.container
+    modules = holder.modules if isinstance(holder, HwStructure) else []
+    return sum(isinstance(module, ProcessingUnit) for module in modules) > 1
 
 
 RULE = ModelRule(
@@ -23,13 +41,15 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=FrequencyDomain,
     check=_check,
-    rationale="am2inc ends with a segmentation fault, or takes 1000 MHz or 0 MHz without a word.",
+    rationale="With several processing units in a structure am2inc ends with a segmentation fault; "
+    "else it takes 1000 MHz or 0 MHz without a word.",
     remedy="State a default value above zero, with its unit.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock"/>
   <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
+    <modules xsi:type="am:ProcessingUnit" name="core_0" frequencyDomain="clock?type=FrequencyDomain"/>
+    <modules xsi:type="am:ProcessingUnit" name="core_1" frequencyDomain="clock?type=FrequencyDomain"/>
   </structures>
 </hwModel>
 """,
@@ -39,7 +59,8 @@ RULE = ModelRule(
     <defaultValue value="300" unit="MHz"/>
   </domains>
   <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
+    <modules xsi:type="am:ProcessingUnit" name="core_0" frequencyDomain="clock?type=FrequencyDomain"/>
+    <modules xsi:type="am:ProcessingUnit" name="core_1" frequencyDomain="clock?type=FrequencyDomain"/>
   </structures>
 </hwModel>
 """,

@@ -5,23 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import Cache, HwModule, Memory
+from amalthea_uros.metamodel.classes import Cache, Memory
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._importer import has_unit
 
 
-def _check(element: HwModule, context: Context) -> Iterator[str]:
-    if isinstance(element, Memory | Cache):
-        size = element.definition.size if element.definition is not None else None
-        if size is None or not size.unit:
-            yield f"the memory {element.name!r} has no definition with a size"
+def _check(element: Memory | Cache, context: Context) -> Iterator[str]:
+    size = element.definition.size if element.definition is not None else None
+    if size is None or not has_unit(size):
+        yield f"the memory {element.name!r} has no definition with a size"
 
 
 RULE = ModelRule(
     id="INC-HW-MEM-SIZE",
     title="memory without a size",
     severity=Severity.WARNING,
-    target=HwModule,
+    target=(Memory, Cache),
     check=_check,
     rationale="am2inc takes 1 KiB without a word.",
     remedy="Give the memory a definition with a size and its unit.",

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import Amalthea, IReferable
+from amalthea_uros.metamodel.classes import INamespaceMember, IReferable
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.naming import unique_name
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
@@ -13,8 +15,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: IReferable, context: Context) -> Iterator[str]:
     same = context.namesakes.get(element)
-    if same is not None and not isinstance(element, Amalthea):
+    if same is not None:
         yield f"there are {len(same)} objects {unique_name(element)!r}"
+    elif isinstance(element, INamespaceMember) and element.namespace is not None:
+        count = context.once(_plain_names)[type(element), element.name]
+        if count > 1:
+            yield f"there are {count} objects {element.name!r} of the class {type(element).__name__} in different namespaces"
+
+
+def _plain_names(context: Context) -> Counter[tuple[type[Element], str | None]]:
+    """How often a name occurs in a class, whatever the namespace."""
+    return Counter((type(member), member.name) for member in context.all(INamespaceMember) if isinstance(member, IReferable))
 
 
 RULE = ModelRule(

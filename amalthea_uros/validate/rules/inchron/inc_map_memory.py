@@ -6,13 +6,19 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Label, MemoryMapping
+from amalthea_uros.metamodel.naming import name_of
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import Milder, ModelRule
 
 
-def _check(element: MemoryMapping, context: Context) -> Iterator[str]:
-    if element.memory is None or not isinstance(element.abstract_element, Label):
-        yield "the memory mapping lacks its memory or its label"
+def _check(element: MemoryMapping, context: Context) -> Iterator[str | Milder]:
+    mapped = element.abstract_element
+    if mapped is None:
+        yield "the memory mapping lacks its label"
+    elif element.memory is None:
+        yield Milder(f"the mapping of {name_of(mapped)!r} names no memory")
+    elif not isinstance(mapped, Label):
+        yield Milder(f"the mapping of the {type(mapped).__name__} {name_of(mapped)!r} is dropped")
 
 
 RULE = ModelRule(
@@ -24,18 +30,17 @@ RULE = ModelRule(
     rationale="Without an element am2inc ends with a segmentation fault; what is no label is dropped without a word.",
     remedy="Map labels to memories only, and name both.",
     fails="""
-<swModel>
-  <labels name="L"/>
-</swModel>
+<hwModel>
+  <structures name="ECU">
+    <modules xsi:type="am:Memory" name="RAM"/>
+  </structures>
+</hwModel>
 <mappingModel>
-  <memoryMapping abstractElement="L?type=Label"/>
+  <memoryMapping memory="RAM?type=Memory"/>
 </mappingModel>
 """,
     passes="""
 <hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock">
-    <defaultValue value="300" unit="MHz"/>
-  </domains>
   <structures name="ECU">
     <modules xsi:type="am:Memory" name="RAM"/>
   </structures>

@@ -10,16 +10,22 @@ from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
-def _check(element: Scheduler, context: Context) -> Iterator[str]:
-    if not any(a.scheduler is element and a.responsibility for a in context.all(SchedulerAllocation)):
+def _check(element: Scheduler | SchedulerAllocation, context: Context) -> Iterator[str]:
+    if isinstance(element, Scheduler) and element not in context.once(_responsible):
         yield f"no scheduler allocation makes {element.name!r} responsible for a processing unit"
+    if isinstance(element, SchedulerAllocation) and element.scheduler is None:
+        yield "the scheduler allocation names no scheduler"
+
+
+def _responsible(context: Context) -> set[Scheduler | None]:
+    return {allocation.scheduler for allocation in context.all(SchedulerAllocation) if allocation.responsibility}
 
 
 RULE = ModelRule(
     id="INC-MAP-SCHED",
     title="scheduler without a core",
     severity=Severity.WARNING,
-    target=Scheduler,
+    target=(Scheduler, SchedulerAllocation),
     check=_check,
     rationale="am2inc makes a scheduler without a core, without a word.",
     remedy="Give it a scheduler allocation with a responsibility.",

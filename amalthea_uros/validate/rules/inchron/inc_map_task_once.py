@@ -5,23 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import ISR, ISRAllocation, Process, Task, TaskAllocation
+from amalthea_uros.metamodel.classes import ISR, ISRAllocation, Task, TaskAllocation
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
-def _check(element: Process, context: Context) -> Iterator[str]:
-    if isinstance(element, Task | ISR):
-        times = context.uses(TaskAllocation, "task")[element] + context.uses(ISRAllocation, "isr")[element]
-        if times != 1:
-            yield f"{element.name!r} is allocated {times} times"
+def _check(element: Task | ISR, context: Context) -> Iterator[str]:
+    times = context.uses(TaskAllocation, "task")[element] + context.uses(ISRAllocation, "isr")[element]
+    if times != 1:
+        yield f"{element.name!r} is allocated {times} times"
 
 
 RULE = ModelRule(
     id="INC-MAP-TASK-ONCE",
     title="process that is not allocated exactly once",
     severity=Severity.ERROR,
-    target=Process,
+    target=(Task, ISR),
     check=_check,
     rationale="Without an allocation it has no core or disappears, with several it is listed twice, both without a word.",
     remedy="Allocate each task and each ISR once.",

@@ -1,28 +1,33 @@
-"""Scheduling parameter other than priority and deadline."""
+"""Scheduling parameter that is ignored."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import SchedulingParameter
+from amalthea_uros.metamodel.classes import SchedulingParameter, TaskAllocation, TaskScheduler
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
+#: The parameters that are read, by the class of what holds them.
+_READ = {TaskAllocation: ("priority", "deadline"), TaskScheduler: ("priority",)}
+
 
 def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
-    if element.key is not None and element.key.name not in ("priority", "deadline"):
-        yield f"the scheduling parameter {element.key.name!r} is ignored"
+    holder = type(element.container)
+    name = element.key.name if element.key is not None else ""
+    if name not in _READ.get(holder, ()) and (name or holder is not TaskScheduler):
+        yield f"the scheduling parameter {name!r} of a {holder.__name__} is ignored"
 
 
 RULE = ModelRule(
     id="INC-OS-ALGOPARAM",
-    title="scheduling parameter other than priority and deadline",
+    title="scheduling parameter that is ignored",
     severity=Severity.WARNING,
     target=SchedulingParameter,
     check=_check,
-    rationale="am2inc ignores it without a word; names are compared exactly.",
-    remedy="Rely on priority and deadline only.",
+    rationale="am2inc reads only priority and deadline of task allocations, and priority of schedulers; names are compared exactly.",
+    remedy="Rely on these parameters only.",
     fails="""
 <osModel>
   <schedulingParameterDefinitions name="taskGroup"/>

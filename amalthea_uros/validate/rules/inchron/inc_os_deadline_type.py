@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import SchedulingParameter, Time
+from amalthea_uros.metamodel.classes import SchedulingParameter, TaskAllocation, Time
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
-    if element.key is not None and element.key.name == "deadline" and not isinstance(element.value, Time):
+    is_deadline = element.key is not None and element.key.name == "deadline"
+    if is_deadline and isinstance(element.container, TaskAllocation) and not isinstance(element.value, Time):
         yield "the value of the deadline is no Time"
 
 

@@ -6,12 +6,11 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import OsOverhead, Scheduler, Ticks
-from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
-def _check(element: Element, context: Context) -> Iterator[str]:
+def _check(element: OsOverhead | Scheduler, context: Context) -> Iterator[str]:
     if isinstance(element, OsOverhead) and any(isinstance(part, Ticks) for part in element.walk()):
         yield f"the overhead {element.name!r} has Ticks"
     if isinstance(element, Scheduler) and element.computation_items:
@@ -22,7 +21,7 @@ RULE = ModelRule(
     id="INC-OS-OVERHEAD",
     title="overhead of the operating system",
     severity=Severity.ERROR,
-    target=Element,
+    target=(OsOverhead, Scheduler),
     check=_check,
     rationale="am2inc ends with a segmentation fault.",
     remedy="Remove overheads with Ticks and the computation items of schedulers before the import.",

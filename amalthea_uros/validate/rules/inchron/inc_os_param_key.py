@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import SchedulingParameter
+from amalthea_uros.metamodel.classes import SchedulingParameter, TaskScheduler
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
-    if element.key is None:
-        yield "the scheduling parameter has no key"
+    if element.key is None and isinstance(element.container, TaskScheduler):
+        yield f"a scheduling parameter of {element.container.name!r} has no key"
 
 
 RULE = ModelRule(
@@ -24,30 +24,26 @@ RULE = ModelRule(
     rationale="am2inc ends with a segmentation fault.",
     remedy="Let the parameter refer to its definition.",
     fails="""
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<mappingModel>
-  <taskAllocation task="T?type=Task">
-    <schedulingParameters>
-      <value xsi:type="am:IntegerObject" value="3"/>
-    </schedulingParameters>
-  </taskAllocation>
-</mappingModel>
+<osModel>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S">
+      <schedulingParameters>
+        <value xsi:type="am:IntegerObject" value="3"/>
+      </schedulingParameters>
+    </taskSchedulers>
+  </operatingSystems>
+</osModel>
 """,
     passes="""
 <osModel>
+  <operatingSystems name="OS">
+    <taskSchedulers name="S">
+      <schedulingParameters key="priority?type=SchedulingParameterDefinition">
+        <value xsi:type="am:IntegerObject" value="3"/>
+      </schedulingParameters>
+    </taskSchedulers>
+  </operatingSystems>
   <schedulingParameterDefinitions name="priority"/>
 </osModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<mappingModel>
-  <taskAllocation task="T?type=Task">
-    <schedulingParameters key="priority?type=SchedulingParameterDefinition">
-      <value xsi:type="am:IntegerObject" value="3"/>
-    </schedulingParameters>
-  </taskAllocation>
-</mappingModel>
 """,
 )

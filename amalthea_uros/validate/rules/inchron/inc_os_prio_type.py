@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import IntegerObject, SchedulingParameter
+from amalthea_uros.metamodel.classes import IntegerObject, SchedulingParameter, TaskAllocation, TaskScheduler
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
-    if element.key is not None and element.key.name == "priority" and not isinstance(element.value, IntegerObject):
+    is_priority = element.key is not None and element.key.name == "priority"
+    is_read = isinstance(element.container, TaskAllocation | TaskScheduler)
+    if is_priority and is_read and not isinstance(element.value, IntegerObject):
         yield "the value of the priority is no IntegerObject"
 
 

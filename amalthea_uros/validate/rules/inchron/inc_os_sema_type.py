@@ -11,8 +11,9 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: Semaphore, context: Context) -> Iterator[str]:
-    if element.semaphore_type not in (None, "CountingSemaphore") or element.priority_ceiling_protocol:
-        yield f"the semaphore {element.name!r} loses its type, or its priority ceiling"
+    is_plain = element.semaphore_type in (None, "_undefined_", "CountingSemaphore")
+    if not is_plain or element.priority_ceiling_protocol or element.ownership:
+        yield f"the semaphore {element.name!r} loses its type, its priority ceiling, or its ownership"
 
 
 RULE = ModelRule(

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import ISR, Process, Task
+from amalthea_uros.metamodel.classes import ISR, Task
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
-def _check(element: Process, context: Context) -> Iterator[str]:
-    if isinstance(element, Task | ISR) and not element.stimuli:
+def _check(element: Task | ISR, context: Context) -> Iterator[str]:
+    if not element.stimuli:
         yield f"nothing activates {element.name!r}"
 
 
@@ -19,7 +19,7 @@ RULE = ModelRule(
     id="INC-ST-NONE",
     title="process without a stimulus",
     severity=Severity.WARNING,
-    target=Process,
+    target=(Task, ISR),
     check=_check,
     rationale="It is never activated, without a word.",
     remedy="Give it a stimulus.",

@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import PeriodicBurstStimulus, PeriodicStimulus, PeriodicSyntheticStimulus, Stimulus
+from amalthea_uros.metamodel.classes import FixedPeriodic, Stimulus
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._importer import amount
 
 
 def _check(element: Stimulus, context: Context) -> Iterator[str]:
-    if isinstance(element, PeriodicStimulus | PeriodicSyntheticStimulus | PeriodicBurstStimulus):
-        period = element.recurrence
-        if period is None or not period.unit or not (period.value or 0) > 0:
-            yield f"the stimulus {element.name!r} has no recurrence above zero with a unit"
+    if isinstance(element, FixedPeriodic) and not amount(element.recurrence) > 0:
+        yield f"the stimulus {element.name!r} has no recurrence above zero with a unit"
 
 
 RULE = ModelRule(

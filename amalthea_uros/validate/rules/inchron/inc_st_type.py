@@ -1,29 +1,33 @@
-"""Process with a stimulus that is not converted."""
+"""Stimulus that is not converted, or process with one."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import ArrivalCurveStimulus, CustomStimulus, EventStimulus, Process, VariableRateStimulus
+from amalthea_uros.metamodel.classes import Process, Stimulus
+from amalthea_uros.metamodel.naming import name_of
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._stimuli import NOT_CONVERTED
 
 
-def _check(element: Process, context: Context) -> Iterator[str]:
-    bad = (EventStimulus, CustomStimulus, ArrivalCurveStimulus, VariableRateStimulus)
-    for stimulus in element.stimuli:
-        if isinstance(stimulus, bad):
-            yield f"{element.name!r} is not activated by {stimulus.name!r}"
+def _check(element: Stimulus | Process, context: Context) -> Iterator[str]:
+    if isinstance(element, NOT_CONVERTED):
+        yield f"the {type(element).__name__} {name_of(element)!r} is not converted"
+    if isinstance(element, Process):
+        for stimulus in element.stimuli:
+            if isinstance(stimulus, NOT_CONVERTED):
+                yield f"{element.name!r} is not activated by {stimulus.name!r}"
 
 
 RULE = ModelRule(
     id="INC-ST-TYPE",
-    title="process with a stimulus that is not converted",
+    title="stimulus that is not converted, or process with one",
     severity=Severity.WARNING,
-    target=Process,
+    target=(Process, *NOT_CONVERTED),
     check=_check,
-    rationale="Event, custom, arrival-curve and variable-rate stimuli are not converted; the process is not activated by them.",
+    rationale="Event, custom, arrival-curve and variable-rate stimuli are not converted, with a warning, and activate nothing.",
     remedy="Use periodic, relative periodic, single or inter-process stimuli.",
     fails="""
 <stimuliModel>

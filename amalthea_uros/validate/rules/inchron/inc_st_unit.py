@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import DataSize, Frequency, Time
-from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._importer import has_unit
 
 
-def _check(element: Element, context: Context) -> Iterator[str]:
-    if isinstance(element, Time | Frequency | DataSize) and (element.unit is None or element.unit.name == "UNDEFINED"):
+def _check(element: Time | Frequency | DataSize, context: Context) -> Iterator[str]:
+    if not has_unit(element):
         yield f"the value {element.value} has no unit"
 
 
@@ -20,7 +20,7 @@ RULE = ModelRule(
     id="INC-ST-UNIT",
     title="quantity without a unit",
     severity=Severity.WARNING,
-    target=Element,
+    target=(Time, Frequency, DataSize),
     check=_check,
     rationale="am2inc takes 0 ps, 1000 MHz or 1 KiB without a word.",
     remedy="State the unit; a value without one means nothing.",

@@ -11,6 +11,7 @@ from amalthea_uros.metamodel.classes import (
     InterProcessTrigger,
     LabelAccess,
     ModeLabelAccess,
+    ProcessPrototype,
     RunnableCall,
     SetEvent,
     WaitEvent,
@@ -31,8 +32,9 @@ _REFERENCES: dict[type[ActivityGraphItem], str] = {
 
 
 def _check(element: ActivityGraphItem, context: Context) -> Iterator[str]:
-    feature = next((name for kind, name in _REFERENCES.items() if isinstance(element, kind)), None)
-    if feature is not None and getattr(element, feature) is None:
+    feature = _REFERENCES[type(element)]
+    # The calls of prototypes are never looked at.
+    if getattr(element, feature) is None and not isinstance(element.container, ProcessPrototype):
         yield f"the {type(element).__name__} names no {feature.replace('_', ' ')}"
 
 
@@ -40,7 +42,7 @@ RULE = ModelRule(
     id="INC-SW-REF",
     title="item that refers to nothing",
     severity=Severity.ERROR,
-    target=ActivityGraphItem,
+    target=tuple(_REFERENCES),
     check=_check,
     rationale="am2inc ends with a segmentation fault.",
     remedy="Name what is called, accessed, triggered or waited for.",

@@ -8,10 +8,11 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ModeCondition
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._importer import metamodel
 
 
 def _check(element: ModeCondition, context: Context) -> Iterator[str]:
-    if element.relation != "EQUAL":
+    if element.relation != "EQUAL" and metamodel(element) != "1.2.0":
         yield "the comparison becomes one for equality"
 
 

@@ -8,10 +8,12 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import DiscreteValueBetaDistribution
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._ticks import is_read
 
 
 def _check(element: DiscreteValueBetaDistribution, context: Context) -> Iterator[str]:
-    yield "the beta distribution becomes its upper bound"
+    if is_read(element):
+        yield "the beta distribution becomes its upper bound"
 
 
 RULE = ModelRule(

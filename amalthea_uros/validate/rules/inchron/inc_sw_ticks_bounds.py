@@ -8,10 +8,11 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import DiscreteValueBoundaries
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._ticks import is_read
 
 
 def _check(element: DiscreteValueBoundaries, context: Context) -> Iterator[str]:
-    if element.sampling_type in (None, "default"):
+    if element.sampling_type in (None, "default") and is_read(element):
         yield "the boundaries have no sampling type"
 
 

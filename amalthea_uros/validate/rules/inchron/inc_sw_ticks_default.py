@@ -1,4 +1,4 @@
-"""Ticks without a default."""
+"""Ticks that depend on the core, or have no value."""
 
 from __future__ import annotations
 
@@ -11,18 +11,23 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: Ticks, context: Context) -> Iterator[str]:
-    if element.default is None or len(element.extended) > 1:
-        yield "the ticks have no default, or differ between processing units"
+    match element.default, len(element.extended):
+        case None, 0:
+            yield "the ticks have no value"
+        case None, count:
+            yield f"the first of {count} extended values is used for all processing units"
+        case _, count if count:
+            yield f"of a default and {count} extended values only the default is used"
 
 
 RULE = ModelRule(
     id="INC-SW-TICKS-DEFAULT",
-    title="ticks without a default",
+    title="ticks that depend on the core, or have no value",
     severity=Severity.WARNING,
     target=Ticks,
     check=_check,
-    rationale="am2inc takes the first extended entry for all processing units, or 0, without a word.",
-    remedy="State default ticks.",
+    rationale="am2inc takes the default, else the first extended value, else 0, for all processing units and without a word.",
+    remedy="State default ticks and nothing else.",
     fails="""
 <swModel>
   <runnables name="R">

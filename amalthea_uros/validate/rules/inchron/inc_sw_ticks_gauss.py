@@ -8,10 +8,11 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import DiscreteValueGaussDistribution
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._ticks import is_read
 
 
 def _check(element: DiscreteValueGaussDistribution, context: Context) -> Iterator[str]:
-    if element.lower_bound is None or element.upper_bound is None:
+    if (element.lower_bound is None or element.upper_bound is None) and is_read(element):
         yield "the Gauss distribution lacks a bound"
 
 

@@ -1,0 +1,69 @@
+"""How am2inc reads event chains."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from amalthea_uros.metamodel.classes import (
+    AbstractEventChain,
+    Event,
+    EventChain,
+    EventChainContainer,
+    EventChainReference,
+    EventSet,
+)
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rules.inchron._events import is_converted
+
+
+def parts(chain: AbstractEventChain) -> list[AbstractEventChain]:
+    """The chains of the items of a chain; items without one are passed over."""
+    items = (item for item in chain.items if isinstance(item, EventChainContainer | EventChainReference))
+    return [item.event_chain for item in items if item.event_chain is not None]
+
+
+def is_parallel(chain: AbstractEventChain) -> bool:
+    """Whether the items run side by side; a single one is read as a sequence."""
+    return chain.item_type == "parallel" and len(chain.items) > 1
+
+
+def ends(chain: AbstractEventChain) -> tuple[Event | None, Event | None]:
+    """Stimulus and response."""
+    return chain.stimulus, chain.response
+
+
+def events_read(chain: AbstractEventChain) -> Iterable[Event]:
+    """The events that a chain itself is made of, each once: its ends unless it is a segment, and where its segments start."""
+    inner = [] if is_parallel(chain) else [part.stimulus for part in parts(chain)[1:]]
+    read = [*ends(chain), *inner] if isinstance(chain, EventChain) else inner
+    members = [event.events if isinstance(event, EventSet) else [event] for event in read if event is not None]
+    return dict.fromkeys(event for events in members for event in events if event.unresolved is None)
+
+
+def dropped(context: Context) -> set[AbstractEventChain]:
+    """The chains that are not converted."""
+    holders: dict[AbstractEventChain, list[AbstractEventChain]] = {}
+    for chain in context.all(AbstractEventChain):
+        for part in parts(chain):
+            holders.setdefault(part, []).append(chain)
+    found: set[AbstractEventChain] = set()
+    pending = [chain for chain in context.all(AbstractEventChain) if _is_refused(chain)]
+    while pending:
+        chain = pending.pop()
+        if chain not in found:
+            found.add(chain)
+            pending += holders.get(chain, [])
+    return found | {chain for chain in context.all(EventChain) if not all(map(_is_end, ends(chain)))}
+
+
+def _is_refused(chain: AbstractEventChain) -> bool:
+    """Whether something inside a chain prevents its conversion, and that of every chain of which it is a part."""
+    if not chain.items:
+        return None in ends(chain)
+    if is_parallel(chain):
+        return any(ends(branch) != ends(chain) for branch in parts(chain))
+    return not all(part.stimulus is not None and is_converted(part.stimulus) for part in parts(chain)[1:])
+
+
+def _is_end(event: Event | None) -> bool:
+    return event is not None and is_converted(event) and not (isinstance(event, EventSet) and len(event.events) > 1)

@@ -1,0 +1,33 @@
+"""Which events am2inc converts."""
+
+from __future__ import annotations
+
+from amalthea_uros.metamodel.classes import Event, EventSet, LabelEvent, ProcessEvent, RunnableEvent, Task
+
+#: The classes of events that it converts.
+CONVERTED = (ProcessEvent, RunnableEvent, LabelEvent)
+
+_OF_PROCESSES = frozenset({"activate", "start", "terminate"})
+
+
+def moments(event: Event) -> frozenset[str]:
+    """The types of an event that are converted."""
+    match event:
+        case RunnableEvent():
+            return frozenset({"start", "terminate"})
+        case LabelEvent():
+            return frozenset({"read", "write"})
+        case ProcessEvent(entity=Task()):
+            return _OF_PROCESSES | {"resume", "wait", "release"}
+        case ProcessEvent():
+            return _OF_PROCESSES
+    return frozenset()
+
+
+def is_converted(event: Event) -> bool:
+    """Whether a chain can use an event, or all those of a set."""
+    if isinstance(event, EventSet):
+        return all(map(is_converted, event.events))
+    if not isinstance(event, CONVERTED) or event.entity is None or event.entity.unresolved is not None:
+        return False
+    return event.event_type in moments(event)

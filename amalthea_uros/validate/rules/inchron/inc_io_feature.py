@@ -1,0 +1,150 @@
+"""What the metamodel does not know."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel import classes
+from amalthea_uros.metamodel.element import Element, extras_if_any
+from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.features import containments_of, features_of
+from amalthea_uros.metamodel.source import Prefixes, attributes_of_tag
+from amalthea_uros.metamodel.versions import Facts, facts
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._importer import metamodel
+
+_TAG = re.compile(r"<(?P<name>[^\s/>!?]+)").match
+
+
+def _check(element: Element, context: Context) -> Iterator[str]:
+    known = facts(metamodel(element))
+    class_name = type(element).__name__
+    if class_name not in known.classes:
+        declared = _declared(element, known)
+        if declared is None:
+            return
+        if _xsi_type(element) is not None:
+            yield f"AMALTHEA {known.version} has no {class_name}"
+            return
+        class_name = declared
+    yield from _not_read(element, class_name, known)
+    held = _features(class_name, known.version)
+    for name in [name for name, value in element.__dict__.items() if name not in held and value not in (None, [])]:
+        yield f"{class_name} has no {features_of(type(element))[name].xml_name!r} in AMALTHEA {known.version}"
+    for name, literals in _literals(class_name, known.version):
+        value = element.__dict__.get(name)
+        if value is not None and value not in literals:
+            yield f"{str(value)!r} is no {name.replace('_', ' ')} of {class_name} in AMALTHEA {known.version}"
+
+
+def _declared(element: Element, known: Facts) -> str | None:
+    """The class of which an object should be where it stands, None if nothing may stand there, which its holder is told for."""
+    holder = element.container
+    if holder is None or type(holder).__name__ not in known.classes:
+        return None
+    feature = next(feature for feature in containments_of(type(holder)) if _holds(holder.__dict__.get(feature.name), element))
+    declared = known.feature(type(holder).__name__, feature.xml_name)
+    return declared.type if declared is not None else None
+
+
+def _holds(value: object, element: Element) -> bool:
+    return value is element or (isinstance(value, list) and element in value)
+
+
+def _xsi_type(element: Element) -> str | None:
+    """The class that an object has in its file, with its prefix; None if it is the declared one."""
+    document = element.document
+    source = document.source if document is not None else None
+    place = source.index.get(element) if source is not None else None
+    if source is None or place is None:
+        return None
+    return _attributes(source.text, source.start(place)).get(source.prefixes.xsi_type)
+
+
+def _attributes(text: str, start: int = 0) -> dict[str, str]:
+    """The attributes of the tag at an offset."""
+    return {attribute["name"]: attribute["quoted"][1:-1] for attribute in attributes_of_tag(text, start)}
+
+
+def _not_read(element: Element, class_name: str, known: Facts) -> Iterator[str]:
+    """What was kept as it stands in the file, because it has no place in the metamodel."""
+    extras, document = extras_if_any(element), element.document
+    if extras is None or document is None:
+        return
+    own = facts(document.facts_version)
+    for name, text in extras.attributes.items():
+        feature = known.feature(class_name, name)
+        if feature is None and not name.startswith("xmlns"):
+            yield f"{class_name} has no attribute {name!r} in AMALTHEA {known.version}"
+        elif feature is not None and own.feature(class_name, name) and not _is_literal(text, feature.type, known):
+            yield f"{text!r} is no value of {name!r} of {class_name}"
+    prefixes = document.source.prefixes if document.source is not None else Prefixes()
+    for _, raw in extras.content:
+        tag = _TAG(raw)
+        if tag is not None:
+            given = _attributes(raw).get(prefixes.xsi_type, "").removeprefix(prefixes.type_prefix)
+            yield from _misplaced(class_name, tag["name"], given, known)
+
+
+def _is_literal(text: str, type_name: str, known: Facts) -> bool:
+    enum = known.enums.get(type_name)
+    return enum is not None and text in enum.literals
+
+
+def _misplaced(class_name: str, name: str, given: str, known: Facts) -> Iterator[str]:
+    """Why an element may not stand where it does. A second one where only one is allowed is another matter."""
+    feature = known.feature(class_name, name)
+    if feature is None:
+        yield f"{class_name} has no <{name}> in AMALTHEA {known.version}"
+    elif feature.kind is Kind.CONTAINMENT and (given or feature.type) not in _parts(feature.type, known.version):
+        yield f"<{name}> of {class_name} cannot be a {given or feature.type} in AMALTHEA {known.version}"
+
+
+@cache
+def _parts(class_name: str, version: str) -> frozenset[str]:
+    """The classes of the objects that may stand where a class is declared."""
+    return frozenset(facts(version).concrete_subtypes(class_name))
+
+
+@cache
+def _features(class_name: str, version: str) -> frozenset[str]:
+    """The features of a class in a version, by their Python names, and what else an object holds."""
+    known = {feature.name for feature in facts(version).features(class_name)}
+    held = features_of(getattr(classes, class_name)).items()
+    return frozenset({"_extras", *(name for name, feature in held if feature.xml_name in known)})
+
+
+@cache
+def _literals(class_name: str, version: str) -> tuple[tuple[str, frozenset[str]], ...]:
+    """The attributes of a class that take literals, with those of a version."""
+    known = facts(version)
+    types = {feature.name: feature.type for feature in known.features(class_name)}
+    held = features_of(getattr(classes, class_name)).items()
+    enums = {name: known.enums.get(types.get(feature.xml_name, "")) for name, feature in held}
+    return tuple((name, frozenset(enum.literals)) for name, enum in enums.items() if enum is not None)
+
+
+RULE = ModelRule(
+    id="INC-IO-FEATURE",
+    title="element, attribute or value that the metamodel does not know",
+    severity=Severity.ERROR,
+    target=Element,
+    check=_check,
+    rationale="am2inc refuses files with unknown elements, classes or literals; unknown attributes it skips, with a message.",
+    remedy="Remove or correct it; what is meant for other tools belongs into custom properties.",
+    fails="""
+<swModel>
+  <threads name="T"/>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <tasks name="T"/>
+</swModel>
+""",
+    is_about_files=True,
+)

@@ -1,0 +1,40 @@
+"""Files of different versions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import Amalthea
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._importer import metamodel_of
+
+
+def _check(element: Amalthea, context: Context) -> Iterator[str]:
+    first, *others = context.model.documents
+    document = element.document
+    if document in others and metamodel_of(document) != metamodel_of(first):
+        other = first.path.name if first.path else "the first file"
+        yield f"the file is one of AMALTHEA {document.version}, but {other} is one of {first.version}"
+
+
+RULE = ModelRule(
+    id="INC-IO-SAMEVERSION",
+    title="files of different versions",
+    severity=Severity.ERROR,
+    target=Amalthea,
+    check=_check,
+    rationale="am2inc aborts the conversion of files of which each needs another metamodel; that of 3.2.0 serves for all of 3.x.",
+    remedy="Migrate all files of the model to the same version.",
+    fails="""
+<!-- a file of AMALTHEA 2.2.0 beside one of 3.3.0 -->
+<swModel/>
+""",
+    passes="""
+<!-- a file of AMALTHEA 3.3.0 beside another one -->
+<swModel/>
+""",
+    example_version="2.2.0",
+    beside="<hwModel/>",
+)

@@ -1,0 +1,48 @@
+"""Core that executes the scheduler of others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import SchedulerAllocation
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+
+
+def _check(element: SchedulerAllocation, context: Context) -> Iterator[str]:
+    core = element.executing_pu
+    if core is not None and core not in element.responsibility:
+        name = element.scheduler.name if element.scheduler is not None else None
+        yield f"that {core.name!r} executes the scheduler {name or ''!r}, without belonging to it, is ignored"
+
+
+RULE = ModelRule(
+    id="INC-MAP-EXECPU",
+    title="core that executes the scheduler of others",
+    severity=Severity.INFO,
+    target=SchedulerAllocation,
+    check=_check,
+    rationale="am2inc ignores which core executes a scheduler; only its responsibility counts.",
+    remedy="Do not rely on it after the import.",
+    fails="""
+<hwModel>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core"/>
+  </structures>
+</hwModel>
+<mappingModel>
+  <schedulerAllocation executingPU="core?type=ProcessingUnit"/>
+</mappingModel>
+""",
+    passes="""
+<hwModel>
+  <structures name="ECU">
+    <modules xsi:type="am:ProcessingUnit" name="core"/>
+  </structures>
+</hwModel>
+<mappingModel>
+  <schedulerAllocation responsibility="core?type=ProcessingUnit" executingPU="core?type=ProcessingUnit"/>
+</mappingModel>
+""",
+)

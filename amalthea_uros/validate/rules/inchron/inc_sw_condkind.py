@@ -1,0 +1,84 @@
+"""Condition that is not converted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import (
+    Condition,
+    ConditionConjunction,
+    EnumMode,
+    ModeLabel,
+    ModeLabelCondition,
+    ModeValueCondition,
+    NumericMode,
+)
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Milder, ModelRule
+
+
+def _check(element: Condition, context: Context) -> Iterator[str | Milder]:
+    if isinstance(element, ModeValueCondition):
+        if element.label is None:
+            yield "the condition compares no mode label"
+    elif isinstance(element, ModeLabelCondition):
+        first, second = element.label1, element.label2
+        if first is None or second is None:
+            yield "the condition does not compare two mode labels"
+        elif first.unresolved is None and second.unresolved is None and not _is_of_same_kind(first, second):
+            yield Milder(f"{first.name!r} and {second.name!r} cannot be compared, because their modes are of different kinds")
+    else:
+        message = f"the {type(element).__name__} compares something else than modes"
+        yield message if isinstance(element.container, ConditionConjunction) else Milder(message)
+
+
+def _is_of_same_kind(first: ModeLabel, second: ModeLabel) -> bool:
+    """Whether both have an enum mode or both a numeric one; a first label without a mode is read as one of a numeric mode."""
+    return isinstance(second.mode, EnumMode if isinstance(first.mode, EnumMode) else NumericMode)
+
+
+RULE = ModelRule(
+    id="INC-SW-CONDKIND",
+    title="condition that is not converted",
+    severity=Severity.ERROR,
+    target=Condition,
+    check=_check,
+    rationale="am2inc crashes without a mode label and at other conditions in a conjunction; elsewhere it drops these.",
+    remedy="Compare mode labels with values, or with labels whose modes are of the same kind.",
+    fails="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Switch">
+        <entries name="e">
+          <condition>
+            <entries xsi:type="am:ConditionConjunction">
+              <entries xsi:type="am:ChannelFillCondition" channel="C?type=Channel" relation="EQUAL" fillLevel="1"/>
+            </entries>
+          </condition>
+        </entries>
+      </items>
+    </activityGraph>
+  </runnables>
+  <channels name="C"/>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Switch">
+        <entries name="e">
+          <condition>
+            <entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="1"/>
+          </condition>
+        </entries>
+      </items>
+    </activityGraph>
+  </runnables>
+  <modes xsi:type="am:NumericMode" name="M"/>
+  <modeLabels name="L" mode="M?type=NumericMode"/>
+</swModel>
+""",
+)

@@ -1,0 +1,75 @@
+"""Custom property with a value that am2inc refuses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel.classes import BooleanObject, CustomProperty, Group, StringObject, Task
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._importer import metamodel
+
+#: What a group of a callback server can say about the order in which its services are dispatched.
+_POLICIES = ("FIFO", "LIFO", "Priority")
+
+
+def _check(element: CustomProperty, context: Context) -> Iterator[str]:
+    if metamodel(element) < "3":
+        return
+    holder, value = element.container, element.value
+    if isinstance(holder, Task) and element.key == "callbackServer" and not isinstance(value, BooleanObject):
+        yield f"the callbackServer of {holder.name!r} is no BooleanObject"
+    if isinstance(holder, Group) and element.key == "dispatchingPolicy" and _is_server(holder.enclosing(Task)):
+        policy = value.value if isinstance(value, StringObject) else None
+        if policy not in _POLICIES:
+            yield f"the dispatchingPolicy of {holder.name or ''!r} is no StringObject of {', '.join(_POLICIES)}"
+
+
+def _is_server(task: Task | None) -> bool:
+    """Whether a task calls its groups as services."""
+    properties = task.custom_properties if task is not None else []
+    return any(p.key == "callbackServer" and isinstance(p.value, BooleanObject) and p.value.value for p in properties)
+
+
+RULE = ModelRule(
+    id="INC-SW-DISPATCH",
+    title="custom property with a value that am2inc refuses",
+    severity=Severity.ERROR,
+    target=CustomProperty,
+    check=_check,
+    rationale="am2inc ends with a segmentation fault at a callbackServer, and aborts the conversion at a dispatchingPolicy.",
+    remedy="Make callbackServer a BooleanObject, and dispatchingPolicy a StringObject of FIFO, LIFO or Priority.",
+    fails="""
+<swModel>
+  <tasks name="T">
+    <customProperties key="callbackServer">
+      <value xsi:type="am:BooleanObject" value="true"/>
+    </customProperties>
+    <activityGraph>
+      <items xsi:type="am:Group" name="G">
+        <customProperties key="dispatchingPolicy">
+          <value xsi:type="am:StringObject" value="random"/>
+        </customProperties>
+      </items>
+    </activityGraph>
+  </tasks>
+</swModel>
+""",
+    passes="""
+<swModel>
+  <tasks name="T">
+    <customProperties key="callbackServer">
+      <value xsi:type="am:BooleanObject" value="true"/>
+    </customProperties>
+    <activityGraph>
+      <items xsi:type="am:Group" name="G">
+        <customProperties key="dispatchingPolicy">
+          <value xsi:type="am:StringObject" value="FIFO"/>
+        </customProperties>
+      </items>
+    </activityGraph>
+  </tasks>
+</swModel>
+""",
+)

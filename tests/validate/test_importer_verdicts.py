@@ -1,0 +1,771 @@
+"""What INCHRON's importer does with a model is what its rules say of it.
+
+The vectors were run through the importer; what it refuses, crashes at, warns of, loses or changes has to be told, and a model that it
+takes over as it is must have no error.
+"""
+
+import json
+import re
+
+import pytest
+from support import MODEL, SHARED
+
+from amalthea_uros import check, load
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.model import Model
+from amalthea_uros.validate import registry
+from amalthea_uros.validate.rule import Profile
+
+FOLDER = SHARED / "vectors" / "am2inc"
+TABLE = SHARED / "reference" / "inchron-constraints.md"
+VERDICTS = json.loads((FOLDER / "verdicts.json").read_text()) if FOLDER.exists() else {}
+RULES = list(registry.ids([Profile.INCHRON]))
+
+#: Models that are taken over as they are, apart from what an information tells.
+SOUND = {
+    "01_ns_2_0_0",
+    "01_ns_2_1_0",
+    "01_ns_3_3_0",
+    "20_ticks_const",
+    "20_ticks_stat",
+    "26_callbackserver_ok",
+    "26_server_ok",
+    "27_runnable_unused",
+    "27_task_nograph",
+    "30_jitter_uni",
+    "31_burst",
+    "31_burst_count0_ok",
+    "31_burst_nodist",
+    "31_relper_gauss",
+    "31_relper_uni",
+    "31_single",
+    "44_two_os_shared_runnable",
+    "45_ips_untriggered",
+    "45_unlinked_stim",
+    "50_cache_l1",
+    "50_cache_l2",
+    "50_conn_ok",
+    "50_pu_two_freq",
+    "50_system_only_pus",
+    "62_counter",
+    "70_only_root",
+}
+
+#: Each of the chain models has the same events, some of which are not converted.
+EVENTS = {"INC-EV-KIND", "INC-EV-TYPE", "INC-EV-LABEL-RUN"}
+
+#: Each of the mode models has a label with a bad initial value, and one without a mode.
+MODES = {"INC-SW-MODE-VALUE", "INC-SW-MODE-MISSING"}
+
+#: What has to be told of each of the others, at least.
+CAUSES = {
+    # Other versions are read, but only as far as they agree with 3.2.0.
+    "01_ns_0_9_9": {"INC-IO-VERSION"},
+    "01_ns_1_0_0": {"INC-IO-VERSION"},
+    "01_ns_1_1_0": {"INC-IO-VERSION"},
+    "01_ns_3_4_0": {"INC-IO-VERSION"},
+    "10_chain_all": EVENTS,
+    "10_chain_dup_event": EVENTS,
+    "10_chain_first_stim_ne_chain": EVENTS | {"INC-EC-SEQ"},
+    "10_chain_gap": EVENTS | {"INC-EC-SEQ"},
+    "10_chain_missing_stim": EVENTS | {"INC-EC-ENDS"},
+    "10_chain_par_badresp": EVENTS | {"INC-EC-PAR"},
+    "10_chain_par_badstim": EVENTS | {"INC-EC-PAR"},
+    "10_chain_par_ok": EVENTS,
+    "10_chain_unmapped_preempt": EVENTS,
+    "10_event_unalloc_entity": EVENTS | {"INC-MAP-TASK-ONCE", "INC-MAP-SCHED"},
+    "10_lat_nobounds": EVENTS | {"INC-LC-MAX"},
+    "20_ticks_beta": {"INC-SW-TICKS-BETA"},
+    "20_ticks_bounds_default": {"INC-SW-TICKS-BOUNDS"},
+    "21_execneed": {"INC-SW-NEED"},
+    "22_label_nosize": {"INC-SW-LABELSIZE"},
+    "22_label_unaccessed_event": EVENTS,
+    "22_label_undef": {"INC-SW-ACCESS"},
+    "23_call_norunnable": {"INC-SW-REF"},
+    "23_channel": {"INC-SW-CHANNEL"},
+    "23_ipt_nostim": {"INC-SW-REF"},
+    "23_semaphore": {"INC-OS-SEMA-TYPE"},
+    "23_semaphore_undef": {"INC-SW-ACCESS"},
+    "24_group": {"INC-SW-GROUP"},
+    "25_localmode": MODES | {"INC-IO-XMIID", "INC-IO-LOCALLABEL"},
+    "25_modelabelaccess": MODES | {"INC-SW-MODE-NUMSET"},
+    "25_switch_conj_channelfill": MODES | {"INC-SW-CONDKIND"},
+    "25_switch_default": MODES,
+    "25_switch_enum_ne": MODES | {"INC-SW-RELATION"},
+    "25_switch_nocond": MODES | {"INC-SW-CONDSET"},
+    "25_switch_num_lt": MODES | {"INC-SW-RELATION"},
+    "26_callbackserver_badtype": {"INC-SW-DISPATCH"},
+    "27_activations": {"INC-SW-ACTIVATION"},
+    "27_runnable_nograph": {"INC-SW-GRAPH"},
+    "30_jitter_beta": {"INC-ST-JITTER"},
+    "30_jitter_bounds": {"INC-ST-JITTER"},
+    "31_burst_zerocount": {"INC-ST-BURST"},
+    "31_custom": {"INC-ST-TYPE", "INC-ST-ORDER"},
+    "31_relper_bounds": {"INC-ST-RELPER"},
+    "31_relper_mixunit": {"INC-ST-RELPER-UNIT"},
+    "31_relper_none": {"INC-ST-RELPER"},
+    "31_variablerate": {"INC-ST-TYPE", "INC-ST-ORDER"},
+    "32_execcond": MODES,
+    "40_alloc_nosched": {"INC-MAP-TASK"},
+    "40_alloc_notask": {"INC-MAP-TASK"},
+    "40_osoverhead": {"INC-OS-OVERHEAD"},
+    "40_prio_string": {"INC-OS-PRIO-TYPE"},
+    "40_sched_computation": {"INC-OS-OVERHEAD"},
+    "40_sched_param_nokey": {"INC-OS-PARAM-KEY"},
+    "40_task_twice": {"INC-MAP-TASK-ONCE"},
+    "41_isr_unalloc": {"INC-MAP-TASK-ONCE"},
+    "43_memmap_noelem": {"INC-MAP-MEMORY"},
+    "44_prio_wrongname": {"INC-OS-ALGOPARAM"},
+    "44_unalloc_task_only": {"INC-MAP-TASK-ONCE"},
+    "46_multi_stim_unsupported_first": {"INC-ST-TYPE", "INC-ST-ORDER"},
+    "50_conn_noports": {"INC-HW-CONN-IFACE"},
+    "50_conn_unsupported": {"INC-HW-CONN-IFACE"},
+    "50_pu_nofreq": {"INC-HW-PU-CLOCK"},
+    "50_pu_onefreq": {"INC-HW-PU-CLOCK"},
+    "50_undef_unit": {"INC-HW-FREQ-VALUE"},
+    "60_namespace_dup": {"INC-IO-XMIID"},
+    "61_dangling_ref": {"INC-IO-REF"},
+    "70_unknown_attr": {"INC-IO-FEATURE"},
+    "70_unknown_elem": {"INC-IO-FEATURE"},
+}
+
+#: An empty file is refused by every tool, no rule is needed for that.
+NO_MODEL = {"70_empty"}
+
+#: What the importer says, the rules of which one tells the same, and what the message of its finding has to hold of it.
+COMPLAINTS = [
+    (r"Conversion not implemented: am320::model::(\w+(?:Event|Set))\.", {"INC-EV-KIND"}),
+    (r"Conversion not implemented: am320::model::(\w+Stimulus)\.", {"INC-ST-TYPE"}),
+    (r"Conversion not implemented: am320::model::(Channel\w+)\.", {"INC-SW-CHANNEL"}),
+    (r"Conversion not implemented: am320::model::(ExecutionNeed)\.", {"INC-SW-NEED"}),
+    (r"Ignoring EventChain '(\w+)': Event '(\w+)' can not be mapped", {"INC-EV-TYPE"}),
+    (r"Ignoring EventChain '(\w+)': The stimulus is missing", {"INC-EC-ENDS"}),
+    (r"Ignoring EventChain '(\w+)': The (?:stimulus|response) of sub-EventChain '(\w+)'", {"INC-EC-PAR"}),
+    (r"Ignoring ModeLabel '(\w+)' without reference to a Mode", {"INC-SW-MODE-MISSING"}),
+    (r"Cannot convert initial value of NumericMode-Label '(\w+)'", {"INC-SW-MODE-VALUE"}),
+    (r"Ignoring object w/o container of type Condition", {"INC-SW-CONDSET"}),
+    (r"Ignoring object w/o container of type Scheduler", {"INC-MAP-TASK"}),
+    (r"Runnable '(\w+)' does not have an ActivityGraph", {"INC-SW-GRAPH"}),
+    (r"PeriodicStimulus '(\w+)': Jitter with unsupported", {"INC-ST-JITTER"}),
+    (r"Unsupported ITimeDeviation", {"INC-ST-RELPER"}),
+    (r"Group '\w+' in IExecutable '\w+' uses random execution order", {"INC-SW-GROUP"}),
+    (r"Missing object of type 'am320::model::Runnable'", {"INC-SW-REF", "INC-IO-REF", "INC-IO-XMIID"}),
+    (r"Cannot resolve reference: (A/\S+)", {"INC-IO-XMIID"}),
+    (r"Cannot resolve reference: (Does\S+)", {"INC-IO-REF"}),
+    (r"LocalModeLabel::getNamePrefixSegments", {"INC-IO-XMIID"}),
+    (r"EClassImpl: (\w+) EStructuralFeature not found: (\w+)", {"INC-IO-FEATURE"}),
+]
+
+#: Follows another message, or lists what would be known.
+FURTHER = re.compile(r"\t|\[am2inc\] Terminating with error")
+
+
+def told(model):
+    return [finding for finding in check(model, RULES) if finding.severity is not Severity.INFO]
+
+
+def vector(name):
+    if not VERDICTS:
+        pytest.skip("the verdicts are not at hand")
+    return load(FOLDER / f"{name}.amxmi")
+
+
+@pytest.mark.parametrize("name", sorted(CAUSES))
+def test_what_goes_wrong_is_told(name):
+    assert {finding.rule for finding in told(vector(name))} >= CAUSES[name]
+
+
+@pytest.mark.parametrize("name", sorted(SOUND))
+def test_what_goes_well_is_no_error(name):
+    assert [finding for finding in told(vector(name)) if finding.severity is Severity.ERROR] == []
+
+
+@pytest.mark.skipif(not VERDICTS, reason="the verdicts are not at hand")
+def test_all_verdicts_are_looked_at():
+    assert sorted(VERDICTS) == sorted([*SOUND, *CAUSES, *NO_MODEL])
+    for name, verdict in VERDICTS.items():
+        assert name not in SOUND or (verdict["exit"], verdict["messages"]) == (0, [])
+
+
+@pytest.mark.parametrize("name", sorted(set(VERDICTS) - NO_MODEL))
+def test_each_complaint_is_told(name):
+    found = told(vector(name))
+    for message in VERDICTS[name]["messages"]:
+        if FURTHER.match(message):
+            continue
+        (match, rules), *_ = [(match, rules) for pattern, rules in COMPLAINTS if (match := re.search(pattern, message))]
+        parts = [re.sub("ExecutionNeed", "execution need", part) for part in match.groups()]
+        assert any(finding.rule in rules and all(part in finding.message for part in parts) for finding in found), message
+
+
+@pytest.mark.skipif(not TABLE.exists(), reason="the reference table is not at hand")
+def test_there_is_a_rule_for_each_row():
+    assert sorted(re.findall(r"^\| (INC-[A-Z-]+) \|", TABLE.read_text(), re.MULTILINE)) == sorted(RULES)
+
+
+# What no vector shows
+
+
+def graph(items, more=""):
+    """A runnable that consists of items."""
+    return f'<swModel><runnables name="R"><activityGraph>{items}</activityGraph></runnables>{more}</swModel>'
+
+
+def ticks(content):
+    return graph(f'<items xsi:type="am:Ticks">{content}</items>')
+
+
+def condition(entry, more=""):
+    return graph(
+        f'<items xsi:type="am:Switch"><entries name="e"><condition>{entry}</condition></entries></items>',
+        '<modes xsi:type="am:EnumMode" name="M"><literals name="on"/><literals name="off"/></modes>'
+        '<modes xsi:type="am:NumericMode" name="N"/>'
+        '<modeLabels name="ML" mode="M?type=EnumMode"/><modeLabels name="OL" mode="M?type=EnumMode"/>'
+        f'<modeLabels name="NL" mode="N?type=NumericMode"/><modeLabels name="No"/><channels name="C"/>{more}',
+    )
+
+
+def value(label, text):
+    return condition(
+        f'<entries xsi:type="am:ModeValueCondition" label="{label}?type=ModeLabel" value="{text}" relation="EQUAL"/>'
+    )
+
+
+def labels(first, second):
+    names = f'label1="{first}?type=ModeLabel" label2="{second}?type=ModeLabel"'
+    return condition(f'<entries xsi:type="am:ModeLabelCondition" {names} relation="EQUAL"/>')
+
+
+def access(label, attributes):
+    more = condition("").partition("</runnables>")[2].removesuffix("</swModel>")
+    return graph(f'<items xsi:type="am:ModeLabelAccess" data="{label}?type=ModeLabel" {attributes}/>', more)
+
+
+def cores(domain, *names):
+    modules = "".join(
+        f'<modules xsi:type="am:ProcessingUnit" name="{n}" frequencyDomain="D?type=FrequencyDomain"/>' for n in names
+    )
+    return f'<hwModel><structures name="ECU">{modules}</structures>{domain}</hwModel>'
+
+
+def domain(content=""):
+    return f'<domains xsi:type="am:FrequencyDomain" name="D">{content}</domains>'
+
+
+def structure(name, *inner):
+    return f'<structures name="{name}">{"".join(inner)}</structures>'
+
+
+def core(name):
+    return f'<modules xsi:type="am:ProcessingUnit" name="{name}"/>'
+
+
+def scheduler(content, more=""):
+    system = f'<operatingSystems name="OS"><taskSchedulers name="S">{content}</taskSchedulers></operatingSystems>'
+    return f"<osModel>{system}{more}</osModel>"
+
+
+def parameter(name, content):
+    key = f' key="{name}?type=SchedulingParameterDefinition"' if name else ""
+    return f"<schedulingParameters{key}>{content}</schedulingParameters>"
+
+
+def allocation(name, content):
+    """A task with a scheduling parameter."""
+    defined = f'<osModel><schedulingParameterDefinitions name="{name}"/></osModel>' if name else ""
+    mapped = f'<taskAllocation task="T?type=Task">{parameter(name, content)}</taskAllocation>'
+    return f'<swModel><tasks name="T"/></swModel>{defined}<mappingModel>{mapped}</mappingModel>'
+
+
+INTEGER = '<value xsi:type="am:IntegerObject" value="3"/>'
+LONG = '<value xsi:type="am:LongObject" value="3"/>'
+
+
+def stimulus(kind, content="", attributes=""):
+    return f'<stimuliModel><stimuli xsi:type="am:{kind}" name="S" {attributes}>{content}</stimuli></stimuliModel>'
+
+
+def distance(content):
+    return stimulus("RelativePeriodicStimulus", content)
+
+
+def events(constraints, more=""):
+    """Three events that are converted, and what is said of them."""
+    return (
+        '<swModel><tasks name="T"/><isrs name="I"/><runnables name="R"/><labels name="L"/></swModel><eventModel>'
+        '<events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>'
+        '<events xsi:type="am:RunnableEvent" name="b" entity="R?type=Runnable" eventType="terminate"/>'
+        '<events xsi:type="am:LabelEvent" name="c" entity="L?type=Label" eventType="read"/>'
+        '<events xsi:type="am:ProcessEvent" name="odd" entity="I?type=ISR" eventType="resume"/>'
+        f"{more}</eventModel><constraintsModel>{constraints}</constraintsModel>"
+    )
+
+
+IDS = {"a": "a?type=ProcessEvent", "b": "b?type=RunnableEvent", "c": "c?type=LabelEvent", "odd": "odd?type=ProcessEvent"}
+
+
+def chain(ends, *items, name="C", attributes=""):
+    """A chain between two events, such as "ab"."""
+    first, last = ends
+    stimulus_, response = (
+        f'{key}="{IDS.get(end, end)}"' if end else "" for key, end in (("stimulus", first), ("response", last))
+    )
+    return f'<eventChains name="{name}" {attributes} {stimulus_} {response}>{"".join(items)}</eventChains>'
+
+
+def segment(ends, *items):
+    inner = chain(ends, *items, name="s").replace("<eventChains", "<eventChain").replace("</eventChains", "</eventChain")
+    return f'<items xsi:type="am:EventChainContainer">{inner}</items>'
+
+
+def reference(name):
+    return f'<items xsi:type="am:EventChainReference" eventChain="{name}?type=EventChain"/>'
+
+
+PARALLEL = 'itemType="parallel"'
+LATENCY = '<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="LC" scope="C?type=EventChain"/>'
+SET = '<events xsi:type="am:EventSet" name="set" events="a?type=ProcessEvent odd?type=ProcessEvent"/>'
+BAD_SET = "set?type=EventSet"
+
+
+def server(policy, is_server="true"):
+    kind = f'<customProperties key="callbackServer"><value xsi:type="am:BooleanObject" value="{is_server}"/></customProperties>'
+    dispatched = f'<customProperties key="dispatchingPolicy">{policy}</customProperties>'
+    group = f'<activityGraph><items xsi:type="am:Group" name="G">{dispatched}</items></activityGraph>'
+    return f'<swModel><tasks name="T">{kind}{group}</tasks></swModel>'
+
+
+def text(content):
+    return f'<value xsi:type="am:StringObject" value="{content}"/>'
+
+
+def stated(content):
+    return f'<swModel><labels name="L"><customProperties key="k">{content}</customProperties></labels></swModel>'
+
+
+def ports(content):
+    return f'<hwModel><structures name="ECU">{content}</structures></hwModel>'
+
+
+def mapped(element):
+    mapping = f'<memoryMapping abstractElement="{element}" memory="RAM?type=Memory"/>'
+    software = '<swModel><runnables name="R"/><labels name="L"/></swModel>'
+    return f"{software}{ports(MEMORY.format(''))}<mappingModel>{mapping}</mappingModel>"
+
+
+MEMORY = '<modules xsi:type="am:Memory" name="RAM"><ports name="p" {}/></modules>'
+
+#: Rule, how often it tells something, and of what.
+CASES = [
+    # Several processing units of one domain without a value: a crash. One of them: 1000 MHz.
+    ("INC-HW-FREQ-VALUE", 1, cores(domain(), "A", "B")),
+    ("INC-HW-FREQ-VALUE", 1, cores(domain(), "A")),
+    ("INC-HW-FREQ-VALUE", 1, cores(domain('<defaultValue value="0" unit="MHz"/>'), "A")),
+    ("INC-HW-FREQ-VALUE", 1, cores(domain('<defaultValue value="9" unit="_undefined_"/>'), "A")),
+    ("INC-HW-FREQ-VALUE", 0, cores(domain('<defaultValue value="9" unit="MHz"/>'), "A", "B")),
+    ("INC-HW-FREQ-VALUE", 0, cores(domain())),
+    ("INC-HW-CACHE-PLACE", 1, ports('<modules xsi:type="am:Cache" name="L2"/>')),
+    ("INC-HW-CACHE-PLACE", 1, ports('<modules xsi:type="am:Cache" name="L2"/>' + structure("uC", core("A")))),
+    ("INC-HW-CACHE-PLACE", 0, ports(core("A") + '<modules xsi:type="am:Cache" name="L2"/>')),
+    # Nesting that says nothing: around one CPU, or around all of them.
+    ("INC-HW-PU-STRUCT", 0, ports(structure("uC", core("A"), core("B")))),
+    ("INC-HW-PU-STRUCT", 0, ports(structure("u1", core("A")) + structure("u2", core("B")))),
+    (
+        "INC-HW-PU-STRUCT",
+        1,
+        ports(structure("g", structure("u1", core("A")), structure("u2", core("B"))) + structure("u3", core("C"))),
+    ),
+    ("INC-HW-PU-STRUCT", 1, ports(structure("u1", core("A"), structure("u2", core("B"))))),
+    # Ports of structures are not converted, those of modules are, if they have a type.
+    ("INC-HW-BITWIDTH", 0, ports('<ports name="p"/>')),
+    ("INC-HW-BITWIDTH", 1, ports(MEMORY.format('portType="responder"'))),
+    ("INC-HW-BITWIDTH", 0, ports(MEMORY.format('portType="responder" bitWidth="32"'))),
+    ("INC-HW-CONN-PORTS", 1, ports(MEMORY.format('bitWidth="32"'))),
+    ("INC-HW-CONN-PORTS", 0, ports(MEMORY.format('portType="responder"') + '<ports name="p"/>')),
+    ("INC-HW-MEM-SIZE", 1, ports('<modules xsi:type="am:Memory" name="RAM"/>')),
+    (
+        "INC-HW-ACCESS",
+        1,
+        '<hwModel><definitions xsi:type="am:MemoryDefinition" name="D">'
+        '<accessLatency xsi:type="am:DiscreteValueConstant" value="9"/></definitions></hwModel>',
+    ),
+    ("INC-HW-ACCESS", 0, '<hwModel><definitions xsi:type="am:MemoryDefinition" name="D"/></hwModel>'),
+    # Scheduling parameters, by where they stand.
+    ("INC-OS-PARAM-KEY", 1, scheduler(parameter("", INTEGER))),
+    ("INC-OS-PARAM-KEY", 0, allocation("", INTEGER)),
+    ("INC-OS-ALGOPARAM", 1, allocation("", INTEGER)),
+    ("INC-OS-ALGOPARAM", 0, scheduler(parameter("", INTEGER))),
+    ("INC-OS-ALGOPARAM", 1, allocation("Priority", INTEGER)),
+    ("INC-OS-ALGOPARAM", 0, allocation("deadline", '<value xsi:type="am:Time" value="3" unit="ms"/>')),
+    ("INC-OS-ALGOPARAM", 1, scheduler(parameter("deadline", INTEGER), '<schedulingParameterDefinitions name="deadline"/>')),
+    ("INC-OS-ALGOPARAM", 0, scheduler(parameter("priority", INTEGER), '<schedulingParameterDefinitions name="priority"/>')),
+    (
+        "INC-OS-ALGOPARAM",
+        1,
+        scheduler(
+            f'<parentAssociation parent="S?type=TaskScheduler">{parameter("priority", INTEGER)}</parentAssociation>',
+            '<schedulingParameterDefinitions name="priority"/>',
+        ),
+    ),
+    ("INC-OS-PRIO-TYPE", 1, allocation("priority", LONG)),
+    ("INC-OS-PRIO-TYPE", 1, allocation("priority", "")),
+    ("INC-OS-PRIO-TYPE", 1, scheduler(parameter("priority", LONG), '<schedulingParameterDefinitions name="priority"/>')),
+    (
+        "INC-OS-PRIO-TYPE",
+        0,
+        scheduler(
+            f'<parentAssociation parent="S?type=TaskScheduler">{parameter("priority", LONG)}</parentAssociation>',
+            '<schedulingParameterDefinitions name="priority"/>',
+        ),
+    ),
+    ("INC-OS-DEADLINE-TYPE", 1, allocation("deadline", INTEGER)),
+    ("INC-OS-DEADLINE-TYPE", 0, scheduler(parameter("deadline", INTEGER), '<schedulingParameterDefinitions name="deadline"/>')),
+    # Overheads without Ticks are harmless.
+    ("INC-OS-OVERHEAD", 0, '<osModel><osOverheads name="O"><apiOverhead/></osOverheads></osModel>'),
+    (
+        "INC-OS-OVERHEAD",
+        1,
+        '<osModel><osOverheads name="O"><apiOverhead><apiActivateTask/></apiOverhead></osOverheads></osModel>',
+    ),
+    ("INC-OS-OVERHEAD", 1, scheduler('<computationItems xsi:type="am:LabelAccess"/>')),
+    ("INC-OS-SEMA-TYPE", 0, '<osModel><semaphores name="S" semaphoreType="_undefined_"/></osModel>'),
+    ("INC-OS-SEMA-TYPE", 1, '<osModel><semaphores name="S" ownership="true"/></osModel>'),
+    ("INC-OS-SEMA-TYPE", 1, '<osModel><semaphores name="S" priorityCeilingProtocol="true"/></osModel>'),
+    ("INC-MAP-SCHED", 1, "<mappingModel><schedulerAllocation/></mappingModel>"),
+    (
+        "INC-MAP-SCHED",
+        1,
+        scheduler("") + '<mappingModel><schedulerAllocation scheduler="S?type=TaskScheduler"/></mappingModel>',
+    ),
+    ("INC-MAP-MEMORY", 1, mapped("R?type=Runnable")),
+    ("INC-MAP-MEMORY", 0, mapped("L?type=Label")),
+    # Stimuli
+    ("INC-ST-TYPE", 1, stimulus("ArrivalCurveStimulus")),
+    ("INC-ST-TYPE", 1, stimulus("EventStimulus")),
+    ("INC-ST-TYPE", 0, stimulus("InterProcessStimulus")),
+    ("INC-ST-BURST", 0, stimulus("PeriodicBurstStimulus")),
+    ("INC-ST-BURST", 1, stimulus("PeriodicBurstStimulus", '<occurrenceMinDistance value="9"/>', 'occurrenceCount="0"')),
+    (
+        "INC-ST-BURST",
+        0,
+        stimulus("PeriodicBurstStimulus", '<occurrenceMinDistance value="9" unit="ms"/>', 'occurrenceCount="0"'),
+    ),
+    ("INC-ST-PERIOD", 1, stimulus("PeriodicSyntheticStimulus", '<recurrence value="0" unit="ms"/>')),
+    ("INC-ST-PERIOD", 1, stimulus("PeriodicStimulus", '<recurrence value="9" unit="_undefined_"/>')),
+    ("INC-ST-RELPER", 1, distance('<nextOccurrence xsi:type="am:TimeConstant"/>')),
+    ("INC-ST-RELPER", 0, distance('<nextOccurrence xsi:type="am:TimeGaussDistribution"/>')),
+    ("INC-ST-JITTER", 1, stimulus("PeriodicStimulus", '<jitter xsi:type="am:TimeGaussDistribution"/>')),
+    ("INC-ST-JITTER", 1, stimulus("PeriodicStimulus", '<jitter xsi:type="am:TimeHistogram"/>')),
+    ("INC-ST-JITTER", 0, stimulus("PeriodicStimulus", '<jitter xsi:type="am:TimeConstant"/>')),
+    # Ticks: only what is read of them matters.
+    ("INC-SW-TICKS-DEFAULT", 1, ticks("")),
+    ("INC-SW-TICKS-DEFAULT", 1, ticks('<extended><value xsi:type="am:DiscreteValueConstant" value="1"/></extended>')),
+    ("INC-SW-TICKS-DEFAULT", 1, ticks('<default xsi:type="am:DiscreteValueConstant"/><extended/>')),
+    ("INC-SW-TICKS-DEFAULT", 0, ticks('<default xsi:type="am:DiscreteValueConstant"/>')),
+    ("INC-SW-TICKS-BETA", 1, ticks('<extended><value xsi:type="am:DiscreteValueBetaDistribution"/></extended>')),
+    ("INC-SW-TICKS-BETA", 0, ticks('<extended/><extended><value xsi:type="am:DiscreteValueBetaDistribution"/></extended>')),
+    (
+        "INC-SW-TICKS-BETA",
+        0,
+        ticks(
+            '<default xsi:type="am:DiscreteValueConstant"/>'
+            '<extended><value xsi:type="am:DiscreteValueBetaDistribution"/></extended>'
+        ),
+    ),
+    (
+        "INC-SW-TICKS-BOUNDS",
+        0,
+        graph(
+            '<items xsi:type="am:ExecutionNeed"><needs key="k"><value xsi:type="am:DiscreteValueBoundaries"/></needs></items>'
+        ),
+    ),
+    ("INC-SW-TICKS-GAUSS", 1, ticks('<default xsi:type="am:DiscreteValueGaussDistribution" lowerBound="1"/>')),
+    ("INC-SW-TICKS-INT", 2, ticks('<default xsi:type="am:DiscreteValueGaussDistribution" mean="1.5" sd="0.5"/>')),
+    ("INC-SW-TICKS-INT", 1, ticks('<default xsi:type="am:DiscreteValueWeibullEstimatorsDistribution" average="1.5"/>')),
+    ("INC-SW-TICKS-INT", 0, ticks('<default xsi:type="am:DiscreteValueGaussDistribution" mean="2" sd="1"/>')),
+    ("INC-SW-TICKS-INT", 0, ticks('<default xsi:type="am:DiscreteValueBetaDistribution" alpha="1.5" beta="0.5"/>')),
+    # Items
+    ("INC-SW-REF", 1, graph('<items xsi:type="am:SetEvent"/>')),
+    ("INC-SW-REF", 1, graph('<items xsi:type="am:ModeLabelAccess" access="read"/>')),
+    ("INC-SW-REF", 0, '<swModel><processPrototypes name="P"><runnableCalls/></processPrototypes></swModel>'),
+    ("INC-SW-EVENTMASK", 1, graph('<items xsi:type="am:WaitEvent"><eventMask/></items>')),
+    ("INC-SW-SERVER", 1, graph('<items xsi:type="am:GetResultServerCall"/>')),
+    ("INC-SW-SERVER", 1, graph('<items xsi:type="am:SenderReceiverRead"/>')),
+    ("INC-SW-SERVER", 1, graph('<items xsi:type="am:SenderReceiverWrite"/>')),
+    ("INC-SW-SERVER", 0, graph('<items xsi:type="am:SenderReceiverRead" label="L?type=Label"/>', '<labels name="L"/>')),
+    ("INC-SW-ACCESS", 1, graph('<items xsi:type="am:SemaphoreAccess" access="request"/>')),
+    ("INC-SW-ACCESS", 1, access("ML", 'access="increment"')),
+    ("INC-SW-ACCESS", 0, access("NL", 'access="increment"')),
+    ("INC-SW-ACCESS", 1, access("NL", "")),
+    ("INC-SW-ACCESS", 0, access("ML", 'access="read"')),
+    ("INC-SW-PROCCHAIN", 1, '<swModel><sections name="S"/></swModel>'),
+    ("INC-SW-PROCCHAIN", 1, '<componentsModel><components name="C"/></componentsModel>'),
+    ("INC-SW-PROCCHAIN", 1, stimulus("VariableRateStimulus", "<scenario/>")),
+    # Conditions and modes
+    ("INC-SW-CONDKIND", 1, condition('<entries xsi:type="am:ChannelFillCondition"/>')),
+    ("INC-SW-CONDKIND", 1, condition('<entries xsi:type="am:LocalModeCondition"/>')),
+    ("INC-SW-CONDKIND", 1, condition('<entries xsi:type="am:ModeValueCondition" value="on"/>')),
+    ("INC-SW-CONDKIND", 1, condition('<entries xsi:type="am:ModeLabelCondition" label1="ML?type=ModeLabel"/>')),
+    ("INC-SW-CONDKIND", 1, labels("ML", "NL")),
+    ("INC-SW-CONDKIND", 1, labels("NL", "No")),
+    ("INC-SW-CONDKIND", 0, labels("No", "NL")),
+    ("INC-SW-CONDKIND", 0, labels("ML", "OL")),
+    ("INC-SW-CONDKIND", 0, value("ML", "on")),
+    ("INC-SW-CONDSET", 1, condition("")),
+    ("INC-SW-CONDSET", 1, graph('<items xsi:type="am:WhileLoop"/>')),
+    ("INC-SW-CONDSET", 0, value("ML", "on")),
+    ("INC-SW-MODE-VALUE", 0, value("ML", "on")),
+    ("INC-SW-MODE-VALUE", 1, value("ML", "up")),
+    ("INC-SW-MODE-VALUE", 1, value("ML", "")),
+    ("INC-SW-MODE-VALUE", 0, value("NL", "-3")),
+    ("INC-SW-MODE-VALUE", 1, value("NL", "3.5")),
+    ("INC-SW-MODE-VALUE", 1, value("NL", "2147483648")),
+    ("INC-SW-MODE-VALUE", 0, value("NL", "2147483647")),
+    ("INC-SW-MODE-VALUE", 0, access("ML", 'access="set" value="off"')),
+    ("INC-SW-MODE-VALUE", 1, access("ML", 'access="set" value="up"')),
+    ("INC-SW-MODE-VALUE", 0, access("NL", 'access="set" value="up"')),
+    ("INC-SW-MODE-NUMSET", 1, access("NL", 'access="set" value="5"')),
+    ("INC-SW-MODE-NUMSET", 0, access("NL", 'access="decrement" step="5"')),
+    ("INC-SW-MODE-NUMSET", 0, access("ML", 'access="set" value="on"')),
+    # Custom properties matter in tasks that are callback servers, and in their groups.
+    ("INC-SW-DISPATCH", 1, server(text("random"))),
+    ("INC-SW-DISPATCH", 1, server(INTEGER)),
+    ("INC-SW-DISPATCH", 0, server(text("Priority"))),
+    ("INC-SW-DISPATCH", 0, server(text("random"), "false")),
+    # Constraints
+    ("INC-CO-KIND", 1, '<constraintsModel><dataCoherencyGroups name="G"/></constraintsModel>'),
+    ("INC-CO-KIND", 1, '<constraintsModel><dataStabilityGroups name="G"/></constraintsModel>'),
+    ("INC-CO-KIND", 1, '<constraintsModel><physicalSectionConstraints name="P"/></constraintsModel>'),
+    (
+        "INC-CO-KIND",
+        0,
+        '<constraintsModel><timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L"/></constraintsModel>',
+    ),
+    # Events and chains; one with an event that is not converted is dropped, and its latency with it.
+    ("INC-EV-KIND", 1, events("", '<events xsi:type="am:SemaphoreEvent" name="s"/>')),
+    ("INC-EV-KIND", 1, events("", '<events xsi:type="am:ModeLabelEvent" name="s"/>')),
+    ("INC-EV-KIND", 0, events(chain("ab"))),
+    (
+        "INC-EV-KIND",
+        2,
+        events(chain(("s?type=CustomEvent", "s?type=CustomEvent")), '<events xsi:type="am:CustomEvent" name="s"/>'),
+    ),
+    ("INC-EV-TYPE", 1, events(chain("ab"))),
+    ("INC-EV-TYPE", 2, events(chain(("a", "odd")))),
+    ("INC-EV-TYPE", 2, events(chain("ab", segment(("a", "odd")), segment(("odd", "b"))))),
+    ("INC-EV-TYPE", 1, events(chain("ab", segment(("a", "odd")), segment("cb")))),
+    ("INC-EV-LABEL-RUN", 1, events("", '<events xsi:type="am:LabelEvent" name="l" runnable="R?type=Runnable"/>')),
+    ("INC-EC-CYCLE", 2, events(chain("ab", reference("D")) + chain("ab", reference("C"), name="D"))),
+    (
+        "INC-EC-CYCLE",
+        3,
+        events(chain("ab", reference("C")) + chain("ab", reference("C"), name="D") + chain("ab", reference("D"), name="E")),
+    ),
+    ("INC-EC-CYCLE", 1, events(chain("ab", segment("ab", reference("C"))))),
+    ("INC-EC-CYCLE", 0, events(chain("ab", reference("D"), reference("D")) + chain("ab", name="D"))),
+    ("INC-EC-SEQ", 0, events(chain("ab", segment("ac"), segment("cb")))),
+    ("INC-EC-SEQ", 1, events(chain("ab", segment("ac"), segment("cc")))),
+    ("INC-EC-SEQ", 1, events(chain("ab", segment("cb"), attributes=PARALLEL))),
+    ("INC-EC-SEQ", 1, events(chain("ab", '<items xsi:type="am:EventChainReference"/>'))),
+    ("INC-EC-SEQ", 0, events(chain("ab", segment("cb"), segment("cb"), attributes=PARALLEL))),
+    ("INC-EC-PAR", 0, events(chain("ab", segment("cb"), attributes=PARALLEL))),
+    ("INC-EC-PAR", 2, events(chain("ab", segment("cb"), segment("ac"), attributes=PARALLEL))),
+    ("INC-EC-PAR", 1, events(chain("ab", segment("ab"), '<items xsi:type="am:EventChainReference"/>', attributes=PARALLEL))),
+    ("INC-EC-PAR-ITEMS", 0, events(chain("ab", segment("ab"), attributes=PARALLEL))),
+    ("INC-EC-PAR-ITEMS", 2, events(chain("ab", segment("ab"), segment("ab"), attributes=PARALLEL))),
+    ("INC-LC-SCOPE", 0, events(chain("ab") + LATENCY)),
+    ("INC-LC-SCOPE", 1, events(chain(("a", "")) + LATENCY)),
+    ("INC-LC-SCOPE", 1, events(chain(("a", "odd")) + LATENCY)),
+    ("INC-LC-SCOPE", 1, events(chain(("a", BAD_SET)) + LATENCY, SET)),
+    ("INC-LC-SCOPE", 1, events(chain("ab", segment("ac"), segment(("odd", "b"))) + LATENCY)),
+    ("INC-LC-SCOPE", 0, events(chain("ab", segment(("odd", "c")), segment("cb")) + LATENCY)),
+    ("INC-LC-SCOPE", 1, events(chain("ab", segment("ac", segment(("a", ""))), segment("cb")) + LATENCY)),
+    ("INC-LC-SCOPE", 1, events(chain("ab", segment("ab"), segment("ac"), attributes=PARALLEL) + LATENCY)),
+    ("INC-LC-SCOPE", 1, events(chain("ab", reference("D")) + chain(("a", ""), name="D") + LATENCY)),
+    # Names
+    (
+        "INC-IO-NAME",
+        2,
+        '<commonElements><namespaces name="A"/><namespaces name="B"/></commonElements><swModel>'
+        '<labels name="L" namespace="A?type=Namespace"/><labels name="L" namespace="B?type=Namespace"/></swModel>',
+    ),
+    (
+        "INC-IO-NAME",
+        0,
+        '<commonElements><namespaces name="A"/></commonElements><swModel>'
+        '<labels name="L" namespace="A?type=Namespace"/><labels name="M" namespace="A?type=Namespace"/></swModel>',
+    ),
+    # What the metamodel knows
+    ("INC-IO-FEATURE", 1, '<swModel><tasks name="T" prio="1"/></swModel>'),
+    ("INC-IO-FEATURE", 1, '<swModel><tasks name="T" preemption="never"/></swModel>'),
+    ("INC-IO-FEATURE", 1, graph('<items xsi:type="am:Sleep"/>')),
+    ("INC-IO-FEATURE", 1, graph('<items xsi:type="am:Task"/>')),
+    ("INC-IO-FEATURE", 1, graph("<items/>")),
+    ("INC-IO-FEATURE", 0, '<swModel xmlns:x="y"><!-- a comment --><?and an instruction?></swModel>'),
+    ("INC-IO-FEATURE", 0, '<swModel><channels name="C"><elementType xsi:type="am:TypeRef"/></channels></swModel>'),
+    ("INC-IO-FEATURE", 0, stated('<value xsi:type="am:MapObject"/>')),
+]
+
+
+def of(excerpt, folder, version="3.3.0"):
+    path = folder / "model.amxmi"
+    path.write_text(MODEL.format(excerpt).replace("amalthea/3.3.0", f"amalthea/{version}"))
+    return load(path)
+
+
+@pytest.mark.parametrize(("rule", "times", "excerpt"), CASES, ids=[f"{rule}-{i}" for i, (rule, *_) in enumerate(CASES)])
+def test_a_case(rule, times, excerpt, tmp_path):
+    assert len(check(of(excerpt, tmp_path), [rule])) == times
+
+
+LESS = condition('<entries xsi:type="am:ModeValueCondition" label="NL?type=ModeLabel" value="1" relation="LESS_THAN"/>')
+OLD_LESS = LESS.replace("Switch", "ModeSwitch")
+
+
+@pytest.mark.parametrize(
+    ("rule", "version", "times", "excerpt"),
+    [
+        # Each file is read with the metamodel of its version, or with that of 3.2.0.
+        ("INC-SW-GRAPH", "2.2.0", 0, '<swModel><runnables name="R"/></swModel>'),
+        ("INC-SW-GRAPH", "1.1.0", 1, '<swModel><runnables name="R"/></swModel>'),
+        ("INC-SW-RELATION", "1.2.0", 0, OLD_LESS),
+        ("INC-SW-RELATION", "2.2.0", 1, LESS),
+        (
+            "INC-SW-SERVER",
+            "2.2.0",
+            1,
+            graph('<items xsi:type="am:SynchronousServerCall" serverRunnable="Q?type=Runnable"/>', '<runnables name="Q"/>'),
+        ),
+        ("INC-SW-DISPATCH", "2.2.0", 0, server(text("random"))),
+        ("INC-SW-CONDSET", "2.2.0", 1, graph('<items xsi:type="am:ModeSwitch"><entries name="e"/></items>')),
+        ("INC-ST-BURST", "1.1.0", 0, stimulus("PeriodicBurstStimulus")),
+        ("INC-IO-FEATURE", "2.2.0", 0, graph('<items xsi:type="am:ModeSwitch"/>')),
+        ("INC-IO-FEATURE", "1.1.0", 1, graph('<items xsi:type="am:ModeSwitch"/>')),
+        ("INC-IO-FEATURE", "1.1.0", 1, scheduler('<schedulingAlgorithm xsi:type="am:OSEK"/>')),
+        ("INC-IO-FEATURE", "1.1.0", 0, scheduler("")),
+        ("INC-IO-FEATURE", "1.1.0", 0, graph('<items xsi:type="am:Switch"/>')),
+        ("INC-IO-FEATURE", "1.1.0", 0, '<osModel><semaphores name="S" semaphoreType="Mutex"/></osModel>'),
+        ("INC-IO-FEATURE", "2.2.0", 1, '<osModel><semaphores name="S" semaphoreType="Mutex"/></osModel>'),
+        *[
+            ("INC-IO-VERSION", version, 0, "")
+            for version in ("1.2.0", "2.0.0", "2.1.0", "2.2.0", "3.0.0", "3.1.0", "3.2.0", "3.3.0")
+        ],
+        *[("INC-IO-VERSION", version, 1, "") for version in ("0.9.8", "1.0.0", "1.1.0", "3.4.0")],
+    ],
+)
+def test_a_version(rule, version, times, excerpt, tmp_path):
+    assert len(check(of(excerpt, tmp_path, version), [rule])) == times
+
+
+CALL = '<items xsi:type="am:RunnableCall" runnable="{}?type=Runnable"/>'
+SPACE = '<commonElements><namespaces name="A"/></commonElements>'
+
+
+def member(called, identifier=""):
+    task = f'<tasks name="T"><activityGraph>{CALL.format(called)}</activityGraph></tasks>'
+    return f'{SPACE}<swModel>{task}<runnables {identifier} name="R" namespace="A?type=Namespace"/></swModel>'
+
+
+LOCAL = '<swModel><tasks {} name="T"><localLabels {} name="l"/><activityGraph>{}</activityGraph></tasks>{}</swModel>'
+ID = 'xmi:id="{}"'
+OF_TASK, OF_LABEL = ID.format("T?type=Task"), ID.format("T/l?type=LocalModeLabel")
+
+
+@pytest.mark.parametrize(
+    ("excerpt", "found"),
+    [
+        # Without ids a member of a namespace is found under its plain name only, and nothing if there are local labels.
+        (member("A/R"), {"INC-IO-XMIID"}),
+        (member("A/R", ID.format("A/R?type=Runnable")), set()),
+        (member("R"), set()),
+        (member("R", ID.format("A/R?type=Runnable")), {"INC-IO-REF"}),
+        (member("Q"), {"INC-IO-REF"}),
+        (LOCAL.format("", "", "", ""), {"INC-IO-XMIID"}),
+        (LOCAL.format(OF_TASK, OF_LABEL, "", ""), set()),
+        (LOCAL.format(OF_TASK, OF_LABEL, CALL.format("R"), '<runnables name="R"/>'), {"INC-IO-XMIID"}),
+        (LOCAL.format(OF_TASK, OF_LABEL, CALL.format("R"), f'<runnables {ID.format("R?type=Runnable")} name="R"/>'), set()),
+        (
+            f'<swModel><tasks name="T"><activityGraph>{CALL.format("R")}</activityGraph></tasks><runnables name="R"/></swModel>',
+            set(),
+        ),
+    ],
+)
+def test_ids_are_missed_where_names_do_not_do(excerpt, found, tmp_path):
+    findings = check(of(excerpt, tmp_path), ["INC-IO-XMIID", "INC-IO-REF"])
+    assert {finding.rule for finding in findings} == found
+    assert len(findings) == len(found)
+
+
+def test_what_was_not_read_is_written_with_ids():
+    label, task = am.LocalModeLabel(name="l"), am.Task(name="T")
+    task.local_labels.append(label)
+    model = Model.of(am.Amalthea(sw_model=am.SWModel(tasks=[task])))
+    assert check(model, ["INC-IO-XMIID"]) == []
+
+
+@pytest.mark.parametrize(
+    ("files", "found"),
+    [
+        ([("2.2.0", "<swModel/>"), ("3.2.0", "<hwModel/>")], {"INC-IO-SAMEVERSION": 1}),
+        ([("3.2.0", "<swModel/>"), ("3.3.0", "<hwModel/>")], {}),
+        ([("2.1.0", "<swModel/>"), ("2.2.0", "<hwModel/>"), ("3.0.0", "<osModel/>")], {"INC-IO-SAMEVERSION": 2}),
+        ([("3.3.0", "<swModel/><hwModel/>"), ("3.3.0", "<swModel/><hwModel/>")], {"INC-IO-SUBMODEL-ONCE": 2}),
+        ([("3.3.0", "<swModel/>"), ("3.3.0", "<hwModel/>"), ("3.3.0", "<swModel/>")], {"INC-IO-SUBMODEL-ONCE": 1}),
+        ([("3.3.0", '<customProperties key="k"/>'), ("3.3.0", '<customProperties key="k"/>')], {}),
+    ],
+)
+def test_several_files(files, found, tmp_path):
+    for number, (version, excerpt) in enumerate(files):
+        text_ = MODEL.format(excerpt).replace("amalthea/3.3.0", f"amalthea/{version}")
+        (tmp_path / f"{number}.amxmi").write_text(text_)
+    told_of = [finding.rule for finding in check(load(tmp_path), ["INC-IO-SAMEVERSION", "INC-IO-SUBMODEL-ONCE"])]
+    assert {rule: told_of.count(rule) for rule in told_of} == found
+
+
+def two_systems(second, more=""):
+    """Tasks T and U, which call A and B, of the systems X and, for U, `second`."""
+
+    def calls(name, *called):
+        return f'name="{name}"><activityGraph>{"".join(map(CALL.format, called))}</activityGraph>'
+
+    return (
+        f"<swModel><tasks {calls('T', 'A')}</tasks><tasks {calls('U', 'B')}</tasks>"
+        f"<runnables {calls('A', 'C')}</runnables><runnables {calls('B', 'C')}</runnables>"
+        f"<runnables {calls('C', 'D')}</runnables><runnables {calls('D', 'C')}</runnables></swModel>"
+        '<osModel><operatingSystems name="X"><taskSchedulers name="S"/></operatingSystems>'
+        '<operatingSystems name="Y"><taskSchedulers name="P"/></operatingSystems></osModel>'
+        f'<mappingModel><taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>'
+        f'<taskAllocation task="U?type=Task" scheduler="{second}?type=TaskScheduler"/>{more}</mappingModel>'
+    )
+
+
+@pytest.mark.parametrize(("second", "shared"), [("P", ["C", "D"]), ("S", [])])
+def test_runnables_are_shared_through_calls(second, shared, tmp_path):
+    found = check(of(two_systems(second), tmp_path), ["INC-MAP-SHAREDRUN"])
+    assert [finding.object for finding in found] == shared
+
+
+@pytest.mark.parametrize(
+    ("stimuli", "late"),
+    [("CP", ["P"]), ("PC", []), ("PCP", ["P"]), ("CC", []), ("PCPQ", ["P", "Q"]), ("", [])],
+)
+def test_stimuli_behind_one_that_is_not_converted(stimuli, late, tmp_path):
+    kinds = {"C": "CustomStimulus", "P": "PeriodicStimulus", "Q": "InterProcessStimulus"}
+    declared = "".join(f'<stimuli xsi:type="am:{kind}" name="{name}"/>' for name, kind in kinds.items())
+    used = " ".join(f"{name}?type={kinds[name]}" for name in stimuli)
+    excerpt = f'<stimuliModel>{declared}</stimuliModel><swModel><isrs name="I" stimuli="{used}"/></swModel>'
+    found = check(of(excerpt, tmp_path), ["INC-ST-ORDER"])
+    assert [finding.message.split("'")[1] for finding in found] == late
+
+
+def test_a_chain_of_many_chains_is_followed(tmp_path):
+    """Far deeper than Python recurses, and with far more ways through it than could be followed one by one."""
+    chains = "".join(chain("ab", reference(f"C{i + 1}"), reference(f"C{i + 1}"), name=f"C{i}") for i in range(3000))
+    model = of(events(chains + chain(("a", ""), name="C3000") + LATENCY.replace("C?", "C0?")), tmp_path)
+    assert check(model, ["INC-EC-CYCLE"]) == []
+    assert len(check(model, ["INC-LC-SCOPE"])) == 1
+
+
+CLASSES = [cls for cls in vars(am).values() if isinstance(cls, type) and issubclass(cls, Element) and not cls.is_abstract]
