@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TypeVar, cast
 
 from amalthea_uros.metamodel.element import Element, references_of
+from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.metamodel.naming import unique_name
 
@@ -40,11 +41,21 @@ class Context:
 
     def version_of(self, element: Element) -> str:
         """The AMALTHEA version whose facts hold for an object."""
-        return self._only_version or cast("Document", element.document).facts_version
+        return self._only_version or self.document_of(element).facts_version
 
-    def is_part_of(self, element: Element, document: Document) -> bool:
-        """Whether an object stands in a document."""
-        return len(self.model.documents) == 1 or element.document is document
+    def document_of(self, element: Element) -> Document:
+        """The file in which an object stands."""
+        documents = self.model.documents
+        return documents[0] if len(documents) == 1 else cast("Document", element.document)
+
+    @cached_property
+    def dangling(self) -> dict[Element, list[tuple[str, str]]]:
+        """The references to nothing: by object the features, by their XML names, and what they say."""
+        found: dict[Element, list[tuple[str, str]]] = {}
+        for reference, text in self.model.unresolved():
+            name = features_of(type(reference.holder))[reference.feature].xml_name
+            found.setdefault(reference.holder, []).append((name, text))
+        return found
 
     @cached_property
     def namesakes(self) -> dict[Element, list[Element]]:

@@ -57,7 +57,7 @@ def test_a_rule_that_fires_on_most_models_is_explained():
 CLASSES = [cls for cls in vars(classes).values() if isinstance(cls, type) and issubclass(cls, Element) and not cls.is_abstract]
 
 
-@pytest.mark.parametrize("identifier", registry.ids())
+@pytest.mark.parametrize("identifier", list(registry.ids()))
 def test_no_rule_fails_where_nothing_is_set(identifier):
     rule = registry.rule(identifier)
     if isinstance(rule, ModelRule):

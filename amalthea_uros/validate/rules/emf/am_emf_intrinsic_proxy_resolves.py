@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.element import Element, references_of
-from amalthea_uros.metamodel.features import features_of
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: Element, context: Context) -> Iterator[str]:
-    for name, value in references_of(element):
-        for target in value if isinstance(value, list) else (value,):
-            if target.unresolved is not None:
-                yield f"{features_of(type(element))[name].xml_name} refers to {target.unresolved!r}, which is nowhere"
+    for name, text in context.dangling.get(element, ()):
+        yield f"{name} refers to {text!r}, which is nowhere"
 
 
 RULE = ModelRule(

@@ -23,7 +23,7 @@ def _check(element: Amalthea, context: Context) -> Iterator[str]:
         for cls, parts in context.by_class(Element)
         if (features := _omitted(cls, document.facts_version))
         for part in parts
-        if context.is_part_of(part, document)
+        if context.document_of(part) is document
         for name, value in features
     ]
     number = sum(omitted)

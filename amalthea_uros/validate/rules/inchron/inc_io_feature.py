@@ -15,13 +15,17 @@ from amalthea_uros.metamodel.source import Prefixes, attributes_of_tag
 from amalthea_uros.metamodel.versions import Facts, facts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.inchron._importer import metamodel
+from amalthea_uros.validate.rules.inchron._importer import metamodel_of
 
 _TAG = re.compile(r"<(?P<name>[^\s/>!?]+)").match
 
 
 def _check(element: Element, context: Context) -> Iterator[str]:
-    known = facts(metamodel(element))
+    document = context.document_of(element)
+    version = metamodel_of(document)
+    if "_extras" not in element.__dict__ and _is_same(type(element).__name__, context.version_of(element), version):
+        return
+    known = facts(version)
     class_name = type(element).__name__
     if class_name not in known.classes:
         declared = _declared(element, known)
@@ -39,6 +43,16 @@ def _check(element: Element, context: Context) -> Iterator[str]:
         value = element.__dict__.get(name)
         if value is not None and value not in literals:
             yield f"{str(value)!r} is no {name.replace('_', ' ')} of {class_name} in AMALTHEA {known.version}"
+
+
+@cache
+def _is_same(class_name: str, version: str, other: str) -> bool:
+    """Whether a class is the same in two versions, for all that is asked here."""
+    if class_name not in facts(other).classes:
+        return False
+    return _features(class_name, version) <= _features(class_name, other) and all(
+        literals <= dict(_literals(class_name, other))[name] for name, literals in _literals(class_name, version)
+    )
 
 
 def _declared(element: Element, known: Facts) -> str | None:

@@ -5,19 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.element import Element, references_of
-from amalthea_uros.metamodel.features import features_of
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.inchron._ids import without_namespace
 
 
 def _check(element: Element, context: Context) -> Iterator[str]:
-    found_by_am2inc = context.once(_plain_names)
-    for name, value in references_of(element):
-        for target in value if isinstance(value, list) else (value,):
-            if target.unresolved is not None and target.unresolved not in found_by_am2inc:
-                yield f"{features_of(type(element))[name].xml_name!r} refers to {target.unresolved!r}, which is not there"
+    for name, text in context.dangling.get(element, ()):
+        if text not in context.once(_plain_names):
+            yield f"{name!r} refers to {text!r}, which is not there"
 
 
 def _plain_names(context: Context) -> frozenset[str]:
