@@ -1,10 +1,13 @@
 """The rules of the timing profile beyond their examples."""
 
 import pytest
-from support import SHARED
+from support import corpus, hand_written
 from test_rules import model
 
-from amalthea_uros import check
+from amalthea_uros import check, extract, load
+from amalthea_uros.analyze.occurrences import occurrences
+from amalthea_uros.errors import ReadError
+from amalthea_uros.perf.software import AccessKind, LabelAccess
 
 
 def found(rule, excerpt, folder, version="3.3.0"):
@@ -928,12 +931,19 @@ def test_interrupts_write_too(tmp_path):
     ]
 
 
-def test_a_real_model(tmp_path):
-    from amalthea_uros import load
-
-    folder = SHARED / "corpus" / "panorama-research+mobstr-dataset" / "org.panorama-research.mobstr.amalthea" / "mapped+safety"
-    if not folder.exists():
-        pytest.skip("the published models are not at hand")
-    told = [finding.object for finding in check(load(folder / "mobstr-mapped+safety.amxmi"), ["TIM-UNPROTECTED"])]
-    assert "speed_objective" in told
-    assert len(told) == 10
+@pytest.mark.parametrize("path", [*corpus(), *hand_written()])
+def test_real_models_without_semaphores(path):
+    """What the system that was extracted from a model writes, and where."""
+    try:
+        read = load(path)
+    except ReadError:
+        pytest.skip("the file cannot be read")
+    system = extract(read).system
+    places = {a.task: a.cores or system.schedulers[a.scheduler].cores for a in system.mapping.tasks}
+    writers: dict[str, dict[str, set[str]]] = {}
+    for what in occurrences(system):
+        if isinstance(what.activity, LabelAccess) and what.activity.kind is AccessKind.WRITE:
+            writers.setdefault(what.activity.label, {})[what.process.name] = set(places.get(what.process.name, ()))
+    expected = {label for label, by in writers.items() if len(by) > 1 and len(set().union(*by.values())) > 1}
+    assert not system.os.semaphores or not expected
+    assert {finding.object for finding in check(read, ["TIM-UNPROTECTED"])} == expected
