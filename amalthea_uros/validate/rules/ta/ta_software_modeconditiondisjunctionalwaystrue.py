@@ -16,7 +16,8 @@ def _check(element: BaseObject, context: Context) -> Iterator[str]:
         return
     # Only single conditions count, not those within conjunctions.
     for label, (accepted, rejected) in by_label(element.entries).items():
-        if _literals(label) <= set(accepted):
+        literals = _literals(label)
+        if literals and literals <= set(accepted):
             yield f"{label.name!r} may be any of its literals"
         for literal in accepted:
             if literal in rejected:

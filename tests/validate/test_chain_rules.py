@@ -1,0 +1,465 @@
+"""The rules on event chains, against what the analysis of chains takes as carrying an effect."""
+
+import re
+from fractions import Fraction
+from itertools import permutations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from support import ROOT, corpus, hand_written
+from test_rules import model
+
+from amalthea_uros import analyze_system, build_model, check, extract, load
+from amalthea_uros.analyze.chains.resolve import Carrier, Resolver
+from amalthea_uros.analyze.chains.spots import UnresolvedError, When
+from amalthea_uros.errors import ReadError
+from amalthea_uros.perf.distributions import Constant
+from amalthea_uros.perf.events import (
+    ChannelChange,
+    ChannelEvent,
+    CustomEvent,
+    EventChain,
+    Events,
+    LabelChange,
+    LabelEvent,
+    ProcessChange,
+    ProcessEvent,
+    RunnableChange,
+    RunnableEvent,
+    StimulusEvent,
+)
+from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
+from amalthea_uros.perf.mapping import Mapping, TaskAllocation
+from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
+from amalthea_uros.perf.software import (
+    AccessKind,
+    Call,
+    Channel,
+    Demand,
+    Execute,
+    Group,
+    Label,
+    LabelAccess,
+    RaiseEvent,
+    Receive,
+    Runnable,
+    Send,
+    Software,
+    Task,
+    Trigger,
+)
+from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic, Stimuli
+from amalthea_uros.perf.system import System
+from amalthea_uros.units import MILLISECOND as MS
+
+RULE = "TIM-CHAIN-CARRIED"
+
+
+def told_by_analysis(system):
+    """(chain, from, to) where nothing carries, and the chains that are not evaluated."""
+    gaps, skipped = set(), set()
+    for finding in analyze_system(system).findings:
+        if finding.rule == "CHN002":
+            gaps.add(tuple(re.findall(r"'([^']*)'", finding.message)))
+        elif finding.rule == "CHN001":
+            skipped.add(finding.object)
+    return gaps, skipped
+
+
+def told_by_rule(read):
+    """The same by the rule."""
+    messages = [(finding.object.split(".")[0], *re.findall(r"'([^']*)'", finding.message)) for finding in check(read, [RULE])]
+    return set(messages)
+
+
+SAMPLES = [pytest.param(path, id=path.name) for path in sorted((ROOT / "samples").glob("*.amxmi"))]
+
+
+@pytest.mark.parametrize("path", [*SAMPLES, *corpus(), *hand_written()])
+def test_the_gaps_are_those_of_the_analysis(path):
+    try:
+        read = load(path)
+    except ReadError:
+        pytest.skip("the file cannot be read")
+    gaps, skipped = told_by_analysis(extract(read).system)
+    assert {gap for gap in told_by_rule(read) if gap[0] not in skipped} == gaps
+
+
+# Random systems
+
+RUNNABLES, LABELS, CHANNELS = ["R0", "R1", "R2"], ["L0", "L1"], ["C0"]
+TASKS = ["T0", "T1", "T2"]
+
+
+def bodies(runnables):
+    single = [
+        st.builds(LabelAccess, label=st.sampled_from(LABELS), kind=st.sampled_from(AccessKind)),
+        st.builds(Send, channel=st.just("C0"), elements=st.just(1)),
+        st.builds(Receive, channel=st.just("C0"), elements=st.just(1)),
+        st.builds(Trigger, stimulus=st.just("triggered")),
+        st.builds(RaiseEvent, event=st.just("custom")),
+        st.just(Execute(demand=Demand(Constant(1)))),
+    ]
+    if runnables:
+        single.append(st.builds(Call, runnable=st.sampled_from(runnables)))
+        single.append(st.builds(Call, runnable=st.sampled_from(runnables)))
+    activities = st.lists(st.one_of(single), max_size=3).map(tuple)
+    return st.builds(lambda before, inner: (*before, Group(activities=inner)), activities, activities)
+
+
+def event(name):
+    """An event of any kind that occurs in jobs."""
+    process, runnable = st.sampled_from(TASKS), st.sampled_from(RUNNABLES)
+    some_process = st.none() | process
+    moments = st.sampled_from([ProcessChange.ACTIVATE, ProcessChange.START, ProcessChange.TERMINATE])
+    ends = st.sampled_from([RunnableChange.START, RunnableChange.TERMINATE])
+    changes = st.none() | st.sampled_from(LabelChange)
+    named = st.just(name)
+    return st.one_of(
+        st.builds(ProcessEvent, name=named, process=process, change=moments),
+        st.builds(RunnableEvent, name=named, runnable=runnable, process=some_process, change=ends),
+        st.builds(
+            LabelEvent,
+            name=named,
+            label=st.sampled_from(LABELS),
+            runnable=st.none() | runnable,
+            process=st.none() | process,
+            change=changes,
+        ),
+        st.builds(ChannelEvent, name=named, channel=st.just("C0"), change=st.none() | st.sampled_from(ChannelChange)),
+        st.builds(StimulusEvent, name=named, stimulus=st.sampled_from(["periodic", "triggered"])),
+    )
+
+
+@st.composite
+def systems(draw):
+    every = (*(draw(event(f"E{number}")) for number in range(draw(st.integers(2, 4)))), CustomEvent(name="custom"))
+    pairs = list(permutations([event.name for event in every], 2))
+    chains = tuple(EventChain(name=f"{first} to {then}", stimulus=first, response=then) for first, then in pairs)
+    stimuli = {"T0": ("periodic",), "T1": ("triggered",), "T2": ("reacting",)}
+    return System(
+        hardware=Hardware(
+            clocks=(Clock(name="clock", frequency=Fraction(10**6)),),
+            structures=(Structure(name="ECU", cores=(Core(name="core", clock="clock"),)),),
+        ),
+        os=Os(
+            systems=(
+                OperatingSystem(
+                    name="OS", schedulers=(Scheduler(name="S", policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=("core",)),)
+                ),
+            )
+        ),
+        stimuli=Stimuli(
+            stimuli=(
+                Periodic(name="periodic", period=10 * MS),
+                InterProcess(name="triggered"),
+                EventTriggered(name="reacting", events=("custom",)),
+            )
+        ),
+        software=Software(
+            tasks=tuple(Task(name=task, stimuli=stimuli[task], activities=draw(bodies(RUNNABLES))) for task in TASKS),
+            runnables=tuple(Runnable(name=name, activities=draw(bodies(RUNNABLES[:n]))) for n, name in enumerate(RUNNABLES)),
+            labels=tuple(Label(name=name) for name in LABELS),
+            channels=tuple(Channel(name=name) for name in CHANNELS),
+        ),
+        mapping=Mapping(tasks=tuple(TaskAllocation(task=task, scheduler="S", priority=n) for n, task in enumerate(TASKS))),
+        events=Events(events=every, chains=chains),
+    )
+
+
+@given(systems())
+def test_the_gaps_of_random_chains(system):
+    resolver = Resolver(system)
+    found = told_by_rule(build_model(system))
+    for chain in system.events.chains:
+        first, then = (system.events_by_name[name] for name in (chain.stimulus, chain.response))
+        try:
+            carriers = {hop.carrier for route in resolver.routes([first, then]) for hop in route.hops}
+        except UnresolvedError:
+            continue
+        is_told = (chain.name, first.name, then.name) in found
+        is_gap = carriers <= {Carrier.NOTHING, Carrier.NEXT_JOB}
+        if any(
+            spot.place and spot.when is When.BEHIND and isinstance(spot.place.activity, Call)
+            for spot in resolver.spots.of(then)
+        ):
+            # For the rule the end of a runnable comes behind what is in it, for the analysis before it.
+            assert is_gap or not is_told
+        else:
+            assert is_told is is_gap
+
+
+# What the analysis does not know of, or sees otherwise
+
+EVENTS = {
+    "start of T": '<events xsi:type="am:ProcessEvent" name="start of T" eventType="start" entity="T?type=Task"/>',
+    "end of U": '<events xsi:type="am:ProcessEvent" name="end of U" eventType="terminate" entity="U?type=Task"/>',
+    "start of R": '<events xsi:type="am:RunnableEvent" name="start of R" eventType="start" entity="R?type=Runnable"/>',
+    "end of R": '<events xsi:type="am:RunnableEvent" name="end of R" eventType="terminate" entity="R?type=Runnable"/>',
+    "L is written": '<events xsi:type="am:LabelEvent" name="L is written" eventType="write" entity="L?type=Label"/>',
+    "L is read": '<events xsi:type="am:LabelEvent" name="L is read" eventType="read" entity="L?type=Label"/>',
+    "any of T": '<events xsi:type="am:ProcessEvent" name="any of T" entity="T?type=Task"/>',
+}
+
+
+def reference(event):
+    kind = re.search(r'am:(\w+)"', EVENTS[event])[1]
+    return f"{event.replace(' ', '+')}?type={kind}"
+
+
+def chain(first, then, items="", attributes=""):
+    """A chain, or a part of one; an end that is None is not stated."""
+    ends = [f'{name}="{reference(end)}"' for name, end in (("stimulus", first), ("response", then)) if end]
+    return f"{' '.join(ends)} {attributes}>{items}"
+
+
+def part(first, then, items="", attributes=""):
+    return f'<items xsi:type="am:EventChainContainer"><eventChain {chain(first, then, items, attributes)}</eventChain></items>'
+
+
+def system(first="", then="", *, others="", stimulus="", chains=None, events=""):
+    """What T and U do, and a chain from the start of T to the end of U."""
+    chains = chains or f'<eventChains name="C" {chain("start of T", "end of U")}</eventChains>'
+    return f"""
+<eventModel>{"".join(EVENTS.values())}{events}</eventModel>
+<stimuliModel>
+  <stimuli xsi:type="am:EventStimulus" name="by L" triggeringEvents="{reference("L is written")}"/>
+  <stimuli xsi:type="am:EventStimulus" name="by R" triggeringEvents="{reference("end of R")}"/>
+</stimuliModel>
+<swModel>
+  <tasks name="T"><activityGraph>{first}</activityGraph></tasks>
+  <tasks name="U" stimuli="{stimulus}"><activityGraph>{then}</activityGraph></tasks>
+  {others}
+  <labels name="L"/><labels name="M"/>
+  <events name="E"/><events name="F"/>
+  <modes xsi:type="am:NumericMode" name="N"/>
+  <modeLabels name="K" mode="N?type=NumericMode"/>
+</swModel>
+<constraintsModel>{chains}</constraintsModel>"""
+
+
+def found(excerpt, folder, rule=RULE):
+    return [finding.message for finding in check(model(excerpt, folder), [rule])]
+
+
+def access(kind, label="L"):
+    return f'<items xsi:type="am:LabelAccess" data="{label}?type=Label" access="{kind}"/>'
+
+
+def mask(kind, events="E?type=OsEvent", attributes=""):
+    return f'<items xsi:type="am:{kind}" {attributes}><eventMask events="{events}"/></items>'
+
+
+def runnable(name, *items):
+    return f'<runnables name="{name}"><activityGraph>{"".join(items)}</activityGraph></runnables>'
+
+
+CALL = '<items xsi:type="am:RunnableCall" runnable="R?type=Runnable"/>'
+SERVER = '<items xsi:type="am:{}" serverRunnable="R?type=Runnable"/>'
+SET_MODE = '<items xsi:type="am:ModeLabelAccess" data="K?type=ModeLabel" access="set" value="1"/>'
+IS_ONE = '<entries xsi:type="am:ModeValueCondition" label="K?type=ModeLabel" relation="EQUAL" value="1"/>'
+SWITCH = f'<items xsi:type="am:Switch"><entries name="one"><condition>{IS_ONE}</condition></entries></items>'
+GAP = ["nothing carries the effect from 'start of T' to 'end of U'"]
+
+
+@pytest.mark.parametrize(
+    ("excerpt", "expected"),
+    [
+        (system(), GAP),
+        (system(access("write"), access("read")), []),
+        (system(access("read"), access("write")), GAP),
+        (system(access("write"), access("read", "M")), GAP),
+        # Data in runnables, and by sender-receiver communication.
+        (system(CALL, access("read"), others=runnable("R", access("write"))), []),
+        (
+            system(
+                '<items xsi:type="am:SenderReceiverWrite" label="L?type=Label"/>',
+                '<items xsi:type="am:SenderReceiverRead" label="L?type=Label"/>',
+            ),
+            [],
+        ),
+        # A mode that is set, and on which a branch or a runnable depends.
+        (system(SET_MODE, SWITCH), []),
+        (system("", SWITCH), GAP),
+        (
+            system(SET_MODE, CALL, others=f'<runnables name="R"><executionCondition>{IS_ONE}</executionCondition></runnables>'),
+            [],
+        ),
+        # Events of the operating system: for all, or for one process.
+        (system(mask("SetEvent"), mask("WaitEvent")), []),
+        (system(mask("SetEvent", attributes='process="U?type=Task"'), mask("WaitEvent")), []),
+        (system(mask("SetEvent", attributes='process="T?type=Task"'), mask("WaitEvent")), GAP),
+        (system(mask("SetEvent"), mask("WaitEvent", "F?type=OsEvent")), GAP),
+        (system(mask("ClearEvent"), mask("WaitEvent")), GAP),
+        # Events that activate: an access, the end of a runnable.
+        (system(access("write"), "", stimulus="by+L?type=EventStimulus"), []),
+        (system(access("read"), "", stimulus="by+L?type=EventStimulus"), GAP),
+        (system(CALL, "", stimulus="by+R?type=EventStimulus", others=runnable("R")), []),
+        # A client and its server, and back.
+        (system(SERVER.format("SynchronousServerCall"), CALL, others=runnable("R")), []),
+        (system(CALL, SERVER.format("GetResultServerCall"), others=runnable("R")), []),
+        (system(SERVER.format("SynchronousServerCall"), "", others=runnable("R")), GAP),
+    ],
+)
+def test_what_carries(excerpt, expected, tmp_path):
+    assert found(excerpt, tmp_path) == expected
+
+
+def gap(first, then):
+    return [f"nothing carries the effect from {first!r} to {then!r}"]
+
+
+@pytest.mark.parametrize(
+    ("first", "then", "is_carried"),
+    [
+        ("start of R", "L is written", True),
+        ("L is written", "end of R", True),
+        # What is written may take effect at the end.
+        ("end of R", "L is written", True),
+        ("L is written", "start of R", False),
+        ("end of R", "start of R", False),
+        ("start of T", "end of R", True),
+        ("end of R", "start of T", False),
+        ("start of R", "start of R", True),
+        # What is no moment, or occurs nowhere, is not judged.
+        ("any of T", "end of U", True),
+        ("L is read", "end of U", True),
+        (None, "end of U", True),
+        ("start of T", None, True),
+    ],
+)
+def test_the_order_within_a_job(first, then, is_carried, tmp_path):
+    chains = f'<eventChains name="C" {chain(first, then)}</eventChains>'
+    excerpt = system(CALL, others=runnable("R", access("write")), chains=chains)
+    assert found(excerpt, tmp_path) == ([] if is_carried else gap(first, then))
+
+
+def test_a_runnable_that_is_called_again_may_come_before_itself(tmp_path):
+    chains = f'<eventChains name="C" {chain("end of R", "start of R")}</eventChains>'
+    assert found(system(CALL + CALL, others=runnable("R"), chains=chains), tmp_path) == []
+
+
+CARRIED = (access("write"), access("read"))
+A, B, W, D = "start of T", "end of U", "L is written", "L is read"
+
+
+@pytest.mark.parametrize(
+    ("items", "attributes", "expected"),
+    [
+        (part(A, W) + part(W, D) + part(D, B), 'itemType="sequence"', []),
+        (part(A, W) + part(D, B), "", []),
+        # From one segment to the next.
+        (part(A, D) + part(W, B), "", gap(D, W)),
+        (part(A, D) + part(W, B), 'itemType="parallel"', []),
+        (part(A, B) + part(A, B), 'itemType="parallel"', []),
+        (part(W, A) + part(A, B), "", gap(W, A)),
+        ('<items xsi:type="am:EventChainContainer"/><items xsi:type="am:EventChainReference"/>', "", []),
+        # A chain that is part of itself ends nowhere.
+        ('<items xsi:type="am:EventChainReference" eventChain="C?type=EventChain"/>', "", []),
+    ],
+)
+def test_the_parts_of_a_chain(items, attributes, expected, tmp_path):
+    chains = f'<eventChains name="C" {chain(A, B, items, attributes)}</eventChains>'
+    # D comes behind W, in another task; nothing leads from U back to T.
+    told = found(system(*CARRIED, chains=chains), tmp_path)
+    assert sorted(told) == sorted(expected)
+
+
+def test_branches_that_start_elsewhere_than_their_chain(tmp_path):
+    branches = chain(B, B, part(A, A), 'itemType="parallel"')
+    chains = f'<eventChains name="C" {branches}</eventChains>'
+    assert found(system(*CARRIED, chains=chains), tmp_path) == gap(B, A)
+
+
+def test_sets_of_events(tmp_path):
+    events = '<events xsi:type="am:EventSet" name="all" events="start+of+T?type=ProcessEvent L+is+written?type=LabelEvent"/>'
+    chains = f'<eventChains name="C" stimulus="all?type=EventSet" response="{reference(B)}"/>'
+    assert found(system(*CARRIED, chains=chains, events=events), tmp_path) == []
+    assert found(system(access("write"), chains=chains, events=events), tmp_path) == gap(A, B) + gap(W, B)
+
+
+def test_many_candidates_are_not_tried(tmp_path):
+    # 200 tasks that write and 200 that read something else: more pairs than are looked at.
+    tasks = "".join(
+        f'<tasks name="{kind}{number}"><activityGraph>{access(kind)}</activityGraph></tasks>'
+        for number in range(200)
+        for kind in ("write", "read")
+    )
+    chains = f'<eventChains name="C" {chain(D, W)}</eventChains>'
+    assert found(system(others=tasks, chains=chains), tmp_path) == []
+    few = tasks[: tasks.index('<tasks name="write1"')]
+    assert found(system(others=few, chains=chains), tmp_path) == gap(D, W)
+
+
+# Clocks
+
+
+def controllers(kinds, items="", second="core1", events="sent got"):
+    """T on the core 0, U on a core, in structures of some kinds."""
+    first, then = events.split()
+    return f"""
+<eventModel>
+  <events xsi:type="am:ProcessEvent" name="sent" eventType="terminate" entity="T?type=Task"/>
+  <events xsi:type="am:ProcessEvent" name="got" eventType="start" entity="U?type=Task"/>
+  <events xsi:type="am:EventSet" name="both" events="sent?type=ProcessEvent got?type=ProcessEvent"/>
+</eventModel>
+<swModel><tasks name="T"/><tasks name="U"/></swModel>
+<hwModel>
+  <structures name="car" structureType="System">
+    <structures name="A" structureType="{kinds[0]}">
+      <structures name="chip" structureType="Microcontroller"><modules xsi:type="am:ProcessingUnit" name="core0"/></structures>
+    </structures>
+    <structures name="B" structureType="{kinds[1]}"><modules xsi:type="am:ProcessingUnit" name="core1"/></structures>
+  </structures>
+</hwModel>
+<osModel>
+  <operatingSystems name="OS"><taskSchedulers name="S0"/><taskSchedulers name="S1"/></operatingSystems>
+</osModel>
+<mappingModel>
+  <schedulerAllocation scheduler="S0?type=TaskScheduler" responsibility="core0?type=ProcessingUnit"/>
+  <schedulerAllocation scheduler="S1?type=TaskScheduler" responsibility="{second}?type=ProcessingUnit"/>
+  <taskAllocation task="T?type=Task" scheduler="S0?type=TaskScheduler"/>
+  <taskAllocation task="U?type=Task" scheduler="S1?type=TaskScheduler"/>
+</mappingModel>
+<constraintsModel>
+  <eventChains name="C" stimulus="{first}" response="{then}">{items}</eventChains>
+</constraintsModel>"""
+
+
+SENT, GOT, BOTH = "sent?type=ProcessEvent", "got?type=ProcessEvent", "both?type=EventSet"
+TOLD = ["'C' goes through 'A' and 'B', which have no common clock"]
+
+
+@pytest.mark.parametrize(
+    ("excerpt", "expected"),
+    [
+        (controllers(("ECU", "ECU"), events=f"{SENT} {GOT}"), TOLD),
+        (controllers(("ECU", "ECU"), events=f"{SENT} {SENT}"), []),
+        (controllers(("ECU", "ECU"), events=f"{SENT} {GOT}", second="core0"), []),
+        (controllers(("Microcontroller", "Microcontroller"), events=f"{SENT} {GOT}"), []),
+        # Of a core outside of all controllers nothing is known.
+        (controllers(("ECU", "Microcontroller"), events=f"{SENT} {GOT}"), []),
+        # Nor of a task that may be here or there.
+        (controllers(("ECU", "ECU"), events=f"{SENT} {GOT}", second="core0?type=ProcessingUnit core1"), []),
+        (controllers(("ECU", "ECU"), events=f"{SENT} {BOTH}"), TOLD),
+        (
+            controllers(
+                ("ECU", "ECU"),
+                f'<items xsi:type="am:EventChainContainer"><eventChain stimulus="{SENT}" response="{GOT}"/></items>',
+                events=f"{SENT} {SENT}",
+            ),
+            TOLD,
+        ),
+        (
+            controllers(
+                ("ECU", "ECU"),
+                '<items xsi:type="am:EventChainReference" eventChain="C?type=EventChain"/>',
+                events=f"{SENT} {SENT}",
+            ),
+            [],
+        ),
+    ],
+)
+def test_chains_through_several_controllers(excerpt, expected, tmp_path):
+    assert found(excerpt, tmp_path, "TIM-SEPARATE-CLOCKS") == expected

@@ -1,0 +1,364 @@
+"""The load that rules compute from a model, against the analysis, which computes it from the system that the model describes."""
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from support import MODEL, ROOT, SHARED, corpus, hand_written
+
+from amalthea_uros import analyze_system, build_model, extract, load
+from amalthea_uros.errors import ReadError
+from amalthea_uros.perf.distributions import Boundaries, Bucket, Constant, Gauss, Histogram
+from amalthea_uros.perf.hardware import Clock, Core, CoreType, Feature, Hardware, Structure
+from amalthea_uros.perf.mapping import IsrAllocation, Mapping, TaskAllocation
+from amalthea_uros.perf.os import InterruptController, OperatingSystem, Os, Policy, Scheduler
+from amalthea_uros.perf.software import (
+    Call,
+    Case,
+    Chance,
+    Count,
+    Demand,
+    Execute,
+    ExecutionNeed,
+    Group,
+    Isr,
+    ProbabilitySwitch,
+    Runnable,
+    Software,
+    Switch,
+    Task,
+    Trigger,
+)
+from amalthea_uros.perf.stimuli import (
+    ArrivalCurve,
+    ArrivalCurvePoint,
+    Burst,
+    Counter,
+    InterProcess,
+    Periodic,
+    RelativePeriodic,
+    Single,
+    Stimuli,
+    Synthetic,
+)
+from amalthea_uros.perf.system import System
+from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.load import loads, rates
+
+CORES = {"core 0": ("small", 1_000_000), "core 1": ("big", 3_000_000)}
+#: Ticks for each unit of a need; the second one is the inverse of instructions per cycle.
+FEATURES = {"small": (2.0, 0.5), "big": (1.0, 2.0)}
+
+
+def total(model):
+    """The load of each processing unit that has any, by its name."""
+    return {unit.name: sum(shares.values()) for unit, shares in loads(Context(model)).items()}
+
+
+def assert_same_load(model, system):
+    """The analysis adds what the operating system costs, which none of the models here state."""
+    found = total(model)
+    for processor in analyze_system(system).processors:
+        if processor.worst is not None:
+            difference = processor.worst - found.get(processor.name, 0)
+            # The analysis rounds up what is no whole number of small parts of a picosecond.
+            assert 0 <= difference <= processor.worst / 10**6
+
+
+SAMPLES = [pytest.param(path, id=path.name) for path in sorted((ROOT / "samples").glob("*.amxmi"))]
+
+
+@pytest.mark.parametrize("path", [*SAMPLES, *corpus(), *hand_written()])
+def test_the_load_is_that_of_the_analysis(path):
+    if path.stem == "40_sched_computation":
+        pytest.skip("decisions of the scheduler cost something")
+    try:
+        model = load(path)
+    except ReadError:
+        pytest.skip("the file cannot be read")
+    assert_same_load(model, extract(model).system)
+
+
+def test_the_load_of_a_model_in_several_files():
+    folder = SHARED / "corpus" / "ESRTS+MATERIAL_Framework" / "Examples"
+    if not folder.exists():
+        pytest.skip("the published models are not at hand")
+    parts = (
+        "model_test/RPI_BBW_HW",
+        "model_test/RPI_BBW_OS",
+        "model_BBW_local/RPI_BBW_SW",
+        "model_BBW_local/RPI_BBW_mapping_local",
+    )
+    model = load(*(folder / f"{part}.amxmi" for part in parts))
+    assert len(total(model)) == 4
+    assert_same_load(model, extract(model).system)
+
+
+# Random systems
+
+
+TICKS = st.integers(0, 30).flatmap(
+    lambda least: st.sampled_from(
+        [
+            Constant(least),
+            Boundaries(lower=least, upper=least + 7),
+            Gauss(mean=least + 1.0, deviation=1.0, lower=least, upper=least + 3),
+            Histogram(
+                (Bucket(lower=least, upper=least + 9, occurrences=1), Bucket(lower=least + 2, upper=least + 4, occurrences=2))
+            ),
+        ]
+    )
+)
+DEMANDS = st.builds(
+    Demand,
+    ticks=TICKS,
+    by_core_type=st.lists(
+        st.tuples(st.sampled_from(["small", "big"]), TICKS), max_size=2, unique_by=lambda entry: entry[0]
+    ).map(tuple),
+)
+COUNTERS = st.none() | st.builds(Counter, prescaler=st.integers(1, 5), offset=st.integers(0, 3))
+COUNTS = (
+    st.none() | st.builds(Count, least=st.just(0), mean=st.just(1.0), most=st.integers(0, 3)) | st.sampled_from([1.0, 1.5, 2.0])
+)
+
+
+def activities(runnables, stimuli):
+    """What processes and runnables may do: call some runnables, trigger some stimuli."""
+    single = [
+        st.builds(Execute, demand=DEMANDS),
+        st.builds(ExecutionNeed, needs=st.tuples(st.tuples(st.sampled_from(["Matrix", "Vector", "Instructions"]), TICKS))),
+    ]
+    if runnables:
+        single.append(st.builds(Call, runnable=st.sampled_from(runnables), counter=COUNTERS, times=COUNTS))
+    if stimuli:
+        single.append(st.builds(Trigger, stimulus=st.sampled_from(stimuli), counter=COUNTERS))
+
+    def several(inner):
+        body = st.lists(inner, max_size=3).map(tuple)
+        return (
+            st.builds(Group, activities=body)
+            | st.builds(
+                Switch, cases=st.lists(st.builds(Case, activities=body), max_size=2).map(tuple), default=st.none() | body
+            )
+            | st.builds(
+                ProbabilitySwitch,
+                branches=st.lists(st.builds(Chance, weight=st.just(0.5), activities=body), max_size=3).map(tuple),
+            )
+        )
+
+    return st.lists(st.recursive(st.one_of(single), several, max_leaves=4), max_size=4).map(tuple)
+
+
+def stimulus(name):
+    periods = st.integers(5, 50).map(lambda count: count * MS)
+    return st.one_of(
+        st.builds(Periodic, name=st.just(name), period=periods, jitter=st.none() | st.just(Boundaries(lower=0, upper=MS))),
+        st.builds(
+            RelativePeriodic, name=st.just(name), distance=periods.map(lambda least: Boundaries(lower=least, upper=2 * least))
+        ),
+        st.builds(Synthetic, name=st.just(name), period=periods, times=st.sampled_from([(0,), (0, MS), (MS, MS, 60 * MS)])),
+        st.builds(
+            Burst,
+            name=st.just(name),
+            period=periods,
+            length=st.integers(0, 4 * MS),
+            distance=st.sampled_from([0, MS]),
+            count=st.integers(1, 4),
+        ),
+        st.just(
+            ArrivalCurve(
+                name=name, points=(ArrivalCurvePoint(occurrences=2, lower=MS), ArrivalCurvePoint(occurrences=5, lower=9 * MS))
+            )
+        ),
+        st.just(Single(name=name, time=MS)),
+    )
+
+
+@st.composite
+def systems(draw):
+    runnables: list[Runnable] = []
+    for number in range(draw(st.integers(0, 4))):
+        # Each calls only those before it.
+        body = draw(activities([runnable.name for runnable in runnables], []))
+        runnables.append(Runnable(name=f"R{number}", activities=body))
+    names = [runnable.name for runnable in runnables]
+    count = draw(st.integers(1, 4))
+    # A process is activated from outside, or by those before it.
+    triggered = [number > 0 and draw(st.booleans()) for number in range(count)]
+    stimuli, processes = [], []
+    for number in range(count):
+        later = [f"S{other}" for other in range(number + 1, count) if triggered[other]]
+        cls = draw(st.sampled_from([Task, Isr]))
+        processes.append(cls(name=f"P{number}", stimuli=(f"S{number}",), activities=draw(activities(names, later))))
+        inner = st.builds(InterProcess, name=st.just(f"S{number}"), counter=COUNTERS)
+        stimuli.append(draw(inner if triggered[number] else stimulus(f"S{number}")))
+    places = {process.name: draw(st.sampled_from(sorted(CORES))) for process in processes}
+    tasks = [process for process in processes if isinstance(process, Task)]
+    isrs = [process for process in processes if isinstance(process, Isr)]
+    return System(
+        hardware=Hardware(
+            clocks=tuple(Clock(name=f"clock of {core}", frequency=Fraction(hertz)) for core, (_, hertz) in CORES.items()),
+            core_types=tuple(
+                CoreType(
+                    name=name,
+                    features=(
+                        Feature(category="Matrix", name="cost", value=cost),
+                        Feature(category="Vector", name="IPC_1", value=rate),
+                    ),
+                )
+                for name, (cost, rate) in FEATURES.items()
+            ),
+            structures=(
+                Structure(
+                    name="ECU",
+                    cores=tuple(Core(name=core, type=kind, clock=f"clock of {core}") for core, (kind, _) in CORES.items()),
+                ),
+            ),
+        ),
+        os=Os(
+            systems=(
+                OperatingSystem(
+                    name="OS",
+                    schedulers=tuple(
+                        Scheduler(name=f"tasks of {core}", policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=(core,))
+                        for core in CORES
+                    ),
+                    interrupt_controllers=tuple(
+                        InterruptController(name=f"interrupts of {core}", cores=(core,)) for core in CORES
+                    ),
+                ),
+            )
+        ),
+        stimuli=Stimuli(stimuli=tuple(stimuli)),
+        software=Software(tasks=tuple(tasks), isrs=tuple(isrs), runnables=tuple(runnables)),
+        mapping=Mapping(
+            tasks=tuple(
+                TaskAllocation(task=task.name, scheduler=f"tasks of {places[task.name]}", priority=number)
+                for number, task in enumerate(tasks)
+            ),
+            isrs=tuple(IsrAllocation(isr=isr.name, controller=f"interrupts of {places[isr.name]}") for isr in isrs),
+        ),
+    )
+
+
+@given(systems())
+def test_the_load_of_random_systems(system):
+    model = build_model(system)
+    assume(total(model))
+    assert_same_load(model, system)
+
+
+# What is not known
+
+
+CLOCKED = 'frequencyDomain="clock?type=FrequencyDomain"'
+
+
+def model(tmp_path, task, others="", stimulus="P?type=PeriodicStimulus", domain=CLOCKED):
+    """One task on one core of 1 MHz, every millisecond."""
+    path = tmp_path / "model.amxmi"
+    path.write_text(
+        MODEL.format(
+            f"""
+<hwModel>
+  <domains xsi:type="am:FrequencyDomain" name="clock"><defaultValue value="1" unit="MHz"/></domains>
+  <structures name="ECU"><modules xsi:type="am:ProcessingUnit" name="core" {domain}/></structures>
+</hwModel>
+<osModel>
+  <operatingSystems name="OS"><taskSchedulers name="S"/></operatingSystems>
+</osModel>
+<stimuliModel>
+  <stimuli xsi:type="am:PeriodicStimulus" name="P"><recurrence value="1" unit="ms"/></stimuli>
+  <stimuli xsi:type="am:InterProcessStimulus" name="I"/>
+  <stimuli xsi:type="am:CustomStimulus" name="C"/>
+</stimuliModel>
+<swModel>
+  <tasks name="T" stimuli="{stimulus}"><activityGraph>{task}</activityGraph></tasks>
+  {others}
+</swModel>
+<mappingModel>
+  <schedulerAllocation scheduler="S?type=TaskScheduler" responsibility="core?type=ProcessingUnit"/>
+  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
+</mappingModel>
+"""
+        )
+    )
+    return load(path)
+
+
+UNBOUNDED = '<items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueGaussDistribution" mean="1"/></items>'
+NEED = (
+    '<items xsi:type="am:ExecutionNeed"><needs key="X"><value xsi:type="am:DiscreteValueConstant" value="1"/></needs></items>'
+)
+TICK = '<items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="100"/></items>'
+
+
+def calls(name, *called):
+    items = "".join(f'<items xsi:type="am:RunnableCall" runnable="{other}?type=Runnable"/>' for other in called)
+    return f'<runnables name="{name}"><activityGraph>{TICK}{items}</activityGraph></runnables>'
+
+
+def call(name):
+    return f'<items xsi:type="am:RunnableCall" runnable="{name}?type=Runnable"/>'
+
+
+def test_a_known_load(tmp_path):
+    # 100 ticks of 1 us in each ms.
+    assert total(model(tmp_path, TICK)) == {"core": Fraction(1, 10)}
+
+
+@pytest.mark.parametrize(
+    ("task", "others"),
+    [
+        (TICK + f'<items xsi:type="am:WhileLoop">{TICK}</items>', ""),
+        (TICK + '<items xsi:type="am:WaitEvent"/>', ""),
+        (TICK + '<items xsi:type="am:EnforcedMigration"/>', ""),
+        (TICK + '<items xsi:type="am:Ticks"/>', ""),
+        (TICK + UNBOUNDED, ""),
+        (TICK + NEED, ""),
+        (TICK + '<items xsi:type="am:RunnableCall"/>', ""),
+        (TICK + call("nowhere"), ""),
+        (call("A"), calls("A", "B") + calls("B", "A")),
+        (call("A"), calls("A", "A")),
+    ],
+    ids=["loop", "wait", "migration", "no ticks", "no bound", "need", "no runnable", "unresolved", "circle", "itself"],
+)
+def test_a_process_of_which_the_demand_is_not_known_is_left_out(task, others, tmp_path):
+    assert total(model(tmp_path, task, others)) == {}
+
+
+@pytest.mark.parametrize(
+    ("stimulus", "domain"),
+    [
+        ("", CLOCKED),
+        ("I?type=InterProcessStimulus", CLOCKED),
+        ("C?type=CustomStimulus", CLOCKED),
+        # What is known of one stimulus is not all.
+        ("P?type=PeriodicStimulus C?type=CustomStimulus", CLOCKED),
+        ("P?type=PeriodicStimulus", ""),
+    ],
+    ids=["no stimulus", "never triggered", "custom", "partly custom", "no clock"],
+)
+def test_a_process_of_which_the_activations_or_the_clock_are_not_known_is_left_out(stimulus, domain, tmp_path):
+    assert total(model(tmp_path, TICK, "", stimulus, domain)) == {}
+
+
+def test_a_task_that_triggers_itself_is_left_out(tmp_path):
+    trigger = '<items xsi:type="am:InterProcessTrigger" stimulus="I?type=InterProcessStimulus"/>'
+    found = model(tmp_path, TICK + trigger, "", "P?type=PeriodicStimulus I?type=InterProcessStimulus")
+    assert not rates(Context(found))
+
+
+def test_calls_may_be_nested_deeper_than_recursion_goes(tmp_path):
+    depth = 3000
+    runnables = "".join(calls(f"R{number}", *([f"R{number + 1}"] if number + 1 < depth else [])) for number in range(depth))
+    # Each of them takes a tenth of a millisecond.
+    assert total(model(tmp_path, call("R0"), runnables)) == {"core": depth / Fraction(10)}
+
+
+def test_runnables_that_many_call_are_looked_at_once(tmp_path):
+    # Each calls the next one twice: 2^200 executions.
+    runnables = "".join(calls(f"R{number}", *[f"R{number + 1}"] * 2) for number in range(200)) + calls("R200")
+    assert total(model(tmp_path, call("R0"), runnables)) == {"core": Fraction(2**201 - 1, 10)}
