@@ -40,10 +40,11 @@ from amalthea_uros.metamodel.classes import (
     WhileLoop,
 )
 from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.magnitudes import picoseconds
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.execution import executing, order, times
 from amalthea_uros.validate.graphs import bottom_up
-from amalthea_uros.validate.quantities import bounds, hertz, picoseconds
+from amalthea_uros.validate.quantities import bounds, clock
 from amalthea_uros.validate.scheduling import cores
 
 #: Picoseconds in a second.
@@ -64,14 +65,10 @@ def _loads(context: Context) -> dict[ProcessingUnit, dict[Process, Fraction]]:
         (unit,) = units
         if unit.definition not in demands:
             demands[unit.definition] = _demands(unit.definition, context)
-        ticks, rate, frequency = demands[unit.definition].get(process), rates(context).get(process), _frequency(unit)
+        ticks, rate, frequency = demands[unit.definition].get(process), rates(context).get(process), clock(unit)
         if ticks is not None and rate is not None and frequency is not None:
             found.setdefault(unit, {})[process] = ticks / frequency * _SECOND * rate
     return found
-
-
-def _frequency(unit: ProcessingUnit) -> Fraction | None:
-    return hertz(unit.frequency_domain.default_value) if unit.frequency_domain is not None else None
 
 
 # Demand

@@ -37,6 +37,10 @@ def policy(scheduler: Scheduler | None) -> str | None:
     return type(algorithm).__name__ if algorithm is not None else None
 
 
+#: The policy that takes no decisions.
+GROUPING = "Grouping"
+
+
 def is_by_priority(scheduler: Scheduler | None) -> bool:
     """Whether a scheduler serves the highest priority first."""
     return (policy(scheduler) or "").lower() in _BY_PRIORITY
@@ -51,7 +55,7 @@ _BY_PRIORITY = {
 
 def deciding(scheduler: TaskScheduler | None) -> TaskScheduler | None:
     """The scheduler that decides for those below another one: a grouping leaves that to its parent."""
-    return next((one for one in _upwards(scheduler) if policy(one) != "Grouping"), None)
+    return next((one for one in _upwards(scheduler) if policy(one) != GROUPING), None)
 
 
 def _upwards(scheduler: Scheduler | None) -> Iterator[TaskScheduler]:
@@ -59,7 +63,12 @@ def _upwards(scheduler: Scheduler | None) -> Iterator[TaskScheduler]:
     while isinstance(scheduler, TaskScheduler) and scheduler not in seen:
         seen.add(scheduler)
         yield scheduler
-        scheduler = scheduler.parent_association.parent if scheduler.parent_association is not None else None
+        scheduler = parent_of(scheduler)
+
+
+def parent_of(scheduler: TaskScheduler) -> TaskScheduler | None:
+    """The scheduler above."""
+    return scheduler.parent_association.parent if scheduler.parent_association is not None else None
 
 
 def parameter(container: ISchedulingParameterContainer, name: str, scheduler: Scheduler | None) -> Value | None:
@@ -93,16 +102,34 @@ def cores(context: Context) -> Mapping[Process, frozenset[ProcessingUnit]]:
     return context.once(_cores)
 
 
-def _cores(context: Context) -> dict[Process, frozenset[ProcessingUnit]]:
-    served: dict[Scheduler, set[ProcessingUnit]] = {}
+def responsibilities(context: Context) -> Mapping[Scheduler, list[ProcessingUnit]]:
+    """The processing units of each scheduler: its own, or else those of the next scheduler above that has some."""
+    return context.once(_responsibilities)
+
+
+def _responsibilities(context: Context) -> dict[Scheduler, list[ProcessingUnit]]:
+    found: dict[Scheduler, list[ProcessingUnit]] = {}
     for allocation in context.all(SchedulerAllocation):
-        if allocation.scheduler is not None:
-            served.setdefault(allocation.scheduler, set()).update(_real(allocation.responsibility))
+        if allocation.scheduler is not None and allocation.responsibility:
+            found.setdefault(allocation.scheduler, []).extend(_real(allocation.responsibility))
+    for scheduler in context.all(TaskScheduler):
+        without: list[TaskScheduler] = []
+        above: TaskScheduler | None = scheduler
+        while above is not None and above not in found:
+            found[above] = []  # ends a circle
+            without.append(above)
+            above = parent_of(above)
+        for each in without:
+            found[each] = [] if above is None else found[above]
+    return found
+
+
+def _cores(context: Context) -> dict[Process, frozenset[ProcessingUnit]]:
+    served = responsibilities(context)
     found: dict[Process, set[ProcessingUnit]] = {}
     for place in context.all(TaskAllocation):
         if place.task is not None:
-            # A scheduler without processing units of its own lives on those of its parent.
-            here = next((units for one in _upwards(place.scheduler) if (units := served.get(one))), set())
+            here = set(served.get(place.scheduler, ())) if place.scheduler is not None else set()
             wanted = set(place.affinity)
             found.setdefault(place.task, set()).update(here & wanted if wanted else here)
     for interrupt in context.all(ISRAllocation):

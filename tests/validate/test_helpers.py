@@ -18,6 +18,8 @@ from amalthea_uros.metamodel.classes import (
     DiscreteValueHistogram,
     DiscreteValueHistogramEntry,
     Frequency,
+    FrequencyDomain,
+    ProcessingUnit,
     Task,
     Time,
     TimeBoundaries,
@@ -25,10 +27,11 @@ from amalthea_uros.metamodel.classes import (
     TimeHistogram,
     TimeHistogramEntry,
 )
+from amalthea_uros.metamodel.magnitudes import bits, picoseconds
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run
 from amalthea_uros.validate.graphs import bottom_up, circles
-from amalthea_uros.validate.quantities import bits, bounds, hertz, picoseconds, size_text, time_text
+from amalthea_uros.validate.quantities import bounds, clock, size_text, time_text
 from amalthea_uros.validate.rule import Profile
 from amalthea_uros.validate.wording import joined, listed
 
@@ -80,8 +83,8 @@ def test_times(time, value):
         (None, None),
     ],
 )
-def test_frequencies(frequency, value):
-    assert hertz(frequency) == value
+def test_clocks(frequency, value):
+    assert clock(ProcessingUnit(frequency_domain=FrequencyDomain(default_value=frequency))) == value
 
 
 def test_every_unit_of_data_has_a_size():

@@ -10,14 +10,15 @@ from amalthea_uros.metamodel.classes import (
     MemoryMapping,
     PhysicalSectionMapping,
     ProcessingUnit,
+    Runnable,
     RunnableAllocation,
     Scheduler,
     TaskAllocation,
 )
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rules.app4mc._running import processes_of_runnables
-from amalthea_uros.validate.rules.app4mc._scheduling import responsibilities
+from amalthea_uros.validate.execution import executing
+from amalthea_uros.validate.scheduling import responsibilities
 
 #: The places of each object that has some, in their order (a dictionary of nothing is a set with an order).
 Places = dict[Element, dict[Element, None]]
@@ -51,7 +52,7 @@ def cores(context: Context) -> Places:
 
     def served(scheduler: Scheduler | None, affinity: Iterable[ProcessingUnit] = ()) -> list[ProcessingUnit]:
         wanted = set(affinity)
-        found = context.once(responsibilities).get(scheduler, []) if scheduler is not None else []
+        found = responsibilities(context).get(scheduler, []) if scheduler is not None else []
         return [core for core in found if core in wanted or not wanted]
 
     tasks = _gathered((a.task, core) for a in context.all(TaskAllocation) for core in served(a.scheduler, a.affinity))
@@ -64,8 +65,8 @@ def _with_runnables(processes: Places, stated: Places, context: Context) -> Plac
     """A runnable is where an allocation of its own says, or else where the processes are in which it runs."""
     running = _gathered(
         (runnable, place)
-        for runnable, in_processes in context.once(processes_of_runnables).items()
-        for process in in_processes
+        for runnable in context.all(Runnable)
+        for process in executing(runnable, context)
         for place in processes.get(process, ())
     )
     return processes | running | stated

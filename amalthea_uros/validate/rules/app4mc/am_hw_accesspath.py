@@ -8,10 +8,10 @@ from itertools import pairwise
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import HwAccessElement, HwAccessPath, HwConnection, HwDestination, HwPathElement, Memory
 from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.magnitudes import bits
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.app4mc._hardware import share_no_port
-from amalthea_uros.validate.rules.app4mc._sizes import bits
 
 
 def _check(element: HwAccessPath, context: Context) -> Iterator[str]:

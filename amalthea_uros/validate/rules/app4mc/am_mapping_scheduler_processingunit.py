@@ -8,11 +8,11 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Scheduler, SchedulerAllocation
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.app4mc._scheduling import GROUPING, algorithm_of
+from amalthea_uros.validate.scheduling import GROUPING, policy
 
 
 def _check(element: Scheduler, context: Context) -> Iterator[str]:
-    if algorithm_of(element) != GROUPING and not context.uses(SchedulerAllocation, "scheduler")[element]:
+    if policy(element) != GROUPING and not context.uses(SchedulerAllocation, "scheduler")[element]:
         yield f"no scheduler allocation refers to {element.name!r}"
 
 

@@ -9,11 +9,11 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Scheduler, TaskAllocation, TaskScheduler
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.app4mc._scheduling import GROUPING, algorithm_of, parent_of
+from amalthea_uros.validate.scheduling import GROUPING, parent_of, policy
 
 
 def _check(element: TaskScheduler, context: Context) -> Iterator[str]:
-    algorithm, definition = algorithm_of(element), element.definition
+    algorithm, definition = policy(element), element.definition
     needs_parent = algorithm == GROUPING or (definition is not None and definition.requires_parent_scheduler is True)
     if needs_parent and parent_of(element) is None:
         yield f"{element.name!r} has no scheduler above it, which {algorithm} needs"

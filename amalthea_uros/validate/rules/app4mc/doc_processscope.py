@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Process, Runnable, RunnableSequencingConstraint
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.execution import executing
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.app4mc._running import processes_of_runnables
 
 
 def _check(element: RunnableSequencingConstraint, context: Context) -> Iterator[str]:
@@ -18,15 +18,15 @@ def _check(element: RunnableSequencingConstraint, context: Context) -> Iterator[
     if len(groups) < 2:
         yield f"{element.name!r} puts {len(groups)} groups of runnables into an order"
     elif scope and len(scope) == len(set(element.process_scope)):
-        processes = context.once(processes_of_runnables)
-        inside = sum(any(_is_inside(runnable, scope, processes) for runnable in group.runnables) for group in groups)
+        inside = sum(any(_is_inside(runnable, scope, context) for runnable in group.runnables) for group in groups)
         if inside < 2:
             yield f"only {inside} of the {len(groups)} groups of {element.name!r} have a runnable that runs in the process scope"
 
 
-def _is_inside(runnable: Runnable, scope: set[Process], processes: dict[Runnable, list[Process]]) -> bool:
+def _is_inside(runnable: Runnable, scope: set[Process], context: Context) -> bool:
     """Whether a runnable runs in the scope, or it is not known where it runs."""
-    return runnable not in processes or not scope.isdisjoint(processes[runnable])
+    processes = executing(runnable, context)
+    return not processes or not scope.isdisjoint(processes)
 
 
 RULE = ModelRule(

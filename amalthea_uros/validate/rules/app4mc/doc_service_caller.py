@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Process, Runnable
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.execution import called
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.app4mc._running import direct_calls
 
 
 def _check(element: Runnable, context: Context) -> Iterator[str]:
@@ -20,10 +20,9 @@ def _check(element: Runnable, context: Context) -> Iterator[str]:
 def _processes(context: Context) -> dict[Runnable, dict[Process, None]]:
     """The processes that call each runnable themselves."""
     found: dict[Runnable, dict[Process, None]] = {}
-    for caller, called in context.once(direct_calls).items():
-        if isinstance(caller, Process):
-            for runnable in called:
-                found.setdefault(runnable, {})[caller] = None
+    for process in context.all(Process):
+        for runnable in called(process, context):
+            found.setdefault(runnable, {})[process] = None
     return found
 
 

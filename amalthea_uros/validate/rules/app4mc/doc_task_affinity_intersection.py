@@ -8,14 +8,14 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import TaskAllocation
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.app4mc._scheduling import responsibilities
+from amalthea_uros.validate.scheduling import responsibilities
 
 
 def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
     task, scheduler = element.task, element.scheduler
     if task is None or scheduler is None or scheduler.unresolved is not None:
         return
-    served = context.once(responsibilities).get(scheduler, [])
+    served = responsibilities(context).get(scheduler, [])
     if not served:
         yield f"{task.qualified_name!r} runs nowhere: {scheduler.name!r} decides for no processing unit"
     elif element.affinity and set(served).isdisjoint(element.affinity):

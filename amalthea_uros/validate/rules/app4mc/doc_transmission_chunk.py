@@ -15,14 +15,17 @@ from amalthea_uros.metamodel.classes import (
     TypeRef,
 )
 from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.magnitudes import bits
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.app4mc._sizes import is_larger
 
 
 def _check(element: TransmissionPolicy, context: Context) -> Iterator[str]:
     chunk, whole = element.chunk_size, _transmitted(element.container)
-    if chunk is not None and whole is not None and is_larger(chunk, whole):
+    chunk_bits, whole_bits = bits(chunk), bits(whole)
+    if chunk is None or whole is None or chunk_bits is None or whole_bits is None:
+        return
+    if chunk_bits > whole_bits:
         yield f"a chunk of {chunk.value} {chunk.unit} is larger than the {whole.value} {whole.unit} that are transmitted"
 
 

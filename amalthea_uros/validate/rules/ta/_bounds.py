@@ -11,7 +11,8 @@ from amalthea_uros.metamodel.classes import (
     Time,
     TimeGaussDistribution,
 )
-from amalthea_uros.validate.quantities import picoseconds, time_text
+from amalthea_uros.metamodel.magnitudes import picoseconds
+from amalthea_uros.validate.quantities import time_text
 
 
 def outside(gauss: DiscreteValueGaussDistribution | ContinuousValueGaussDistribution | TimeGaussDistribution) -> Iterator[str]:

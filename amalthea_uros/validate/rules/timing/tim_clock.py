@@ -7,13 +7,12 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ProcessingUnit
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.quantities import hertz
+from amalthea_uros.validate.quantities import clock
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: ProcessingUnit, context: Context) -> Iterator[str]:
-    domain = element.frequency_domain
-    if domain is None or hertz(domain.default_value) is None:
+    if clock(element) is None:
         yield f"the clock of {element.name!r} is not known"
 
 

@@ -14,9 +14,10 @@ from amalthea_uros.metamodel.classes import (
     TimeMetric,
     TimeRequirementLimit,
 )
+from amalthea_uros.metamodel.magnitudes import picoseconds
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.load import rates
-from amalthea_uros.validate.quantities import picoseconds, time_text
+from amalthea_uros.validate.quantities import time_text
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.scheduling import deciding, parameter
 

@@ -14,8 +14,9 @@ from amalthea_uros.metamodel.classes import (
     Runnable,
     Section,
 )
+from amalthea_uros.metamodel.magnitudes import bits
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.quantities import bits, size_text
+from amalthea_uros.validate.quantities import size_text
 from amalthea_uros.validate.rule import ModelRule
 
 

@@ -16,8 +16,9 @@ from amalthea_uros.metamodel.classes import (
     Stimulus,
     VariableRateStimulus,
 )
+from amalthea_uros.metamodel.magnitudes import picoseconds
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.quantities import bounds, picoseconds
+from amalthea_uros.validate.quantities import bounds
 from amalthea_uros.validate.rule import ModelRule
 
 
