@@ -50,6 +50,9 @@ from amalthea_uros.validate.scheduling import cores
 #: Picoseconds in a second.
 _SECOND = 10**12
 
+#: Ticks, exactly; nearly always they are whole numbers, which are much faster.
+_Number = int | Fraction
+
 
 def loads(context: Context) -> Mapping[ProcessingUnit, Mapping[Process, Fraction]]:
     """What each process demands of its processing unit, where it has only one; 1 is all of it."""
@@ -58,7 +61,7 @@ def loads(context: Context) -> Mapping[ProcessingUnit, Mapping[Process, Fraction
 
 def _loads(context: Context) -> dict[ProcessingUnit, dict[Process, Fraction]]:
     found: dict[ProcessingUnit, dict[Process, Fraction]] = {}
-    demands: dict[ProcessingUnitDefinition | None, dict[IExecutable, Fraction]] = {}
+    demands: dict[ProcessingUnitDefinition | None, dict[IExecutable, _Number]] = {}
     for process, units in cores(context).items():
         if len(units) > 1:
             continue
@@ -67,16 +70,16 @@ def _loads(context: Context) -> dict[ProcessingUnit, dict[Process, Fraction]]:
             demands[unit.definition] = _demands(unit.definition, context)
         ticks, rate, frequency = demands[unit.definition].get(process), rates(context).get(process), clock(unit)
         if ticks is not None and rate is not None and frequency is not None:
-            found.setdefault(unit, {})[process] = ticks / frequency * _SECOND * rate
+            found.setdefault(unit, {})[process] = ticks * _SECOND * rate / frequency
     return found
 
 
 # Demand
 
 
-def _demands(definition: ProcessingUnitDefinition | None, context: Context) -> dict[IExecutable, Fraction]:
+def _demands(definition: ProcessingUnitDefinition | None, context: Context) -> dict[IExecutable, _Number]:
     """What each process and runnable takes in ticks of a processing unit; of processes, on average over many jobs."""
-    found: dict[IExecutable, Fraction] = {}
+    found: dict[IExecutable, _Number] = {}
     for executable in order(context):
         ticks = _of_graph(executable.activity_graph, definition, found)
         if ticks is not None:
@@ -85,14 +88,14 @@ def _demands(definition: ProcessingUnitDefinition | None, context: Context) -> d
 
 
 def _of_graph(
-    graph: ActivityGraph | None, definition: ProcessingUnitDefinition | None, known: Mapping[IExecutable, Fraction]
-) -> Fraction | None:
+    graph: ActivityGraph | None, definition: ProcessingUnitDefinition | None, known: Mapping[IExecutable, _Number]
+) -> _Number | None:
     if graph is None:
-        return Fraction(0)
-    found: dict[Element, Fraction] = {}
+        return 0
+    found: dict[Element, _Number] = {}
     # Inner items before the outer ones, which are made of them.
     for item in reversed(tuple(graph.walk())):
-        ticks: Fraction | None
+        ticks: _Number | None
         match item:
             case Ticks():
                 ticks = _ticks(item, definition)
@@ -103,19 +106,19 @@ def _of_graph(
             case WhileLoop() | WaitEvent() | EnforcedMigration():
                 return None
             case Switch() | ModeSwitch() | ProbabilitySwitch():
-                ticks = max((found[part] for part in item.contents()), default=Fraction(0))
+                ticks = max((found[part] for part in item.contents()), default=0)
             case _:
-                ticks = sum((found[part] for part in item.contents()), Fraction(0))
+                ticks = sum(found[part] for part in item.contents())
         if ticks is None:
             return None
         found[item] = ticks
     return found[graph]
 
 
-def _ticks(item: Ticks, definition: ProcessingUnitDefinition | None) -> Fraction | None:
+def _ticks(item: Ticks, definition: ProcessingUnitDefinition | None) -> _Number | None:
     extended = {entry.key: entry.value for entry in item.extended if entry.value is not None}
     upper = bounds(extended.get(definition, item.default))[1]
-    return None if upper is None else Fraction(upper)
+    return upper if upper is None or isinstance(upper, int) else Fraction(upper)
 
 
 def _needs(item: ExecutionNeed, definition: ProcessingUnitDefinition | None) -> Fraction | None:
@@ -139,12 +142,13 @@ def ticks_per_unit(definition: ProcessingUnitDefinition | None, need: str) -> Fr
     return Fraction(1) if need == "Instructions" else None
 
 
-def _call(call: RunnableCall, known: Mapping[IExecutable, Fraction]) -> Fraction | None:
+def _call(call: RunnableCall, known: Mapping[IExecutable, _Number]) -> _Number | None:
     ticks = known.get(call.runnable) if isinstance(call.runnable, Runnable) and call.runnable.unresolved is None else None
     if ticks is None:
         return None
     # Only of calls that stand in a process itself is it known which jobs leave them out.
-    return ticks * times(call) / (_prescaler(call.counter) if _is_in_each_job(call) else 1)
+    often = _prescaler(call.counter) if _is_in_each_job(call) else 1
+    return ticks * times(call) if often == 1 else Fraction(ticks * times(call)) / often
 
 
 def _is_in_each_job(item: Element) -> bool:
