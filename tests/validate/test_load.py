@@ -1,4 +1,4 @@
-"""The load and the activations that rules compute from a model, against the analysis, which sees the system that the model describes."""
+"""The load and the activations that rules compute from a model, against the analysis, which sees the system that it describes."""
 
 from fractions import Fraction
 
