@@ -1,4 +1,4 @@
-"""The load that rules compute from a model, against the analysis, which computes it from the system that the model describes."""
+"""The load and the activations that rules compute from a model, against the analysis, which sees the system that it describes."""
 
 from fractions import Fraction
 
@@ -7,7 +7,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import MODEL, ROOT, SHARED, corpus, hand_written
 
-from amalthea_uros import analyze_system, build_model, extract, load
+from amalthea_uros import analyze_system, build_model, check, extract, load
+from amalthea_uros.analyze.activation import arrivals_of
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.distributions import Boundaries, Bucket, Constant, Gauss, Histogram
 from amalthea_uros.perf.hardware import Clock, Core, CoreType, Feature, Hardware, Structure
@@ -248,6 +249,39 @@ def test_the_load_of_random_systems(system):
     model = build_model(system)
     assume(total(model))
     assert_same_load(model, system)
+
+
+SPANS = st.sampled_from([0, 1, MS, 5 * MS, 12 * MS])
+DENSE = st.one_of(
+    st.builds(
+        Periodic,
+        name=st.just("S0"),
+        period=st.just(5 * MS),
+        jitter=st.none() | st.builds(Boundaries, lower=st.just(-MS), upper=SPANS),
+        min_distance=st.none() | SPANS,
+    ),
+    st.builds(Synthetic, name=st.just("S0"), period=st.just(5 * MS), times=st.lists(SPANS, min_size=1, max_size=4).map(tuple)),
+    st.builds(Burst, name=st.just("S0"), period=st.just(90 * MS), length=SPANS, distance=SPANS, count=st.integers(1, 5)),
+    st.builds(
+        ArrivalCurve,
+        name=st.just("S0"),
+        points=st.lists(st.builds(ArrivalCurvePoint, occurrences=st.integers(1, 5), lower=st.none() | SPANS), max_size=3).map(
+            tuple
+        ),
+    ),
+)
+
+
+@given(DENSE, st.integers(1, 5))
+def test_activations_at_once_are_those_of_the_analysis(stimulus, limit):
+    system = System(
+        stimuli=Stimuli(stimuli=(stimulus,)),
+        software=Software(tasks=(Task(name="T", stimuli=("S0",), activation_limit=limit),)),
+    )
+    arrivals = arrivals_of(stimulus, system)
+    assume(arrivals is not None)
+    told = check(build_model(system), ["TIM-ACTIVATION-LIMIT"])
+    assert bool(told) is (arrivals.most(1) > limit)
 
 
 # What is not known

@@ -45,8 +45,8 @@ class Effects:
 
         That is by the item itself, else in its runnable, else anywhere in the job.
         """
-        sources = set(written(start.item)) or self._home(start).written or self._job(start.process).written
-        targets = set(read(end.item)) or self._home(end).read or self._job(end.process).read
+        sources = set(written(start.item)) or self._own(start.home).written or self._job(start.process).written
+        targets = set(read(end.item)) or self._own(end.home).read or self._job(end.process).read
         return not sources.isdisjoint(targets)
 
     def _makes_run(self, cause: Process, effect: Process) -> bool:
@@ -64,20 +64,20 @@ class Effects:
         events = stimulus.triggering_events if isinstance(stimulus, EventStimulus) else ()
         return any(spot.process is cause for event in events for spot in self._moments.of(event))
 
-    def _home(self, spot: Spot) -> Deeds:
-        """What is done in the runnable of an event."""
-        if spot.home is None:
+    def _own(self, executable: IExecutable | None) -> Deeds:
+        """What a process or runnable does itself."""
+        if executable is None:
             return _NOTHING
-        if spot.home not in self._deeds:
-            self._deeds[spot.home] = Deeds.of(spot.home)
-        return self._deeds[spot.home]
+        if executable not in self._deeds:
+            self._deeds[executable] = Deeds.of(executable)
+        return self._deeds[executable]
 
     def _job(self, process: Process) -> Deeds:
         """What is done in the jobs of a process."""
         if process not in self._jobs:
             self._jobs[process] = Deeds()
             for executable in self._moments.starts(process):
-                self._jobs[process].add(Deeds.of(executable))
+                self._jobs[process].add(self._own(executable))
         return self._jobs[process]
 
 

@@ -121,22 +121,24 @@ class Moments:
     def _items(self, items: Iterable[Element], wanted: Process | None) -> Iterator[Spot]:
         """The moments behind items."""
         for item in items:
-            home = item.enclosing(IExecutable)
-            for process in executing(item, self._context) if home is not None else ():
-                if home is not None and wanted in (None, process):
-                    end = self._layouts[home].ends[item]
-                    yield self._spot(process, home, (end, end), home, item)
+            for process, home in self._executed(item, wanted):
+                end = self._layouts[home].ends[item]
+                yield self._spot(process, home, (end, end), home, item)
 
     def _runs(self, runnable: Runnable | None, wanted: Process | None, is_start: bool) -> Iterator[Spot]:
         """The starts or ends of a runnable; None: of any."""
         for call in self._context.once(_callers).get(runnable, ()) if runnable is not None else self._context.all(RunnableCall):
-            home = call.enclosing(IExecutable)
-            for process in executing(call, self._context) if home is not None else ():
-                if home is not None and wanted in (None, process):
-                    begin, end = self._layouts[home].begins[call], self._layouts[home].ends[call]
-                    # What it writes may take effect at its end, so that either can come first.
-                    offsets = (begin, begin) if is_start else (begin + 1, end)
-                    yield self._spot(process, home, offsets, call.runnable)
+            for process, home in self._executed(call, wanted):
+                begin, end = self._layouts[home].begins[call], self._layouts[home].ends[call]
+                # What it writes may take effect at its end, so that either can come first.
+                offsets = (begin, begin) if is_start else (begin + 1, end)
+                yield self._spot(process, home, offsets, call.runnable)
+
+    def _executed(self, item: Element, wanted: Process | None) -> Iterator[tuple[Process, IExecutable]]:
+        """The processes in which an item is executed, and the process or runnable in which it stands."""
+        home = item.enclosing(IExecutable)
+        if home is not None:
+            yield from ((process, home) for process in executing(home, self._context) if wanted in (None, process))
 
     def _spot(
         self,

@@ -28,7 +28,7 @@ def _check(element: Stimulus, context: Context) -> Iterator[str]:
             if not (picoseconds(element.recurrence) or 0) > 0:
                 yield f"the stimulus {element.name!r} has no recurrence above zero with a unit"
             if isinstance(element, PeriodicStimulus) and element.jitter is not None and None in bounds(element.jitter):
-                yield f"the jitter of the stimulus {element.name!r} has no bounds"
+                yield f"the jitter of the stimulus {element.name!r} lacks a bound"
         case RelativePeriodicStimulus():
             if not (bounds(element.next_occurrence)[0] or 0) > 0:
                 yield f"the stimulus {element.name!r} has no least distance above zero with a unit"

@@ -100,8 +100,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=Label,
     check=_check,
-    rationale="Response times leave out waiting for each other, and chains take what is read for what one of them wrote whole. "
-    "With a protection the times grow, without it the data are not those that are assumed.",
+    rationale="Response times leave out that the writers wait for each other, and chains take each value for one that was written "
+    "whole: with a protection the times grow, without one the data may be mixed.",
     remedy="Hold a common semaphore around the accesses, let one process write, or state how the label is protected.",
     fails="""
 <swModel>
