@@ -121,8 +121,12 @@ class Chains:
                 return None
         self._check_hops(path, place)
         names = [self._moment(path[0], section.start)]
-        for before, name in pairwise(path[:-1]):
-            names.append(self._moment(name, "finish") if name in self.members else self._write(before, name))
+        for before, name, behind in zip(path, path[1:], path[2:], strict=False):
+            if name in self.labels and name not in self.members:
+                names.append(self._write(before, name))
+            elif behind in self.members:
+                # A member that writes a label of the path does so before it ends: the write stands for it.
+                names.append(self._moment(name, "finish"))
         names.append(self._moment(path[-1], section.end))
         if names[0] == names[-1]:
             message = f"the chain {section.name!r} starts with the event with which it ends"

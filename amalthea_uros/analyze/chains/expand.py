@@ -30,10 +30,12 @@ class Fork:
     ----------
     branches : sequences of events and further forks
     needed : how many of them have to complete
+    name : of the set of events that it stands for, if it is one
     """
 
     branches: tuple[Unfolded, ...]
     needed: int
+    name: str = ""
 
 
 #: Names of events, and forks.
@@ -115,14 +117,14 @@ class _Unfolding:
         if not isinstance(event, EventSet):
             return (name,)
         parts = tuple(self._event(inner) for inner in event.events)
-        return (Fork(parts, len(parts)),) if len(parts) > 1 else tuple(part for inner in parts for part in inner)
+        return (Fork(parts, len(parts), name),) if len(parts) > 1 else tuple(part for inner in parts for part in inner)
 
 
 def _joined(parts: Iterable[str | Fork]) -> Unfolded:
     """Without events that come twice in a row; those at the ends of the branches of a fork are told apart from it."""
     found: list[str | Fork] = []
     for part in parts:
-        if found and found[-1] == part:
+        if found and (found[-1] == part or _is_same_set(found[-1], part)):
             continue
         if isinstance(part, Fork) and found and isinstance(found[-1], str):
             part = _without(part, found[-1], at_start=True)
@@ -130,6 +132,11 @@ def _joined(parts: Iterable[str | Fork]) -> Unfolded:
             found[-1] = _without(found[-1], part, at_start=False)
         found.append(part)
     return tuple(found)
+
+
+def _is_same_set(one: str | Fork, other: str | Fork) -> bool:
+    """Whether both stand for a set with which one part of a chain ends and the next one starts."""
+    return isinstance(one, Fork) and isinstance(other, Fork) and bool(one.name) and one.name == other.name
 
 
 def _without(fork: Fork, event: str, at_start: bool) -> Fork:
@@ -140,7 +147,7 @@ def _without(fork: Fork, event: str, at_start: bool) -> Fork:
             return branch[1:] if branch[:1] == (event,) else branch
         return branch[:-1] if branch[-1:] == (event,) else branch
 
-    return Fork(tuple(map(trimmed, fork.branches)), fork.needed)
+    return Fork(tuple(map(trimmed, fork.branches)), fork.needed, fork.name)
 
 
 def sequences(unfolded: Unfolded) -> list[tuple[str, ...]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from amalthea_uros.perf.software import Activity, Call, Group, Loop, ProbabilitySwitch, Process, Switch
 from amalthea_uros.perf.stimuli import Counter
@@ -17,6 +17,7 @@ class Place:
     Attributes
     ----------
     number : order in which a job comes to it
+    last : the number of the last activity within it, its own if there is none
     runnable : in which it stands; None: directly in the process
     outer : the lists of activities in which it stands, from the process inwards, each with its position in it
     counters : those that let only some jobs come here
@@ -25,6 +26,7 @@ class Place:
 
     process: Process
     number: int
+    last: int
     activity: Activity
     runnable: str | None
     outer: tuple[tuple[tuple[Activity, ...], int], ...]
@@ -39,7 +41,15 @@ class Place:
 
 def places(process: Process, system: System) -> list[Place]:
     """Everything that the jobs of a process do, in order."""
-    return list(_Walk(process, system).within(process.activities, None, (), (), True))
+    found = list(_Walk(process, system).within(process.activities, None, (), (), True))
+    # What is within something stands deeper, and follows it at once.
+    open_places: list[int] = []
+    for index, place in enumerate((*found, None)):
+        while open_places and (place is None or len(found[open_places[-1]].outer) >= len(place.outer)):
+            closed = open_places.pop()
+            found[closed] = replace(found[closed], last=found[index - 1].number)
+        open_places.append(index)
+    return found
 
 
 @dataclass(slots=True)
@@ -63,7 +73,7 @@ class _Walk:
             if isinstance(activity, Call) and activity.counter is not None:
                 counted = (*counters, activity.counter)
             self.number += 1
-            yield Place(self.process, self.number, activity, runnable, here, counted, is_certain)
+            yield Place(self.process, self.number, self.number, activity, runnable, here, counted, is_certain)
             match activity:
                 case Call(runnable=name) if name in self.system.runnables and name not in self.above:
                     called, self.above = self.system.runnables[name], (*self.above, name)

@@ -68,11 +68,14 @@ class Spot:
     place: Place | None = None
 
     @property
-    def order(self) -> tuple[int, int, int]:
+    def order(self) -> tuple[int, int, int, int]:
         """What comes first in a job is less."""
         if self.place is None:
-            return (self.when.value if self.when is not When.END else 9, 0, 0)
-        return (2, self.place.number, self.when.value)
+            return (self.when.value if self.when is not When.END else 9, 0, 0, 0)
+        if self.when is When.BEFORE:
+            return (2, self.place.number, 0, 0)
+        # The end of a call comes behind everything within it, and of several that end together the inner one first.
+        return (2, self.place.last, 1, -self.place.number)
 
 
 @dataclass(slots=True)

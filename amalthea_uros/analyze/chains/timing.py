@@ -71,8 +71,6 @@ class Timing:
         counters = self._counters(stages)
         hurries = self._hurries(base, follower) and not triggered
         step = self._step(base, behind, counters, hurries)
-        # A job does not read what it is still to write itself, although it is released before it reads.
-        hurries = hurries and follower is not None and follower.process.name != base.process.name
         releases = known_releases(base.process, self.known.system)
         if releases is None:
             return Timed(step=step, reason=f"the releases of {base.process.name!r} are not known")
@@ -159,7 +157,7 @@ class Timing:
             return False
         first, then = self.known.placed.get(base.process.name), self.known.placed.get(follower.process.name)
         if base.process.name == follower.process.name:
-            return True  # the next job reads when this one has ended
+            return False  # a job does not read what it is still to write itself, although it is released before it reads
         if first is None or then is None or first.core != then.core or first.server or then.server or first.rank <= then.rank:
             return False
         # Elsewhere than at its start a reader may be about to read just when the writer is released.

@@ -276,6 +276,37 @@ class TestWhatCarries:
         assert chain.routes == ("prepared -[the same job]-> used",)
         assert values["max_reduced_reaction_time"] == 5
 
+    @pytest.mark.parametrize(
+        ("change", "carrier", "value"),
+        [(RunnableChange.TERMINATE, "the same job", 4), (RunnableChange.START, "the next job", 8)],
+    )
+    def test_what_a_runnable_does_comes_before_its_end(self, change, carrier, value):
+        # The write comes 2 us behind the start of the job, which takes 6 us.
+        runnables = [
+            Runnable(name="outer", activities=(ticks(1), Call(runnable="inner"), ticks(1))),
+            Runnable(name="inner", activities=(ticks(1), write("L"), ticks(3))),
+        ]
+        events = (
+            LabelEvent(name="written", label="L", change=LabelChange.WRITE),
+            RunnableEvent(name="reached", runnable="outer", change=change),
+        )
+        built = system([("T", 10, [Call(runnable="outer")])], events, runnables=runnables)
+        chain, values, _, rules = evaluate(built, communication=Communication.EXPLICIT)
+        assert chain.routes == (f"written -[{carrier}]-> reached",)
+        assert values["min_first_to_first"] == value
+        assert values["max_reduced_reaction_time"] >= value
+        assert rules == (["CHN002"] if carrier == "the next job" else [])
+
+    def test_the_end_of_a_runnable_comes_behind_that_of_one_that_it_calls(self):
+        runnables = [
+            Runnable(name="outer", activities=(Call(runnable="inner"),)),
+            Runnable(name="inner", activities=(ticks(1),)),
+        ]
+        ends = [RunnableEvent(name=name, runnable=name, change=RunnableChange.TERMINATE) for name in ("inner", "outer")]
+        built = system([("T", 10, [Call(runnable="outer")])], ends, runnables=runnables)
+        chain, *_ = evaluate(built)
+        assert chain.routes == ("inner -[the same job]-> outer",)
+
     def test_a_runnable_that_comes_earlier_needs_the_next_job(self):
         # As in the first chain of the challenge of 2017.
         runnables = [
