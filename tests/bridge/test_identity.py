@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from support import ROOT, corpus, hand_written
+from support import MODEL, ROOT, corpus, hand_written
 from system_strategies import systems
 
 from amalthea_uros import pipeline
@@ -81,3 +81,28 @@ def test_what_is_extracted_from_a_defective_model_comes_back(path, file):
         return
     system = extract(model).system
     assert there_and_back(system, file) == system
+
+
+def test_default_values_of_parameters_count(tmp_path):
+    path = tmp_path / "model.amxmi"
+    excerpt = """
+<swModel><tasks name="T"/><tasks name="U"/></swModel>
+<osModel>
+  <operatingSystems name="OS"><taskSchedulers name="S" definition="FPP?type=SchedulerDefinition"/></operatingSystems>
+  <schedulerDefinitions name="FPP" processParameters="priority?type=SchedulingParameterDefinition"/>
+  <schedulingParameterDefinitions name="priority" type="Integer">
+    <defaultValue xsi:type="am:IntegerObject" value="7"/>
+  </schedulingParameterDefinitions>
+</osModel>
+<mappingModel>
+  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
+  <taskAllocation task="U?type=Task" scheduler="S?type=TaskScheduler">
+    <schedulingParameters key="priority?type=SchedulingParameterDefinition">
+      <value xsi:type="am:IntegerObject" value="1"/>
+    </schedulingParameters>
+  </taskAllocation>
+</mappingModel>
+"""
+    path.write_text(MODEL.format(excerpt))
+    allocations = extract(load(path)).system.mapping.tasks
+    assert {allocation.task: allocation.priority for allocation in allocations} == {"T": 7, "U": 1}

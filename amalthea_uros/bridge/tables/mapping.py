@@ -111,7 +111,8 @@ def _extract_tasks(allocations: Iterable[am.TaskAllocation], context: Extracting
         if task is None or scheduler is None:
             context.note("EXT004", "a TaskAllocation without task or scheduler is left out", allocation)
             continue
-        given = extract_parameters(allocation, context)
+        definition = allocation.scheduler.definition if allocation.scheduler is not None else None
+        given = extract_parameters(allocation, context, definition.process_parameters if definition is not None else ())
         yield perf.TaskAllocation(
             task=task,
             scheduler=scheduler,

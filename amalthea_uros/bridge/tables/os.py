@@ -152,7 +152,8 @@ def _scheduler(element: am.TaskScheduler, allocations: Allocations, context: Ext
     parent = None
     if association is not None:
         name = _SCHEDULER.extract(association.parent, context, element)
-        given = extract_parameters(association, context)
+        definition = association.parent.definition if association.parent is not None else None
+        given = extract_parameters(association, context, definition.process_parameters if definition is not None else ())
         if name is not None:
             parent = perf.Parent(scheduler=name, priority=given.priority, deadline=given.deadline, parameters=given.parameters)
     return perf.Scheduler(**_common(element, allocations, context), parent=parent)
@@ -167,7 +168,8 @@ def _common(element: Any, allocations: Allocations, context: Extracting) -> dict
             if core in context.names:
                 cores[context.names[core]] = None
         executing = executing or context.names.get(allocation.executing_pu)  # type: ignore[arg-type]
-    given = extract_parameters(element, context)
+    definition = element.definition
+    given = extract_parameters(element, context, definition.algorithm_parameters if definition is not None else ())
     stated = given.parameters
     if given.priority is not None:
         stated = (perf.Parameter("priority", (given.priority,)), *stated)

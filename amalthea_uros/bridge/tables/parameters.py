@@ -223,12 +223,18 @@ def extract_policy(scheduler: Any) -> str | None:
     return None if algorithm is None else type(algorithm).__name__
 
 
-def extract_parameters(element: Any, context: Extracting) -> Given:
-    """The parameters of a process or scheduler, of any version."""
+def extract_parameters(element: Any, context: Extracting, defaults: Iterable[am.SchedulingParameterDefinition] = ()) -> Given:
+    """The parameters of a process or scheduler, of any version.
+
+    Parameters
+    ----------
+    defaults : definitions whose default values count where nothing is stated
+    """
     priority: int | None = None
     deadline: int | None = None
     others: list[Parameter] = []
-    for name, values in _stated(element, context):
+    stated = dict(_stated(element, context))
+    for name, values in (_defaults(defaults) | stated).items():
         value = values[0]
         if name == PRIORITY and isinstance(value, int) and len(values) == 1:
             priority = value
@@ -237,6 +243,11 @@ def extract_parameters(element: Any, context: Extracting) -> Given:
         else:
             others.append(Parameter(name, values))
     return Given(priority, deadline, tuple(others))
+
+
+def _defaults(definitions: Iterable[am.SchedulingParameterDefinition]) -> dict[str, tuple[ParameterValue, ...]]:
+    found = {definition.name: _extract_values(definition.default_value) for definition in definitions}
+    return {name: values for name, values in found.items() if name and values}
 
 
 def _stated(element: Any, context: Extracting) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:
