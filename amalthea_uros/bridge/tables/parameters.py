@@ -233,8 +233,9 @@ def extract_parameters(element: Any, context: Extracting, defaults: Iterable[am.
     priority: int | None = None
     deadline: int | None = None
     others: list[Parameter] = []
-    stated = dict(_stated(element, context))
-    for name, values in (_defaults(defaults) | stated).items():
+    stated = list(_stated(element, context))
+    names = {name for name, _ in stated}
+    for name, values in (*(default for default in _defaults(defaults) if default[0] not in names), *stated):
         value = values[0]
         if name == PRIORITY and isinstance(value, int) and len(values) == 1:
             priority = value
@@ -245,9 +246,13 @@ def extract_parameters(element: Any, context: Extracting, defaults: Iterable[am.
     return Given(priority, deadline, tuple(others))
 
 
-def _defaults(definitions: Iterable[am.SchedulingParameterDefinition]) -> dict[str, tuple[ParameterValue, ...]]:
-    found = {definition.name: _extract_values(definition.default_value) for definition in definitions}
-    return {name: values for name, values in found.items() if name and values}
+def _defaults(
+    definitions: Iterable[am.SchedulingParameterDefinition],
+) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:
+    for definition in definitions:
+        values = _extract_values(definition.default_value)
+        if definition.name and values:
+            yield definition.name, values
 
 
 def _stated(element: Any, context: Extracting) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:
