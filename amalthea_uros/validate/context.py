@@ -52,9 +52,12 @@ class Context:
     def dangling(self) -> dict[Element, list[tuple[str, str]]]:
         """The references to nothing: by object the features, by their XML names, and what they say."""
         found: dict[Element, list[tuple[str, str]]] = {}
-        for reference, text in self.model.unresolved():
-            name = features_of(type(reference.holder))[reference.feature].xml_name
-            found.setdefault(reference.holder, []).append((name, text))
+        for cls, holders in self._by_type.items():
+            for holder in holders:
+                for name, value in references_of(holder):
+                    for target in value if isinstance(value, list) else (value,):
+                        if target.unresolved is not None:
+                            found.setdefault(holder, []).append((features_of(cls)[name].xml_name, target.unresolved))
         return found
 
     @cached_property

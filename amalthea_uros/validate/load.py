@@ -12,12 +12,14 @@ from math import isfinite
 
 from amalthea_uros.metamodel.classes import (
     ActivityGraph,
+    ActivityGraphItem,
     ArrivalCurveStimulus,
     Counter,
     EnforcedMigration,
     ExecutionNeed,
     Group,
     HwFeatureCategory,
+    IActivityGraphItemContainer,
     IExecutable,
     InterProcessStimulus,
     InterProcessTrigger,
@@ -94,7 +96,7 @@ def _of_graph(
         return 0
     found: dict[Element, _Number] = {}
     # Inner items before the outer ones, which are made of them.
-    for item in reversed(tuple(graph.walk())):
+    for item in reversed(list(_items(graph))):
         ticks: _Number | None
         match item:
             case Ticks():
@@ -106,13 +108,27 @@ def _of_graph(
             case WhileLoop() | WaitEvent() | EnforcedMigration():
                 return None
             case Switch() | ModeSwitch() | ProbabilitySwitch():
-                ticks = max((found[part] for part in item.contents()), default=0)
+                ticks = max((found[part] for part in item.contents() if part in found), default=0)
             case _:
-                ticks = sum(found[part] for part in item.contents())
+                ticks = sum(found[part] for part in item.contents() if part in found)
         if ticks is None:
             return None
         found[item] = ticks
     return found[graph]
+
+
+def _items(graph: ActivityGraph) -> Iterator[Element]:
+    """What is in a graph, without what its items consist of themselves."""
+    pending: list[Element] = [graph]
+    while pending:
+        item = pending.pop()
+        yield item
+        if isinstance(item, _HOLDERS):
+            pending.extend(part for part in item.contents() if isinstance(part, _ITEMS))
+
+
+_HOLDERS = (IActivityGraphItemContainer, Switch, ModeSwitch, ProbabilitySwitch)
+_ITEMS = (IActivityGraphItemContainer, ActivityGraphItem)
 
 
 def _ticks(item: Ticks, definition: ProcessingUnitDefinition | None) -> _Number | None:

@@ -12,8 +12,10 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: IAnnotatable, context: Context) -> Iterator[str]:
-    count = Counter(entry.key for entry in element.custom_properties)
-    for key, times in count.items():
+    properties = element.__dict__.get("custom_properties", ())
+    if len(properties) < 2:
+        return
+    for key, times in Counter(entry.key for entry in properties).items():
         if times > 1:
             yield f"the custom property {key!r} is given {times} times"
 

@@ -122,17 +122,14 @@ class Moments:
         """The moments behind items."""
         for item in items:
             for process, home in self._executed(item, wanted):
-                end = self._layouts[home].ends[item]
-                yield self._spot(process, home, (end, end), home, item)
+                yield self._spot(process, home, self._layouts[home].ends[item], home, item)
 
     def _runs(self, runnable: Runnable | None, wanted: Process | None, is_start: bool) -> Iterator[Spot]:
         """The starts or ends of a runnable; None: of any."""
         for call in self._context.once(_callers).get(runnable, ()) if runnable is not None else self._context.all(RunnableCall):
             for process, home in self._executed(call, wanted):
-                begin, end = self._layouts[home].begins[call], self._layouts[home].ends[call]
-                # What it writes may take effect at its end, so that either can come first.
-                offsets = (begin, begin) if is_start else (begin + 1, end)
-                yield self._spot(process, home, offsets, call.runnable)
+                layout = self._layouts[home]
+                yield self._spot(process, home, (layout.begins if is_start else layout.ends)[call], call.runnable)
 
     def _executed(self, item: Element, wanted: Process | None) -> Iterator[tuple[Process, IExecutable]]:
         """The processes in which an item is executed, and the process or runnable in which it stands."""
@@ -144,12 +141,12 @@ class Moments:
         self,
         process: Process,
         holder: IExecutable,
-        offsets: tuple[int, int],
+        offset: int,
         home: IExecutable | None,
         item: Element | None = None,
     ) -> Spot:
         first, last = self.starts(process)[holder]
-        return Spot(process, first + offsets[0], last + offsets[1], home, item)
+        return Spot(process, first + offset, last + offset, home, item)
 
     def _guess(self, event: AccessEvent) -> Iterable[Spot]:
         """Where an access should stand of which the model knows no more than the event."""
