@@ -7,19 +7,20 @@ from itertools import pairwise
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
+from amalthea_uros.validate.chains import parts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
-    parts = [chain for item in element.items if (chain := getattr(item, "event_chain", None)) is not None]
-    if element.item_type == "parallel" or not parts or any(part.unresolved is not None for part in parts):
+    segments = parts(element)
+    if element.item_type == "parallel" or not segments or any(segment.unresolved is not None for segment in segments):
         return
-    if element.stimulus is not parts[0].stimulus:
+    if element.stimulus is not segments[0].stimulus:
         yield "the first segment does not start with the stimulus of the chain"
-    if element.response is not parts[-1].response:
+    if element.response is not segments[-1].response:
         yield "the last segment does not end with the response of the chain"
-    for number, (first, then) in enumerate(pairwise(parts), start=2):
+    for number, (first, then) in enumerate(pairwise(segments), start=2):
         if first.response is not then.stimulus:
             yield f"the segment {number} does not start with the response of the one before it"
 

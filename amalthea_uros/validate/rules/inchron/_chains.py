@@ -8,18 +8,11 @@ from amalthea_uros.metamodel.classes import (
     AbstractEventChain,
     Event,
     EventChain,
-    EventChainContainer,
-    EventChainReference,
     EventSet,
 )
+from amalthea_uros.validate.chains import ends, events, parts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rules.inchron._events import is_converted
-
-
-def parts(chain: AbstractEventChain) -> list[AbstractEventChain]:
-    """The chains of the items of a chain; items without one are passed over."""
-    items = (item for item in chain.items if isinstance(item, EventChainContainer | EventChainReference))
-    return [item.event_chain for item in items if item.event_chain is not None]
 
 
 def is_parallel(chain: AbstractEventChain) -> bool:
@@ -27,17 +20,11 @@ def is_parallel(chain: AbstractEventChain) -> bool:
     return chain.item_type == "parallel" and len(chain.items) > 1
 
 
-def ends(chain: AbstractEventChain) -> tuple[Event | None, Event | None]:
-    """Stimulus and response."""
-    return chain.stimulus, chain.response
-
-
 def events_read(chain: AbstractEventChain) -> Iterable[Event]:
     """The events that a chain itself is made of, each once: its ends unless it is a segment, and where its segments start."""
     inner = [] if is_parallel(chain) else [part.stimulus for part in parts(chain)[1:]]
     read = [*ends(chain), *inner] if isinstance(chain, EventChain) else inner
-    members = [event.events if isinstance(event, EventSet) else [event] for event in read if event is not None]
-    return dict.fromkeys(event for events in members for event in events if event.unresolved is None)
+    return dict.fromkeys(event for end in read for event in events(end) if event.unresolved is None)
 
 
 def dropped(context: Context) -> set[AbstractEventChain]:

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
+from amalthea_uros.validate.chains import parts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.inchron._chains import is_parallel, parts
+from amalthea_uros.validate.rules.inchron._chains import is_parallel
 
 
 def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:

@@ -7,9 +7,9 @@ from itertools import pairwise, product
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain, Event, EventChainItemType
+from amalthea_uros.validate.chains import events, parts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.timing._chains import events, parts
 from amalthea_uros.validate.rules.timing._effects import Effects
 
 

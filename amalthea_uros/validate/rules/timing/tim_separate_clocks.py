@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain, Event, EventChain, HwStructure, ProcessingUnit, StructureType
 from amalthea_uros.metamodel.naming import name_of
+from amalthea_uros.validate.chains import events, parts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.graphs import bottom_up
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.timing._chains import events, parts
 from amalthea_uros.validate.rules.timing._moments import Moments
 from amalthea_uros.validate.scheduling import cores
 from amalthea_uros.validate.wording import listed

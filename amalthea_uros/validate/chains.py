@@ -8,9 +8,14 @@ from amalthea_uros.metamodel.classes import AbstractEventChain, Event, EventChai
 
 
 def parts(chain: AbstractEventChain) -> list[AbstractEventChain]:
-    """The chains of which a chain consists."""
-    items = [item for item in chain.items if isinstance(item, EventChainContainer | EventChainReference)]
+    """The chains of the items of a chain; items without one are passed over."""
+    items = (item for item in chain.items if isinstance(item, EventChainContainer | EventChainReference))
     return [item.event_chain for item in items if item.event_chain is not None]
+
+
+def ends(chain: AbstractEventChain) -> tuple[Event | None, Event | None]:
+    """Stimulus and response."""
+    return chain.stimulus, chain.response
 
 
 def events(end: Event | None) -> Sequence[Event]:
