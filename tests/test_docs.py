@@ -62,6 +62,13 @@ def test_every_finding_is_documented():
     assert sorted((told - rules) | (set(documented) & rules)) == sorted(documented)
 
 
+def test_the_number_of_rules():
+    number = len(list(registry.ids()))
+    assert f"{number} rules" in (ROOT / "benchmarks" / "README.md").read_text()
+    assert "Nearly two hundred rules" in (ROOT / "README.md").read_text()
+    assert 190 <= number < 200
+
+
 def test_the_sample_is_what_its_script_builds(tmp_path):
     subprocess.run([sys.executable, ROOT / "samples" / "executor.py", tmp_path / "executor.amxmi"], check=True)
     assert (tmp_path / "executor.amxmi").read_bytes() == (ROOT / "samples" / "executor.amxmi").read_bytes()
