@@ -11,6 +11,7 @@ demo: $(READY)
 	@mkdir -p build
 	$(BIN)/amuros build samples/bodas-test-advanced.yaml -o build/app.amxmi
 	$(BIN)/amuros info --schema build/app.amxmi
+	$(BIN)/amuros check samples/bodas-test-advanced.yaml
 	$(BIN)/amuros analyze build/app.amxmi
 	$(BIN)/amuros analyze build/app.amxmi --chain factor-to-output --any-phase
 	sed 's/rate: 50 Hz/rate: 100 Hz/' samples/bodas-test-advanced.yaml > build/faster.yaml

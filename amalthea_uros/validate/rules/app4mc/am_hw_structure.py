@@ -5,23 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import HwPort, HwStructure, PortType, ProcessingUnit
+from amalthea_uros.metamodel.classes import HwConnection, HwPort, HwStructure, PortType, ProcessingUnit
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 _TYPES = (PortType.INITIATOR, PortType.RESPONDER)
 
 
-def _check(element: HwStructure, context: Context) -> Iterator[str]:
-    for connection in element.connections:
-        first, second = connection.port1, connection.port2
-        if first is None or second is None or first is second or not {first.port_type, second.port_type}.issubset(_TYPES):
-            continue
-        outer = {_is_outer(first, element), _is_outer(second, element)}
-        if outer == {True, False} and first.port_type != second.port_type:
-            yield f"the connection {connection.name!r} delegates a port of type {first.port_type} to one of type {second.port_type}"
-        elif outer in ({True}, {False}) and first.port_type == second.port_type:
-            yield f"the connection {connection.name!r} joins two ports of the type {first.port_type}"
+def _check(element: HwConnection, context: Context) -> Iterator[str]:
+    structure, first, second = element.container, element.port1, element.port2
+    if not isinstance(structure, HwStructure) or first is None or second is None or first is second:
+        return
+    if not {first.port_type, second.port_type}.issubset(_TYPES):
+        return
+    outer = {_is_outer(first, structure), _is_outer(second, structure)}
+    if outer == {True, False} and first.port_type != second.port_type:
+        yield f"the connection {element.name!r} delegates a port of type {first.port_type} to one of type {second.port_type}"
+    elif outer in ({True}, {False}) and first.port_type == second.port_type:
+        yield f"the connection {element.name!r} joins two ports of the type {first.port_type}"
 
 
 def _is_outer(port: HwPort, structure: HwStructure) -> bool | None:
@@ -38,7 +39,7 @@ RULE = ModelRule(
     id="AM-HW-Structure",
     title="connection between ports of types that do not fit",
     severity=Severity.ERROR,
-    target=HwStructure,
+    target=HwConnection,
     check=_check,
     rationale="One side of a connection asks, the other one answers; a port of a structure stands for one of the same type inside. "
     "APP4MC reports it when it validates the model.",
