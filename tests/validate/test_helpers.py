@@ -5,10 +5,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from strategies import models
-from system_strategies import systems
 
-from amalthea_uros import build_model
 from amalthea_uros.metamodel.classes import (
     DataSize,
     DataSizeUnit,
@@ -28,24 +25,9 @@ from amalthea_uros.metamodel.classes import (
     TimeHistogramEntry,
 )
 from amalthea_uros.metamodel.magnitudes import bits, picoseconds
-from amalthea_uros.validate import registry
-from amalthea_uros.validate.engine import run
 from amalthea_uros.validate.graphs import bottom_up, circles
 from amalthea_uros.validate.quantities import bounds, clock, size_text, time_text
-from amalthea_uros.validate.rule import Profile
 from amalthea_uros.validate.wording import joined, listed
-
-RULES = [registry.rule(identifier) for identifier in registry.ids([Profile.TA, Profile.TIMING])]
-
-
-@given(models(size=60))
-def test_no_rule_fails_at_a_random_model(model):
-    assert not [finding for finding in run(model, RULES) if finding.rule == "CHK001"]
-
-
-@given(systems(3))
-def test_no_rule_fails_at_a_model_of_a_random_system(system):
-    assert not [finding for finding in run(build_model(system), RULES) if finding.rule == "CHK001"]
 
 
 @pytest.mark.parametrize(

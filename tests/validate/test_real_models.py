@@ -3,9 +3,12 @@
 from collections import Counter
 
 import pytest
+from hypothesis import given
+from strategies import models
 from support import ROOT, SHARED, corpus, hand_written
+from system_strategies import systems
 
-from amalthea_uros import check, load
+from amalthea_uros import build_model, check, load
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel import classes
 from amalthea_uros.metamodel.classes import Amalthea
@@ -13,6 +16,7 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.engine import run
 from amalthea_uros.validate.rule import ModelRule
 
 SAMPLES = [pytest.param(path, id=path.name) for path in sorted((ROOT / "samples").glob("*.amxmi"))]
@@ -64,3 +68,16 @@ def test_no_rule_fails_where_nothing_is_set(identifier):
         context = Context(Model([Document(Amalthea())]))
         for element in (cls() for cls in CLASSES if issubclass(cls, rule.target)):
             list(rule.check(element, context))
+
+
+RULES = [rule for rule in map(registry.rule, registry.ids()) if isinstance(rule, ModelRule)]
+
+
+@given(models(size=60))
+def test_no_rule_fails_at_a_random_model(model):
+    assert [finding for finding in run(model, RULES) if finding.rule == "CHK001"] == []
+
+
+@given(systems(3))
+def test_no_rule_fails_at_a_model_of_a_random_system(system):
+    assert [finding for finding in run(build_model(system), RULES) if finding.rule == "CHK001"] == []
