@@ -75,7 +75,12 @@ def test_the_sample_is_what_its_script_builds(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("picture", "command"), [("info.svg", ["info", "executor.amxmi"]), ("build.svg", ["build", "bodas-test-advanced.yaml"])]
+    ("picture", "command"),
+    [
+        ("info.svg", ["info", "executor.amxmi"]),
+        ("build.svg", ["build", "bodas-test-advanced.yaml"]),
+        ("check.svg", ["check", "bodas-test-hardware.yaml"]),
+    ],
 )
 def test_the_picture_shows_what_is_printed(picture, command, tmp_path):
     subprocess.run([sys.executable, ROOT / "tools" / "draw_terminal.py", tmp_path / picture, *command], check=True)
