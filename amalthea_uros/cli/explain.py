@@ -22,9 +22,19 @@ def command(identifier: str) -> None:
     rule = registry.rule(identifier)
     click.echo(f"{rule.id}: {rule.title} ({rule.severity}, profile {profile})\n")
     click.echo(f"{rule.rationale}\n{rule.remedy}\n")
-    if isinstance(rule, ModelRule) and rule.beside is not None:
-        click.echo(f"Beside another file of the model with\n{rule.beside.rstrip()}\n")
+    if isinstance(rule, ModelRule):
+        click.echo(f"It looks at: {_targets(rule)}\n")
+        if rule.beside is not None:
+            click.echo(f"Beside another file of the model with\n{rule.beside.rstrip()}\n")
     click.echo(f"It fires at:\n{rule.fails.rstrip()}\n\nIt does not at:\n{rule.passes.rstrip()}")
+
+
+def _targets(rule: ModelRule) -> str:
+    """The classes of objects, and the AMALTHEA versions, that a rule is about."""
+    targets = rule.target if isinstance(rule.target, tuple) else (rule.target,)
+    versions = [f" from AMALTHEA {rule.since} on"] if rule.since else []
+    versions += [f" up to AMALTHEA {rule.until}"] if rule.until else []
+    return ", ".join(target.__name__ for target in targets) + "".join(versions)
 
 
 def _finding(identifier: str) -> str:

@@ -22,7 +22,12 @@ def write_junit(findings: Sequence[Finding], model: str, stream: IO[str]) -> Non
     for rule, found in by_rule.items() or {"no findings": []}.items():
         case = ElementTree.SubElement(suite, "testcase", classname=f"amuros.{profile_name(rule)}", name=rule)
         if rule in failing:
-            failure = ElementTree.SubElement(case, "failure", message=f"{len(found)} findings", type=str(found[0].severity))
-            failure.text = "\n".join(map(str, found))
+            message = f"{len(found)} finding{'s' if len(found) > 1 else ''}"
+            told = ElementTree.SubElement(case, "failure", message=message, type=str(found[0].severity))
+        elif found:
+            told = ElementTree.SubElement(case, "system-out")
+        else:
+            continue
+        told.text = "\n".join(map(str, found))
     stream.write('<?xml version="1.0" encoding="UTF-8"?>\n')
     stream.write(ElementTree.tostring(suites, encoding="unicode") + "\n")

@@ -60,6 +60,7 @@ def test_junit_is_read_as_ci_systems_do(model, tmp_path):
     assert cases.keys() == {finding["rule"] for finding in findings}
     failing = {finding["rule"] for finding in findings if finding["severity"] != "info"}
     assert {name for name, case in cases.items() if case.result} == failing
+    assert all(case.result or "info: " in case.system_out for case in suite)
     assert (suite.tests, suite.failures, suite.errors) == (len(cases), len(failing), 0)
     task = next(finding for finding in findings if finding["rule"] == "INC-ST-NONE")
     assert task["message"] in cases["INC-ST-NONE"].result[0].text
