@@ -33,6 +33,9 @@ def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
 def _concerned(rule: ModelRule, context: Context) -> Iterator[Element]:
     """The objects that a rule is about."""
     versions = [version for version in context.versions if (rule.since or "") <= version <= (rule.until or "9")]
+    if rule.among is not None and versions:
+        yield from (element for element in rule.among(context) if isinstance(element, rule.target))
+        return
     for cls, found in context.by_class(rule.target):
         if any(rule.concerns is None or rule.concerns(cls, version) for version in versions):
             yield from found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, NamedTuple
@@ -68,6 +68,7 @@ class ModelRule(Rule):
     ----------
     target : the class, or classes, whose objects, and those of their subclasses, are looked at
     check : what is wrong with one of them
+    among : the objects that come into question, where it is known of which; None: all
     concerns : whether anything can be wrong with objects of a class in an AMALTHEA version; the others are passed over
     fix : repairs one of them
     in_canonical_form : nothing is wrong any more where the file is written as EMF writes it
@@ -79,6 +80,7 @@ class ModelRule(Rule):
 
     target: type[Element] | tuple[type[Element], ...]
     check: Check
+    among: Callable[[Context], Iterable[Element]] | None = None
     concerns: Callable[[type[Element], str], object] | None = None
     fix: Fix | None = None
     example_version: str = "3.3.0"

@@ -23,6 +23,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=IReferable,
     check=_check,
+    among=lambda context: context.namesakes,
     rationale="In all files of a model together, references find an object by its name and class. "
     "APP4MC reports it when it validates the model.",
     remedy="Give each object of a class a name of its own.",

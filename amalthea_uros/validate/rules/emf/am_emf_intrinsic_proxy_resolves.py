@@ -21,6 +21,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Element,
     check=_check,
+    among=lambda context: context.dangling,
     rationale="It is in none of the files that were read. APP4MC reports it when it validates the model.",
     remedy="Correct the name, or read the missing file, too.",
     fails="""

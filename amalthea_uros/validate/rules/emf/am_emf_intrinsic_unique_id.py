@@ -35,6 +35,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=IReferable,
     check=_check,
+    among=lambda context: context.namesakes,
     fix=_fix,
     rationale="References go by class and name, and reach one of the objects only. APP4MC reports it when it validates the model.",
     remedy="Give each its own name, or put one into another namespace.",

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from itertools import pairwise
+from collections.abc import Iterable, Iterator, Mapping
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Amalthea
@@ -23,16 +22,22 @@ def _check(element: Amalthea, context: Context) -> Iterator[str]:
     for cls, holders in context.by_class(Element):
         names = _containments(cls, document.facts_version)
         for holder in holders if names else ():
-            places = [index[part] for part in _parts(holder, names) if part in index]
-            moved += sum(place > later for place, later in pairwise(places))
+            moved += _moved(holder, names, index)
     if moved:
         yield f"at {moved} places objects stand in another order than EMF writes them"
 
 
-def _parts(holder: Element, names: Iterable[str]) -> Iterator[Element]:
+def _moved(holder: Element, names: Iterable[str], index: Mapping[Element, int]) -> int:
+    """How often a part of an object stands in the file before one that belongs in front of it."""
+    moved, last = 0, -1
     for name in names:
         value = holder.__dict__.get(name)
-        yield from value if isinstance(value, list) else () if value is None else (value,)
+        if value is not None:
+            for part in value if isinstance(value, list) else (value,):
+                place = index.get(part, last)
+                moved += place < last
+                last = place
+    return moved
 
 
 @per_class

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import HwAccessElement, INamed
+from amalthea_uros.metamodel.classes import HwAccessElement, HwConnection, HwDefinition
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
@@ -13,7 +13,7 @@ from amalthea_uros.validate.rule import ModelRule
 _COSTS = frozenset({"access_latency", "read_latency", "write_latency", "data_rate"})
 
 
-def _check(element: INamed, context: Context) -> Iterator[str]:
+def _check(element: HwAccessElement | HwConnection | HwDefinition, context: Context) -> Iterator[str]:
     if isinstance(element, HwAccessElement):
         yield f"what accesses to {element.destination.name if element.destination else 'a memory'!r} cost is ignored"
     elif any(element.__dict__.get(name) is not None for name in _COSTS & element.__dict__.keys()):
@@ -24,7 +24,7 @@ RULE = ModelRule(
     id="INC-HW-ACCESS",
     title="access that carries timing",
     severity=Severity.WARNING,
-    target=INamed,
+    target=(HwAccessElement, HwConnection, HwDefinition),
     check=_check,
     rationale="am2inc ignores access elements, paths, latencies and data rates without a word.",
     remedy="Do not rely on the timing of memory accesses after the import.",

@@ -27,6 +27,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Element,
     check=_check,
+    among=lambda context: context.dangling,
     rationale="am2inc writes a line to stderr and goes on without the object, mostly into a segmentation fault.",
     remedy="Correct the reference, or give am2inc all files of the model.",
     fails="""

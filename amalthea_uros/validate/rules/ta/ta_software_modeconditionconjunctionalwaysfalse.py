@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import BaseObject, ConditionConjunction, ModeConditionConjunction
+from amalthea_uros.metamodel.classes import ConditionConjunction, ModeConditionConjunction
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.ta._modes import by_label
 from amalthea_uros.validate.wording import joined
 
 
-def _check(element: BaseObject, context: Context) -> Iterator[str]:
-    if not isinstance(element, ConditionConjunction | ModeConditionConjunction):
-        return
+def _check(element: ConditionConjunction | ModeConditionConjunction, context: Context) -> Iterator[str]:
     for label, (required, excluded) in by_label(element.entries).items():
         if len(required) > 1:
             yield f"{label.name!r} is required to be {joined(map(repr, required))} at once"
@@ -30,7 +28,7 @@ RULE = ModelRule(
     id="TA-Software-ModeConditionConjunctionAlwaysFalse",
     title="conditions that cannot all be true",
     severity=Severity.WARNING,
-    target=BaseObject,
+    target=(ConditionConjunction, ModeConditionConjunction),
     check=_check,
     rationale="What depends on it never happens. APP4MC reports it when it validates the model.",
     remedy="Require one literal of each mode label.",

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import BaseObject, ConditionDisjunction, EnumMode, ModeConditionDisjunction, ModeLabel
+from amalthea_uros.metamodel.classes import ConditionDisjunction, EnumMode, ModeConditionDisjunction, ModeLabel
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.ta._modes import by_label
 
 
-def _check(element: BaseObject, context: Context) -> Iterator[str]:
-    if not isinstance(element, ConditionDisjunction | ModeConditionDisjunction):
-        return
+def _check(element: ConditionDisjunction | ModeConditionDisjunction, context: Context) -> Iterator[str]:
     # Only single conditions count, not those within conjunctions.
     for label, (accepted, rejected) in by_label(element.entries).items():
         literals = _literals(label)
@@ -32,7 +30,7 @@ RULE = ModelRule(
     id="TA-Software-ModeConditionDisjunctionAlwaysTrue",
     title="conditions of which one is always true",
     severity=Severity.WARNING,
-    target=BaseObject,
+    target=(ConditionDisjunction, ModeConditionDisjunction),
     check=_check,
     rationale="What depends on it always happens. APP4MC reports it when it validates the model.",
     remedy="Leave the condition away, or require less.",

@@ -55,9 +55,10 @@ class Deeds:
         """Those of a process or runnable itself, without those of the runnables that it calls."""
         found = cls()
         for item in executable.walk():
-            found.written.update(written(item))
-            found.read.update(read(item))
-            found._note(item)
+            if isinstance(item, _KINDS):
+                found.written.update(written(item))
+                found.read.update(read(item))
+                found._note(item)
         return found
 
     def _note(self, item: Element) -> None:
@@ -79,6 +80,27 @@ class Deeds:
         self.signalled |= other.signalled
         self.awaited |= other.awaited
         self.served |= other.served
+
+
+#: What is a deed, or may depend on one.
+_KINDS = (
+    LabelAccess,
+    ModeLabelAccess,
+    ChannelSend,
+    ChannelReceive,
+    SenderReceiverRead,
+    SenderReceiverWrite,
+    ModeLabelAssignment,
+    ModeLabelRef,
+    ModeValueCondition,
+    ModeLabelCondition,
+    ChannelFillCondition,
+    ChannelFillRef,
+    InterProcessTrigger,
+    SetEvent,
+    WaitEvent,
+    ServerCall,
+)
 
 
 def written(item: Element | None) -> Iterable[Element]:
