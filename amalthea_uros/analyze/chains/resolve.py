@@ -13,14 +13,14 @@ from itertools import pairwise, product
 
 from amalthea_uros.analyze.chains.places import Place
 from amalthea_uros.analyze.chains.spots import Spot, Spots, UnresolvedError, When
-from amalthea_uros.perf.events import Event
+from amalthea_uros.analyze.occurrences import Occurrence, raises
+from amalthea_uros.perf.events import Event, RunnableChange, RunnableEvent
 from amalthea_uros.perf.software import (
     AccessKind,
     Call,
     LabelAccess,
     ModeAccess,
     ModeOperation,
-    RaiseEvent,
     Receive,
     Send,
     Trigger,
@@ -130,14 +130,19 @@ class Resolver:
             if isinstance(stimulus := self.system.stimuli_by_name.get(name), EventTriggered)
         }
         for place in self.spots.places(first.process.name):
-            match place.activity:
-                case Trigger(stimulus=name) if name in then.process.stimuli:
+            if isinstance(place.activity, Trigger) and place.activity.stimulus in then.process.stimuli:
+                return Hop(Carrier.TRIGGER, (place.activity.stimulus,), place)
+            for name, events in raised.items():
+                if any(self._occurs_at(place, event) for event in events):
                     return Hop(Carrier.TRIGGER, (name,), place)
-                case RaiseEvent(event=event):
-                    for name, events in raised.items():
-                        if event in events:
-                            return Hop(Carrier.TRIGGER, (name,), place)
         return None
+
+    def _occurs_at(self, place: Place, name: str) -> bool:
+        """Whether an event occurs behind an activity; before a call is no place from which something is triggered."""
+        event = self.system.events_by_name.get(name)
+        if event is None or (isinstance(event, RunnableEvent) and event.change is not RunnableChange.TERMINATE):
+            return False
+        return raises(Occurrence(place.process, place.runnable, place.activity), event)
 
     def _accesses(self, spot: Spot, name_of: _NameOf) -> dict[str, list[Place]]:
         """What is written or read where an event occurs: by the access itself, in its runnable, or anywhere in the process."""

@@ -29,7 +29,7 @@ from amalthea_uros.analyze.demand import MOST_GRAINS
 from amalthea_uros.analyze.known import Known
 from amalthea_uros.analyze.task import Response
 from amalthea_uros.perf.software import Communication, Process, Trigger
-from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic
+from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ class Timing:
                     found.add(trigger.counter)
             for name in then.process.stimuli:
                 stimulus = self.known.system.stimuli_by_name.get(name)
-                if isinstance(stimulus, InterProcess) and stimulus.counter is not None:
+                if isinstance(stimulus, InterProcess | EventTriggered) and stimulus.counter is not None:
                     found.add(stimulus.counter)
             found |= then.counters
         return [counter for counter in found if counter.prescaler > 1 or counter.offset > 1]

@@ -53,7 +53,7 @@ from amalthea_uros.perf.software import (
     Task,
     Trigger,
 )
-from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic, RelativePeriodic, Stimuli
+from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import NANOSECOND as NS
@@ -364,6 +364,28 @@ class TestWhatCarries:
         assert claims == {"bound"}
         # 2, and 3 behind another job of the source that may come in between.
         assert values["max_reduced_reaction_time"] == 2 + 3 + 2
+
+    @pytest.mark.parametrize(
+        "event",
+        [
+            CustomEvent(name="event"),
+            LabelEvent(name="event", label="L", change=LabelChange.WRITE),
+            RunnableEvent(name="event", runnable="prepare", change=RunnableChange.TERMINATE),
+        ],
+        ids=["raised", "written", "ended"],
+    )
+    def test_an_event_that_activates_a_task(self, event):
+        prepare = Runnable(name="prepare", activities=(ticks(2), RaiseEvent(event="event"), write("L")))
+        tasks = [("source", 10, [Call(runnable="prepare"), ticks(1)]), ("sink", None, [ticks(3)])]
+        stimulus = EventTriggered(name="sink", events=("event",))
+        events = [at("source", START), at("sink", END), event]
+        chain = EventChain(name="chain", stimulus=events[0].name, response=events[1].name)
+        built = system(tasks, events, chains=(chain,), stimuli=[stimulus], runnables=[prepare])
+        found, values, _, rules = evaluate(built)
+        assert found.routes == ("source start -[a trigger sink]-> sink terminate",)
+        assert not rules
+        # The source goes on, before the sink can run.
+        assert values["max_reduced_reaction_time"] >= 3 + 3
 
     def test_a_frame_on_a_bus(self):
         # A bus is a core whose frames are tasks that nothing interrupts: the frame waits for a longer one of lower priority.
