@@ -13,7 +13,13 @@ def is_same(one: Element, other: Element) -> bool:
     if type(one) is not type(other) or one.is_referable:
         return one is other
     features = {*one.__dict__, *other.__dict__}
-    return all(_is_same_value(one.__dict__.get(name), other.__dict__.get(name)) for name in features)
+    return all(_is_same_value(_stated(one, name), _stated(other, name)) for name in features)
+
+
+def _stated(element: Element, name: str) -> object:
+    """The value of a feature; None for an empty list, as for everything that is not stated."""
+    value = element.__dict__.get(name)
+    return None if value == [] else value
 
 
 def _is_same_value(one: object, other: object) -> bool:
@@ -21,7 +27,7 @@ def _is_same_value(one: object, other: object) -> bool:
         return len(one) == len(other) and all(map(_is_same_value, one, other))
     if isinstance(one, Element) and isinstance(other, Element):
         return one is other or is_same(one, other)
-    return one == other or (not one and not other and one != 0 and other != 0)
+    return one == other
 
 
 def new_name(stem: str, cls: type[Element], context: Context) -> str:

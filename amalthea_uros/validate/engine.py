@@ -18,7 +18,7 @@ def run(model: Model, rules: Iterable[ModelRule]) -> list[Finding]:
 
 
 def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
-    for element in _concerned(rule, context):
+    for element in concerned(rule, context):
         try:
             messages = list(rule.check(element, context))
         except Exception as error:
@@ -30,7 +30,7 @@ def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
             yield _finding(rule.id, severity, message, element, rule.remedy)
 
 
-def _concerned(rule: ModelRule, context: Context) -> Iterator[Element]:
+def concerned(rule: ModelRule, context: Context) -> Iterator[Element]:
     """The objects that a rule is about."""
     versions = [version for version in context.versions if (rule.since or "") <= version <= (rule.until or "9")]
     if rule.among is not None and versions:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.engine import concerned
 from amalthea_uros.validate.rule import ModelRule
 
 
@@ -35,8 +37,7 @@ def repair(model: Model, rules: Iterable[ModelRule]) -> Repairs:
             continue
         # What other rules changed counts.
         context = Context(model)
-        concerned = [element for _, found in context.by_class(rule.target) for element in found]
-        for element in [element for element in concerned if any(rule.check(element, context))]:
+        for element in list(_faulty(rule, context)):
             document = element.document
             if document is not None and (rule.fix is None or rule.fix(element, context)):
                 repairs.done[rule.id] += 1
@@ -44,3 +45,12 @@ def repair(model: Model, rules: Iterable[ModelRule]) -> Repairs:
                 if rule.in_canonical_form:
                     repairs.rewritten.add(document)
     return repairs
+
+
+def _faulty(rule: ModelRule, context: Context) -> Iterator[Element]:
+    for element in concerned(rule, context):
+        try:
+            if any(rule.check(element, context)):
+                yield element
+        except Exception:  # a mistake of the rule, which is told when it is run
+            continue

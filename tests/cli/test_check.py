@@ -246,3 +246,14 @@ def test_the_hooks_for_pre_commit():
     # As it calls the command: with the files behind the arguments.
     command = hooks["amuros-check"]["entry"].split()[1:]
     assert amuros(*command, ADVANCED, ADVANCED.with_suffix(".amxmi")).returncode == 0
+
+
+def test_what_reading_tells_is_not_told_again(tmp_path):
+    path = tmp_path / "model.amxmi"
+    path.write_text(MODEL.format('<swModel><tasks name="T" what="?" stimuli="S?type=SingleStimulus"/></swModel>'))
+    rules = {finding["rule"] for finding in json.loads(amuros("check", path, "--output", "json").stdout)["findings"]}
+    assert {"AM-EMF-INTRINSIC/proxy-resolves", "INC-IO-REF", "INC-IO-FEATURE"} <= rules
+    assert not {"XMI011", "XMI020"} & rules
+    # Without these rules it is told as ever.
+    found = json.loads(amuros("check", path, "--profile", "timing", "--output", "json").stdout)["findings"]
+    assert {"XMI011", "XMI020"} <= {finding["rule"] for finding in found}
