@@ -17,9 +17,9 @@ from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, version_key
 from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
-from amalthea_uros.xmi.plan import FeaturePlan
+from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan
 from amalthea_uros.xmi.reader import MAX_DEPTH
-from amalthea_uros.xmi.spell import Child, Part, Speller
+from amalthea_uros.xmi.spell import Child, Part, Shape, Speller
 from amalthea_uros.xmi.weave import Weaver
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
@@ -137,7 +137,7 @@ class _Writer:
         children = self.speller.children(element, shape) if shape.children else []
         attributes = self.speller.tag(feature, plan, element, shape)
         if self.weaver is None or self.source is None or place is None:
-            self.out.append(f"<{tag}{attributes}{_extra_attributes(element) if shape.has_extras else ''}")
+            self.out.append(f"<{tag}{self.with_extras(feature, element, plan, shape) if shape.has_extras else attributes}")
             self.fresh_content(element, tag, children, indent)
             return
         opening = f"<{tag}{attributes}"
@@ -148,6 +148,15 @@ class _Writer:
             opening, at = self.weaver.tag(element, plan, wanted, place)
         self.out.append(opening)
         self.woven_content(element, tag, children, indent, place, at)
+
+    def with_extras(self, feature: FeaturePlan, element: Element, plan: ClassPlan, shape: Shape) -> str:
+        """The attributes of an object with those of its file that are not understood, as far as nothing was set in their place."""
+        wanted = self.speller.attributes(feature, plan, element, shape)
+        for key, text in element.extras.attributes.items() if element.extras else ():
+            known = plan.attributes.get(key)
+            if known is None or element.__dict__.get(known.name) in (None, []):
+                wanted[key] = text
+        return "".join(f' {key}="{escape(text)}"' for key, text in wanted.items())
 
     def fresh_content(self, element: Element, tag: str, children: list[Child], indent: str) -> None:
         """The end of the start tag, the children, and the end tag, laid out as EMF does."""

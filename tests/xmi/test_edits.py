@@ -3,10 +3,10 @@
 import difflib
 
 import pytest
-from support import DATA, meaning
+from support import DATA, MODEL, meaning
 
 import amalthea_uros as amuros
-from amalthea_uros import Label, LabelAccess, Preemption, Runnable, RunnableCall, Task, Time
+from amalthea_uros import Label, LabelAccess, PeriodicStimulus, Preemption, Runnable, RunnableCall, Task, Time
 
 UGLY = """<?xml version='1.0' encoding='UTF-8' standalone="no"?>
 <!-- made by hand -->
@@ -248,3 +248,19 @@ def test_another_version_is_written_whole(neat):
     amuros.save(neat)
     assert changes(neat) == []
     assert amuros.load(neat.documents[0].path).documents[0].version == "3.3.0"
+
+
+def test_a_value_that_is_none_of_its_type_stays_once(tmp_path):
+    # EMF would write the default of an attribute that is not understood: the text of the file stands in its place.
+    path = tmp_path / "model.amxmi"
+    stimulus = (
+        '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="S"><recurrence {} unit="ms"/></stimuli></stimuliModel>'
+    )
+    path.write_text(MODEL.format(stimulus.format('value="soon"')))
+    amuros.save(amuros.load(path), canonical=True)
+    assert '<recurrence value="soon" unit="ms"/>' in path.read_text()
+    # What is set then takes its place.
+    model = amuros.load(path)
+    model[PeriodicStimulus, "S"].recurrence.value = 5
+    amuros.save(model, canonical=True)
+    assert '<recurrence value="5" unit="ms"/>' in path.read_text()
