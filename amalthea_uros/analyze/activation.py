@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from amalthea_uros.analyze.arrivals import Arrivals, Curve, Once, Pattern, Periodic
+from amalthea_uros.analyze.kernel import LIMIT
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.system import System
@@ -15,13 +16,30 @@ MOST_OCCURRENCES = 10_000
 
 
 def arrivals_of(stimulus: perf.Stimulus, system: System) -> Arrivals | None:
-    """The event model of a stimulus that comes from outside; None if nothing bounds it, or another process fires it."""
+    """The event model of a stimulus that comes from outside; None if nothing bounds it, or another process fires it.
+
+    Times beyond what can be counted (13 days) bound nothing either.
+    """
+    found = _arrivals_of(stimulus, system)
+    match found:
+        case Periodic():
+            times = [found.period, found.jitter, found.distance]
+        case Pattern():
+            times = [found.period]
+        case Curve():
+            times = [time for _, time in found.distances]
+        case _:
+            times = []
+    return None if any(time > LIMIT for time in times) else found
+
+
+def _arrivals_of(stimulus: perf.Stimulus, system: System) -> Arrivals | None:
     match stimulus:
         case perf.Periodic(period=period, jitter=jitter, min_distance=distance) if period > 0:
             if jitter is None:
                 return Periodic(period, 0, distance or 0)
             earliest, latest = lowest(jitter), highest(jitter)
-            return None if earliest is None or latest is None else Periodic(period, latest - earliest, distance or 0)
+            return None if earliest is None or latest is None else Periodic(period, max(0, latest - earliest), distance or 0)
         case perf.RelativePeriodic(distance=distance):
             least = lowest(distance)
             longest = highest(distance)

@@ -10,6 +10,7 @@ from amalthea_uros.analyze.arrivals import Arrivals, finer
 from amalthea_uros.analyze.arrivals import Periodic as PeriodicArrivals
 from amalthea_uros.analyze.blocking import Blocking, is_interruptible, preemption
 from amalthea_uros.analyze.cost import Cost
+from amalthea_uros.analyze.kernel import LIMIT
 from amalthea_uros.analyze.known import Known
 from amalthea_uros.analyze.placement import Placed, Rank, Server
 from amalthea_uros.analyze.supply import FULL, Budget, Supply
@@ -186,7 +187,9 @@ def released_on(core: str, known: Known) -> list[schedule.Released]:
 def known_releases(process: Process, system: System) -> Periodic | None:
     """The stimulus of a process that is released at known times; None if it is not."""
     match [system.stimuli_by_name.get(name) for name in process.stimuli]:
-        case [Periodic(jitter=None, condition=None, period=period, offset=offset) as stimulus] if period > 0 <= offset:
+        case [Periodic(jitter=None, condition=None, period=period, offset=offset) as stimulus] if (
+            0 < period <= LIMIT and 0 <= offset <= LIMIT
+        ):
             return stimulus
     return None
 

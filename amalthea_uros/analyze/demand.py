@@ -14,6 +14,7 @@ from fractions import Fraction
 from math import ceil, floor
 
 from amalthea_uros.analyze.cost import Cost, Part
+from amalthea_uros.analyze.kernel import LIMIT
 from amalthea_uros.analyze.means import mean
 from amalthea_uros.analyze.memory import MemoryAccess, count_of
 from amalthea_uros.analyze.modes import holds
@@ -204,7 +205,11 @@ class Demands:
         if worst is None or best is None:
             raise UnknownDemandError("there is a distribution of ticks without bounds")
         tick = time_of_ticks(1, frequency) * factor * self.grains(core)
-        return Part(worst=ceil(worst * tick), best=floor(best * tick), average=mean(ticks) * tick)
+        if worst * tick > LIMIT:
+            raise UnknownDemandError("there is an execution time beyond 13 days")
+        # No time runs backwards, and none is longer than the longest, whatever a file says.
+        longest = max(0, ceil(worst * tick))
+        return Part(worst=longest, best=min(max(0, floor(best * tick)), longest), average=max(Fraction(0), mean(ticks) * tick))
 
     def _ticks_per_unit(self, need: str, core: str) -> Fraction:
         """What a unit of an execution need takes: the value of the feature, or its inverse for instructions per cycle."""

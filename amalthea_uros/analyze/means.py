@@ -15,11 +15,20 @@ from amalthea_uros.perf.distributions import (
     Statistics,
     Uniform,
     Weibull,
+    highest,
+    lowest,
 )
 
 
 def mean(distribution: Distribution[int]) -> Fraction:
-    """The mean value; for boundaries the middle, whatever lies between them."""
+    """The mean value; for boundaries the middle, whatever lies between them, and where a parameter is no finite number."""
+    try:
+        return _mean(distribution)
+    except (ValueError, OverflowError, ZeroDivisionError):
+        return Fraction((lowest(distribution) or 0) + (highest(distribution) or 0), 2)
+
+
+def _mean(distribution: Distribution[int]) -> Fraction:
     match distribution:
         case Constant(value):
             return Fraction(value)

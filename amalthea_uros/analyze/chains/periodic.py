@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros.analyze.kernel import LIMIT
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -44,9 +45,9 @@ def first_releases(steps: Sequence[Step]) -> Numbers | None:
         return None
     cycle = lcm(*(step.period for step in steps))
     count = cycle // steps[0].period
-    if count * len(steps) > MOST_JOBS:
-        return None
     settled = max(step.offset or 0 for step in steps)
+    if count * len(steps) > MOST_JOBS or settled + 2 * cycle > LIMIT:
+        return None
     offset = steps[0].offset or 0
     lead = -(-(settled - offset) // steps[0].period)
     releases: Numbers = offset + steps[0].period * (lead + np.arange(count, dtype=np.int64))

@@ -26,7 +26,9 @@ from amalthea_uros.analyze.chains.track import Track
 from amalthea_uros.analyze.core import known_releases
 from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.demand import MOST_GRAINS
+from amalthea_uros.analyze.kernel import LIMIT
 from amalthea_uros.analyze.known import Known
+from amalthea_uros.analyze.schedule import MOST_JOBS
 from amalthea_uros.analyze.task import Response
 from amalthea_uros.perf.software import Communication, Process, Trigger
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
@@ -76,6 +78,8 @@ class Timing:
             return Timed(step=step, reason=f"the releases of {base.process.name!r} are not known")
         if len(counters) > 1:
             return Timed(step=step, reason=f"it is not known which jobs of {base.process.name!r} take part")
+        if self._is_too_long(releases, counters):
+            return Timed(step=step, reason=f"the jobs of {base.process.name!r} that take part are too far apart to be followed")
         if is_logical(base.enter) and is_logical(base.leave):
             tracks = self._logical(releases)
         else:
@@ -88,6 +92,11 @@ class Timing:
             is_exact=tracks.is_exact and not triggered,
         )
         return Timed(step=step, tracks=tracks)
+
+    def _is_too_long(self, releases: Periodic, counters: Sequence[Counter]) -> bool:
+        """Whether two jobs that take part are so far apart that arrays of times cannot hold that, or too many others lie between."""
+        most = max((max(counter.prescaler, counter.offset) for counter in counters), default=1)
+        return most > MOST_JOBS or (releases.offset + 4 * most * releases.period) * self.unit > LIMIT
 
     # What is known of processes
 

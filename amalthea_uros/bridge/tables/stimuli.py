@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.bridge.codecs import FREQUENCY, TIME, TIMES, reference, references, same_names
+from amalthea_uros.bridge.codecs import DIVISOR, FREQUENCY, TIME, TIMES, reference, references, same_names
 from amalthea_uros.bridge.entries import Entry, Field, Table, part, parts
 from amalthea_uros.bridge.kinds import Kind
 from amalthea_uros.bridge.tables.conditions import ASSIGNMENTS, CONDITION
@@ -11,7 +11,7 @@ from amalthea_uros.metamodel import classes as am
 from amalthea_uros.perf import stimuli as perf
 
 #: Numbers that are not given have these values in every version: prescaler 1, offset 0.
-COUNTER = part(Table(Entry(perf.Counter, am.Counter, Field("prescaler", "prescaler"), Field("offset", "offset"))))
+COUNTER = part(Table(Entry(perf.Counter, am.Counter, Field("prescaler", "prescaler", DIVISOR), Field("offset", "offset"))))
 
 _COMMON = (
     Field("condition", "execution_condition", CONDITION),
