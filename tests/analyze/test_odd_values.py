@@ -68,7 +68,7 @@ HUGE = "99999999999999999999"
         ({"ticks": STATISTICS.format(HUGE)}, 3),
         # The mean of a distribution whose parameters are no numbers is not known, but its bounds are.
         ({"ticks": BETA.format("NaN")}, 3),
-        ({"ticks": BETA.format("INF")}, 3),
+        ({"ticks": BETA.format("Infinity")}, 3),
         # What is beyond days is beyond counting.
         ({"ticks": CONSTANT.format(HUGE)}, None),
         ({"period": HUGE}, None),
