@@ -16,8 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.result import Analysis as Analysis
-    from amalthea_uros.analyze.settings import Settings as Settings
+    from amalthea_uros.analyze.results import Analysis as Analysis
     from amalthea_uros.analyze.system import analyze_system as analyze_system
     from amalthea_uros.bridge.build import build_model as build_model
     from amalthea_uros.bridge.extract import Extraction as Extraction
@@ -36,6 +35,7 @@ if TYPE_CHECKING:
     from amalthea_uros.pipeline import Built as Built
     from amalthea_uros.pipeline import build as build
     from amalthea_uros.pipeline import describe as describe
+    from amalthea_uros.timing.settings import Settings as Settings
     from amalthea_uros.uros.assemble import Assembly as Assembly
     from amalthea_uros.xmi.load import load as load
     from amalthea_uros.xmi.save import save as save
@@ -54,11 +54,11 @@ _HOMES = {
     "Reference": "metamodel.model",
     "load": "xmi.load",
     "save": "xmi.save",
-    "Analysis": "analyze.result",
+    "Analysis": "analyze.results",
     "Assembly": "uros.assemble",
     "Built": "pipeline",
     "Extraction": "bridge.extract",
-    "Settings": "analyze.settings",
+    "Settings": "timing.settings",
     "analyze_system": "analyze.system",
     "build": "pipeline",
     "check": "checking",

@@ -13,16 +13,16 @@ from importlib.util import find_spec
 from itertools import pairwise
 from random import Random
 
-from amalthea_uros.analyze import kernel, schedule
 from amalthea_uros.analyze.chains import job_chains
-from amalthea_uros.analyze.chains.track import Track
-from amalthea_uros.analyze.cost import Cost
-from amalthea_uros.analyze.schedule import Jobs, Released
+from amalthea_uros.analyze.chains.job_times import Track
+from amalthea_uros.analyze.response_times import kernel, schedule
+from amalthea_uros.analyze.response_times.schedule import Jobs, Released
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import events, mapping, os, software, stimuli
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.multiframe import Cost
 
 MILLISECOND = 10**9
 #: 43,000 jobs in a hyperperiod of 1 s.

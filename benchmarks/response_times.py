@@ -14,15 +14,16 @@ from fractions import Fraction
 from importlib.util import find_spec
 from random import Random
 
-from amalthea_uros.analyze import kernel, levels
-from amalthea_uros.analyze.arrivals import Periodic
-from amalthea_uros.analyze.cost import Cost
+from amalthea_uros.analyze.response_times import kernel
+from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.task import Task
 from amalthea_uros.perf import mapping, os, software, stimuli
 from amalthea_uros.perf.distributions import Statistics
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.event_models.base import Periodic
+from amalthea_uros.timing.multiframe import Cost
 
 PERIODS = (1, 2, 5, 10, 20, 50, 100, 200, 1000)
 MILLISECOND = 10**9

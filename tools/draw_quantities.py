@@ -11,12 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from amalthea_uros.analyze import schedule
 from amalthea_uros.analyze.chains import job_chains
+from amalthea_uros.analyze.chains.job_times import Track
 from amalthea_uros.analyze.chains.quantities import Quantity
-from amalthea_uros.analyze.chains.track import Track
-from amalthea_uros.analyze.cost import Cost
-from amalthea_uros.analyze.schedule import Released
+from amalthea_uros.analyze.response_times import schedule
+from amalthea_uros.analyze.response_times.schedule import Released
+from amalthea_uros.timing.multiframe import Cost
 
 TASKS = (
     Released(name="Sensor", period=4, offset=0, cost=Cost.constant(1), priority=1),

@@ -10,16 +10,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.analyze.arrivals import finer
-from amalthea_uros.analyze.blocking import Blocking, is_interruptible
-from amalthea_uros.analyze.busy_window import Interference
-from amalthea_uros.analyze.fixed_priority import response_time
-from amalthea_uros.analyze.known import Known
-from amalthea_uros.analyze.placement import Placed
-from amalthea_uros.analyze.settings import Settings
+from amalthea_uros.analyze.response_times.blocking import Blocking, is_interruptible
+from amalthea_uros.analyze.response_times.busy_window import Interference
+from amalthea_uros.analyze.response_times.fixed_priority import response_time
+from amalthea_uros.analyze.response_times.task import Sharing, Task
 from amalthea_uros.analyze.system import prepare, respond
-from amalthea_uros.analyze.task import Sharing, Task
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.context import Known
+from amalthea_uros.timing.event_models.base import finer
+from amalthea_uros.timing.scheduling import Placed
+from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time
 
 

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from amalthea_uros.analyze import schedule
-from amalthea_uros.analyze.core import released_on
-from amalthea_uros.analyze.cost import Cost
-from amalthea_uros.analyze.known import Known
-from amalthea_uros.analyze.placement import Placed
-from amalthea_uros.analyze.settings import Settings
+from amalthea_uros.analyze.response_times import schedule
+from amalthea_uros.analyze.response_times.core import released_on
+from amalthea_uros.analyze.response_times.task import Claim, Response
 from amalthea_uros.analyze.system import prepare, respond
-from amalthea_uros.analyze.task import Claim, Response
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.context import Known
+from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.timing.scheduling import Placed
+from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time
 
 

@@ -11,14 +11,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from amalthea_uros.analyze.activation import arrivals_of
-from amalthea_uros.analyze.arrivals import Arrivals, Behind, Delayed, Every, Repeated, Together
-from amalthea_uros.analyze.occurrences import Occurrence, occurrences, raises
-from amalthea_uros.analyze.task import Response
+from amalthea_uros.analyze.response_times.task import Response
 from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
 from amalthea_uros.perf.software import Process, Trigger
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.dataflow.occurrences import Occurrence, occurrences, raises
+from amalthea_uros.timing.event_models.base import Arrivals, Behind, Delayed, Every, Repeated, Together
+from amalthea_uros.timing.event_models.stimuli import arrivals_of
 from amalthea_uros.units import Time
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from amalthea_uros.analyze.notes import Notes
-from amalthea_uros.analyze.result import ProcessResult, RequirementResult, Verdict
+from amalthea_uros.analyze.results import ProcessResult, RequirementResult, Verdict
 from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.notes import Notes
 from amalthea_uros.units import Time
 
 

@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from amalthea_uros.analyze.settings import Settings
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.settings import Settings
 
 #: Factors below 1 are told to a thousandth, those above to a thousandth of themselves.
 STEP = Fraction(1, 1000)

@@ -5,22 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from amalthea_uros.analyze.blocking import preemption
 from amalthea_uros.analyze.chains import phases
+from amalthea_uros.analyze.chains.constraints import Judge
 from amalthea_uros.analyze.chains.evaluate import Evaluation
-from amalthea_uros.analyze.chains.judge import Judge
 from amalthea_uros.analyze.chains.result import ChainResult
-from amalthea_uros.analyze.core import responses_on
-from amalthea_uros.analyze.known import Known
-from amalthea_uros.analyze.notes import Notes
-from amalthea_uros.analyze.overheads import COUNTED
 from amalthea_uros.analyze.propagation import Propagation
 from amalthea_uros.analyze.requirements import judge, upper_response_limits
-from amalthea_uros.analyze.result import Analysis, ProcessorResult, ProcessResult, Verdict
-from amalthea_uros.analyze.settings import Memory, Settings
-from amalthea_uros.analyze.task import Response
+from amalthea_uros.analyze.response_times.blocking import preemption
+from amalthea_uros.analyze.response_times.core import responses_on
+from amalthea_uros.analyze.response_times.task import Response
+from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, Verdict
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.context import Known
+from amalthea_uros.timing.notes import Notes
+from amalthea_uros.timing.overheads import COUNTED
+from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.units import Time
 
 #: Rounds of propagation, and jobs of busy windows in all of them; irregularity that still grows then will not stop.

@@ -14,7 +14,6 @@ import click
 from amalthea_uros.analyze.assignment import propose
 from amalthea_uros.analyze.explanation import shares
 from amalthea_uros.analyze.sensitivity import sensitivity
-from amalthea_uros.analyze.settings import Memory, Settings
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.cli.output import Output, output_option
 from amalthea_uros.perf.software import Communication
@@ -22,6 +21,7 @@ from amalthea_uros.pipeline import system_of
 from amalthea_uros.report.analysis import Extras, write_explanation, write_json, write_text
 from amalthea_uros.report.chains import write_chain
 from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.units import Frequency, parse_frequency
 
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.analyze.chains.paths import Path as Way
-from amalthea_uros.analyze.chains.paths import UnknownEndError, paths, with_chains
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.pipeline import system_of
 from amalthea_uros.report.chains import write_paths
+from amalthea_uros.timing.dataflow.paths import Path as Way
+from amalthea_uros.timing.dataflow.paths import UnknownEndError, paths, with_chains
 
 
 @click.command("chains")

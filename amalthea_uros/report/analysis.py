@@ -13,7 +13,7 @@ from typing import IO, Any
 from amalthea_uros import __version__
 from amalthea_uros.analyze.assignment import Proposal
 from amalthea_uros.analyze.explanation import Share
-from amalthea_uros.analyze.result import Analysis, ProcessorResult, ProcessResult, RequirementResult, Verdict
+from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, RequirementResult, Verdict
 from amalthea_uros.analyze.sensitivity import GREATEST, Sensitivity
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.report.chains import chain_json, write_chains

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import IO, Any
 
-from amalthea_uros.analyze.chains.paths import Path
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
 from amalthea_uros.analyze.chains.result import ChainResult
-from amalthea_uros.analyze.result import Analysis
+from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.timing.dataflow.paths import Path
 from amalthea_uros.units import time_text
 
 _COLUMNS = {

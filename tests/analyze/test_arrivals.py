@@ -8,15 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support import SHARED
 
-from amalthea_uros.analyze import levels, non_preemptive
-from amalthea_uros.analyze.activation import arrivals_of
-from amalthea_uros.analyze.arrivals import Behind, Curve, Delayed, Every, Once, Pattern, Periodic, Repeated, Together
-from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.propagation import behind
-from amalthea_uros.analyze.task import Task
+from amalthea_uros.analyze.response_times import non_preemptive
+from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import Constant, Uniform
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.event_models.base import Behind, Curve, Delayed, Every, Once, Pattern, Periodic, Repeated, Together
+from amalthea_uros.timing.event_models.stimuli import arrivals_of
+from amalthea_uros.timing.multiframe import Cost
 
 PERIODIC = st.builds(Periodic, st.integers(1, 30), st.integers(0, 80), st.integers(0, 5)).filter(
     lambda p: p.distance <= p.period

@@ -10,17 +10,17 @@ from support import ROOT
 from test_system import system, ticks
 
 from amalthea_uros import pipeline
-from amalthea_uros.analyze import levels
-from amalthea_uros.analyze.arrivals import Periodic as PeriodicArrivals
 from amalthea_uros.analyze.assignment import assign, propose
-from amalthea_uros.analyze.cost import Cost
+from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times.task import Task as AnalysedTask
 from amalthea_uros.analyze.sensitivity import greatest_scale, sensitivity
-from amalthea_uros.analyze.settings import Settings
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.task import Task as AnalysedTask
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import Periodic
+from amalthea_uros.timing.event_models.base import Periodic as PeriodicArrivals
+from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 
 ROWS = st.lists(st.tuples(st.integers(4, 14), st.integers(0, 8), st.integers(1, 4), st.integers(2, 16)), min_size=1, max_size=4)

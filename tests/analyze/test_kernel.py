@@ -6,10 +6,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from amalthea_uros.analyze import kernel, schedule
-from amalthea_uros.analyze.cost import Cost, Part
-from amalthea_uros.analyze.schedule import Released
+from amalthea_uros.analyze.response_times import kernel, schedule
+from amalthea_uros.analyze.response_times.schedule import Released
 from amalthea_uros.compiled import Compiled, compiled
+from amalthea_uros.timing.multiframe import Cost, Part
 
 np = pytest.importorskip("numpy")
 pytest.importorskip("numba")

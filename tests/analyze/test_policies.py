@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from system_strategies import systems
 
 from amalthea_uros.analyze.assignment import propose
-from amalthea_uros.analyze.settings import Memory, Settings
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import conditions, hardware, mapping, os
 from amalthea_uros.perf.distributions import Boundaries, Constant
@@ -40,6 +39,7 @@ from amalthea_uros.perf.software import (
 )
 from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.units import MICROSECOND as US
 
 

@@ -9,11 +9,12 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import SHARED
 
-from amalthea_uros.analyze import levels, non_preemptive, schedule
-from amalthea_uros.analyze.arrivals import Periodic
-from amalthea_uros.analyze.cost import Cost, Part
-from amalthea_uros.analyze.schedule import Released
-from amalthea_uros.analyze.task import Task
+from amalthea_uros.analyze.response_times import non_preemptive, schedule
+from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times.schedule import Released
+from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.timing.event_models.base import Periodic
+from amalthea_uros.timing.multiframe import Cost, Part
 
 
 def vectors(name, accept=lambda case: True):

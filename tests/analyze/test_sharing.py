@@ -7,11 +7,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from amalthea_uros.analyze import levels
-from amalthea_uros.analyze.arrivals import Periodic
-from amalthea_uros.analyze.cost import Cost
-from amalthea_uros.analyze.supply import Budget
-from amalthea_uros.analyze.task import Sharing, Task
+from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times.supply import Budget
+from amalthea_uros.analyze.response_times.task import Sharing, Task
+from amalthea_uros.timing.event_models.base import Periodic
+from amalthea_uros.timing.multiframe import Cost
 
 
 def shared(sharing, rows, above=()):

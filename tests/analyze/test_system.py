@@ -8,8 +8,7 @@ import pytest
 from support import ROOT, SHARED
 
 from amalthea_uros import extract, load, pipeline
-from amalthea_uros.analyze.result import Verdict
-from amalthea_uros.analyze.settings import Settings
+from amalthea_uros.analyze.results import Verdict
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import stimuli as perf_stimuli
 from amalthea_uros.perf.constraints import Bound, Constraints, CountLimit, CountMetric, Requirement, TimeLimit, TimeMetric
@@ -34,6 +33,7 @@ from amalthea_uros.perf.software import (
 )
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 

@@ -11,8 +11,6 @@ from support import ROOT, corpus, hand_written
 from test_rules import model
 
 from amalthea_uros import analyze_system, build_model, check, extract, load
-from amalthea_uros.analyze.chains.resolve import Carrier, Resolver
-from amalthea_uros.analyze.chains.spots import UnresolvedError
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.events import (
@@ -51,6 +49,8 @@ from amalthea_uros.perf.software import (
 )
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.timing.dataflow.links import Carrier, Resolver
 from amalthea_uros.units import MILLISECOND as MS
 
 RULE = "TIM-CHAIN-CARRIED"

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from support import MODEL, ROOT, SHARED, corpus, hand_written
 
 from amalthea_uros import analyze_system, build_model, check, extract, load
-from amalthea_uros.analyze.activation import arrivals_of
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.distributions import Boundaries, Bucket, Constant, Gauss, Histogram
 from amalthea_uros.perf.hardware import Clock, Core, CoreType, Feature, Hardware, Structure
@@ -44,6 +43,7 @@ from amalthea_uros.perf.stimuli import (
     Synthetic,
 )
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.event_models.stimuli import arrivals_of
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.load import loads, rates

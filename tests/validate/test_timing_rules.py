@@ -5,9 +5,9 @@ from support import corpus, hand_written
 from test_rules import model
 
 from amalthea_uros import check, extract, load
-from amalthea_uros.analyze.occurrences import occurrences
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.software import AccessKind, LabelAccess
+from amalthea_uros.timing.dataflow.occurrences import occurrences
 
 
 def found(rule, excerpt, folder, version="3.3.0"):

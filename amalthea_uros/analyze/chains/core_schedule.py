@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from amalthea_uros.analyze import schedule
-from amalthea_uros.analyze.core import released_on
-from amalthea_uros.analyze.cost import Cost
-from amalthea_uros.analyze.known import Known
-from amalthea_uros.analyze.schedule import Jobs, Released
+from amalthea_uros.analyze.response_times import schedule
+from amalthea_uros.analyze.response_times.core import released_on
+from amalthea_uros.analyze.response_times.schedule import Jobs, Released
+from amalthea_uros.timing.context import Known
+from amalthea_uros.timing.multiframe import Cost
 from amalthea_uros.units import Time
 
 

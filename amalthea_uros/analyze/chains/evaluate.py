@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from amalthea_uros.analyze.chains.expand import Unfolded, UnfoldError, combined, sequences, unfold
 from amalthea_uros.analyze.chains.methods import Methods
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.resolve import GAPS, Resolver, Route
+from amalthea_uros.analyze.chains.read_write_times import Timing, UntimedError
 from amalthea_uros.analyze.chains.result import ChainResult
-from amalthea_uros.analyze.chains.spots import UnresolvedError
 from amalthea_uros.analyze.chains.stages import Stage, communication_of, hop_text, stages
-from amalthea_uros.analyze.chains.timed import Timed
-from amalthea_uros.analyze.chains.timing import Timing, UntimedError
-from amalthea_uros.analyze.known import Known
-from amalthea_uros.analyze.task import Claim, Response
+from amalthea_uros.analyze.chains.timed_stage import Timed
+from amalthea_uros.analyze.response_times.task import Claim, Response
 from amalthea_uros.perf.events import Event, EventChain
 from amalthea_uros.perf.hardware import StructureKind
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.context import Known
+from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined, sequences, unfold
+from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.timing.dataflow.links import GAPS, Resolver, Route
 
 
 @dataclass(slots=True)

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.chains.track import Track, reach
+from amalthea_uros.analyze.chains.job_times import Track, reach
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.kernel import Numbers
+    from amalthea_uros.analyze.response_times.kernel import Numbers
 
 SOURCE = "Günzel and others 2021, 2023"
 #: Chains with more jobs are bounded otherwise.

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from amalthea_uros.analyze.chains import becker, bi, davare, duerr, hamann, job_chains, kloda
-from amalthea_uros.analyze.chains.periodic import Step
+from amalthea_uros.analyze.chains import job_chains
+from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
+from amalthea_uros.analyze.chains.bounds.chain_task import Step
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.timed import Timed
-from amalthea_uros.analyze.chains.timing import in_picoseconds
-from amalthea_uros.analyze.task import Claim
+from amalthea_uros.analyze.chains.read_write_times import in_picoseconds
+from amalthea_uros.analyze.chains.timed_stage import Timed
+from amalthea_uros.analyze.response_times.task import Claim
 from amalthea_uros.units import Time
 
 _Make = Callable[[Quantity, "Time | float"], Value]

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze import schedule
-from amalthea_uros.analyze.chains import progress
-from amalthea_uros.analyze.chains.places import Place
-from amalthea_uros.analyze.chains.spots import When
+from amalthea_uros.analyze.chains import completed_work as progress
 from amalthea_uros.analyze.chains.stages import At, Fire, Moment, Read, Stage, Write
-from amalthea_uros.analyze.cost import Cost
-from amalthea_uros.analyze.known import Known
-from amalthea_uros.analyze.schedule import Jobs
+from amalthea_uros.analyze.response_times import schedule
+from amalthea_uros.analyze.response_times.schedule import Jobs
 from amalthea_uros.perf.software import Communication
+from amalthea_uros.timing.context import Known
+from amalthea_uros.timing.dataflow.events import When
+from amalthea_uros.timing.dataflow.positions import Place
+from amalthea_uros.timing.multiframe import Cost
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.kernel import Numbers
+    from amalthea_uros.analyze.response_times.kernel import Numbers
 
 
 @dataclass(frozen=True, slots=True)

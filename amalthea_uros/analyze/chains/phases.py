@@ -9,17 +9,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from amalthea_uros.analyze.chains.expand import UnfoldError, sequences, unfold
-from amalthea_uros.analyze.chains.places import Place
 from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.resolve import Resolver
 from amalthea_uros.analyze.chains.result import ChainResult
-from amalthea_uros.analyze.chains.spots import UnresolvedError
 from amalthea_uros.analyze.chains.stages import stages
-from amalthea_uros.analyze.task import Claim
+from amalthea_uros.analyze.response_times.task import Claim
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Activity, Call, Process, Task
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
+from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.timing.dataflow.links import Resolver
+from amalthea_uros.timing.dataflow.positions import Place
 
 #: More phases are not tried.
 MOST_PHASES = 1000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from amalthea_uros.analyze.task import Claim
+from amalthea_uros.analyze.response_times.task import Claim
 from amalthea_uros.units import Time
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from amalthea_uros.analyze.chains.places import Place
-from amalthea_uros.analyze.chains.resolve import Carrier, Hop, Route
-from amalthea_uros.analyze.chains.spots import Spot
 from amalthea_uros.perf.software import Communication, LabelAccess, Process
 from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.timing.dataflow.events import Spot
+from amalthea_uros.timing.dataflow.links import Carrier, Hop, Route
+from amalthea_uros.timing.dataflow.positions import Place
 
 
 @dataclass(frozen=True, slots=True)

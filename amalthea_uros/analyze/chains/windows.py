@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.evaluate import Evaluation
-from amalthea_uros.analyze.chains.spots import Spot, When
-from amalthea_uros.analyze.core import known_releases
+from amalthea_uros.analyze.response_times.core import known_releases
 from amalthea_uros.perf.events import Event, EventSet
+from amalthea_uros.timing.dataflow.events import Spot, When
 from amalthea_uros.units import Time
 
 

@@ -12,14 +12,17 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support import SHARED
 
-from amalthea_uros.analyze import levels, schedule
-from amalthea_uros.analyze.arrivals import Periodic
-from amalthea_uros.analyze.chains import becker, bi, davare, duerr, hamann, job_chains, kloda, logical
-from amalthea_uros.analyze.chains.periodic import Step
-from amalthea_uros.analyze.chains.track import Track
-from amalthea_uros.analyze.cost import Cost
-from amalthea_uros.analyze.schedule import Released
-from amalthea_uros.analyze.task import Task
+from amalthea_uros.analyze.chains import job_chains
+from amalthea_uros.analyze.chains import let as logical
+from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
+from amalthea_uros.analyze.chains.bounds.chain_task import Step
+from amalthea_uros.analyze.chains.job_times import Track
+from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times import schedule
+from amalthea_uros.analyze.response_times.schedule import Released
+from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.timing.event_models.base import Periodic
+from amalthea_uros.timing.multiframe import Cost
 
 
 @cache

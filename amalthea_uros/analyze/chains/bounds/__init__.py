@@ -1,0 +1,1 @@
+"""Bounds of end-to-end latencies, one file per paper."""

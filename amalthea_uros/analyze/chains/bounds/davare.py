@@ -1,0 +1,19 @@
+"""A bound of the maximum reaction time from periods and response times alone.
+
+A. Davare, Q. Zhu, M. Di Natale, C. Pinello, S. Kanajan and A. Sangiovanni-Vincentelli, "Period optimization for hard real-time
+distributed automotive systems", DAC 2007: at each step a period of waiting and a response time. It needs no common time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from amalthea_uros.analyze.chains.bounds.chain_task import Step
+from amalthea_uros.units import Time
+
+SOURCE = "Davare and others 2007"
+
+
+def reaction_time(steps: Sequence[Step]) -> Time:
+    """A bound of the maximum reaction time."""
+    return sum(step.period + step.response for step in steps)

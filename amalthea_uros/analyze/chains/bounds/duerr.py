@@ -1,0 +1,30 @@
+"""Bounds of reaction time and data age of sporadic tasks.
+
+M. Dürr, G. von der Brüggen, K.-H. Chen and J.-J. Chen, "End-to-end timing analysis of sporadic cause-effect chains in distributed
+systems", ACM Transactions on Embedded Computing Systems 18(5s), 2019, theorems 5.4 and 5.10. A writer that comes before its reader
+on the same core has written before that can read, and its response time does not count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from amalthea_uros.analyze.chains.bounds.chain_task import Step
+from amalthea_uros.units import Time
+
+SOURCE = "Dürr and others 2019"
+
+
+def reaction_time(steps: Sequence[Step]) -> Time:
+    """A bound of the maximum reaction time."""
+    between = sum(
+        max(step.response, reader.period + (0 if step.hurries else step.response)) for step, reader in pairwise(steps)
+    )
+    return steps[0].period + between + steps[-1].response
+
+
+def reduced_data_age(steps: Sequence[Step]) -> Time:
+    """A bound of the maximum reduced data age."""
+    between = sum(step.period + (0 if step.hurries else step.response) for step in steps[:-1])
+    return between + steps[-1].response

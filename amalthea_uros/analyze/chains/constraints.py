@@ -1,0 +1,253 @@
+"""Timing constraints on chains and events, judged by what was computed.
+
+Their meaning is that of TADL2 (TIMMO-2-USE, deliverable D11), which AMALTHEA took over: a reaction constraint looks from each stimulus
+forward to the first response that it has caused, an age constraint from each response back to the last stimulus that has caused it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from amalthea_uros.analyze.chains.evaluate import Evaluation
+from amalthea_uros.analyze.chains.order import in_order
+from amalthea_uros.analyze.chains.quantities import Quantity, Value
+from amalthea_uros.analyze.chains.read_write_times import UntimedError
+from amalthea_uros.analyze.chains.result import ChainResult
+from amalthea_uros.analyze.chains.windows import UnknownError, Windows
+from amalthea_uros.analyze.response_times.core import known_releases
+from amalthea_uros.analyze.results import RequirementResult, Verdict
+from amalthea_uros.perf.constraints import (
+    ChainEnd,
+    ChainSynchronization,
+    DataAgeConstraint,
+    DelayConstraint,
+    EventSynchronization,
+    LatencyConstraint,
+    LatencyKind,
+    Matching,
+    OrderConstraint,
+    RepetitionConstraint,
+)
+from amalthea_uros.perf.events import LabelChange, LabelEvent
+from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.software import AccessKind, Call, LabelAccess
+from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.timing.dataflow.links import Carrier
+from amalthea_uros.timing.dataflow.positions import Place
+from amalthea_uros.timing.event_models.base import Arrivals, Periodic
+from amalthea_uros.units import Time
+
+_REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
+_AGE = (Quantity.MIN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE)
+
+
+@dataclass(slots=True)
+class Judge:
+    """Judges the constraints of a system."""
+
+    evaluation: Evaluation
+    chains: Mapping[str, ChainResult]
+    windows: Windows = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.windows = Windows(self.evaluation)
+
+    def all(self) -> Iterator[RequirementResult]:
+        """All constraints, those with two limits as two."""
+        constraints = self.evaluation.known.system.constraints
+        for constraint in (*constraints.constraints, *constraints.data_ages, *constraints.orders):
+            try:
+                yield from self._one(constraint)
+            except (UnknownError, UnresolvedError, UntimedError) as error:
+                yield RequirementResult(
+                    name=constraint.name,
+                    object="",
+                    quantity=type(constraint).__name__,
+                    is_upper=True,
+                    limit=None,
+                    value=None,
+                    verdict=Verdict.UNKNOWN,
+                    reason=str(error),
+                )
+
+    def _one(self, constraint: Named) -> Iterator[RequirementResult]:
+        match constraint:
+            case LatencyConstraint():
+                yield from self._latency(constraint)
+            case DelayConstraint():
+                yield from self._delay(constraint)
+            case RepetitionConstraint():
+                yield from self._repetition(constraint)
+            case EventSynchronization(events=events, tolerance=tolerance):
+                yield _result(constraint, ", ".join(events), "spread", tolerance, self.windows.spread(events))
+            case ChainSynchronization():
+                yield self._chain_synchronization(constraint)
+            case DataAgeConstraint():
+                yield from self._data_age(constraint)
+            case OrderConstraint():
+                yield from self._order(constraint)
+
+    # Chains
+
+    def _latency(self, constraint: LatencyConstraint) -> Iterator[RequirementResult]:
+        chain = self.chains.get(constraint.chain)
+        if chain is None:
+            raise UnknownError(f"the chain {constraint.chain!r} is not part of the model")
+        least, most = _AGE if constraint.kind is LatencyKind.AGE else _REACTION
+        kind = str(constraint.kind)
+        if constraint.maximum is not None:
+            value = _time(chain.value(most))
+            yield _result(constraint, chain.name, kind, constraint.maximum, value, chain.reason)
+        if constraint.minimum is not None:
+            value = _time(chain.value(least))
+            yield _result(constraint, chain.name, kind, constraint.minimum, value, chain.reason, is_upper=False)
+
+    def _delay(self, constraint: DelayConstraint) -> Iterator[RequirementResult]:
+        source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
+        if constraint.matching is not Matching.REACTION:
+            hops = {hop.carrier for route in self.evaluation.resolver.routes([source, target]) for hop in route.hops}
+            if not hops <= {Carrier.JOB, Carrier.TRIGGER}:
+                raise UnknownError(
+                    "where data are overwritten or read again, occurrences do not belong to each other one by one"
+                )
+        values = {value.quantity: value for value in self.evaluation.pair(source, target)}
+        least, most = _REACTION
+        what = f"{constraint.source} to {constraint.target}"
+        if constraint.upper is not None:
+            yield _result(constraint, what, "delay", constraint.upper, _time(values.get(most)))
+        if constraint.lower is not None:
+            yield _result(constraint, what, "delay", constraint.lower, _time(values.get(least)), is_upper=False)
+
+    def _chain_synchronization(self, constraint: ChainSynchronization) -> RequirementResult:
+        found = [self.chains.get(name) for name in constraint.chains]
+        system = self.evaluation.known.system
+        chains = [system.chains[name] for name in constraint.chains if name in system.chains]
+        if None in found or len(chains) < 2:
+            raise UnknownError("it needs two chains of the model")
+        is_start = constraint.end is ChainEnd.STIMULUS
+        ends = [chain.stimulus if is_start else chain.response for chain in chains]
+        value: Time | None
+        if not is_start and len({chain.stimulus for chain in chains}) == 1:
+            # From the same stimulus: as much as one may be late and the other one early.
+            latest = [_time(each.value(_REACTION[1])) for each in found if each is not None]
+            earliest = [_time(each.value(_REACTION[0])) for each in found if each is not None]
+            value = _difference(latest, earliest)
+        else:
+            value = self.windows.spread([end for end in ends if end is not None])
+        return _result(constraint, ", ".join(constraint.chains), f"spread at the {constraint.end}", constraint.tolerance, value)
+
+    def _data_age(self, constraint: DataAgeConstraint) -> Iterator[RequirementResult]:
+        """From each write of the runnable to the reads that still see it."""
+        written = LabelEvent(name="write", label=constraint.label, change=LabelChange.WRITE, runnable=constraint.runnable)
+        (spot, *_) = self.evaluation.resolver.spots.of(written)
+        readers = {
+            place.process.name
+            for process in self.evaluation.known.system.processes
+            for place in self.evaluation.resolver.spots.places(process)
+            if _reads(place, constraint.label) and process != spot.process.name
+        }
+        releases = known_releases(spot.process, self.evaluation.known.system)
+        cycle = releases.period if releases is not None else None
+        latest = _cycles(constraint.latest, constraint.latest_cycle, cycle)
+        earliest = _cycles(constraint.earliest, constraint.earliest_cycle, cycle)
+        for name in sorted(readers):
+            read = LabelEvent(name="read", label=constraint.label, change=LabelChange.READ, process=name)
+            values = {value.quantity: value for value in self.evaluation.pair(written, read)}
+            what = f"{constraint.label} in {name}"
+            if latest is not None:
+                yield _result(constraint, what, "age", latest, _time(values.get(_AGE[1])))
+            if earliest is not None:
+                yield _result(constraint, what, "age", earliest, _time(values.get(_AGE[0])), is_upper=False)
+
+    # Events
+
+    def _repetition(self, constraint: RepetitionConstraint) -> Iterator[RequirementResult]:
+        spot = self.windows.spot(constraint.event)
+        arrivals = self.evaluation.known.arrivals.get(spot.process.name)
+        if arrivals is None:
+            raise UnknownError(f"the arrivals of {spot.process.name!r} are not known")
+        early, late = self.windows.of(spot)
+        span = max(1, constraint.span)
+        if constraint.upper is not None:
+            longest = _longest(arrivals, span)
+            value = None if longest is None else longest + late - early
+            yield _result(constraint, constraint.event, "repetition", constraint.upper, value)
+        if constraint.lower is not None:
+            value = max(0, arrivals.span(span + 1) - (late - early))
+            yield _result(constraint, constraint.event, "repetition", constraint.lower, value, is_upper=False)
+        if constraint.jitter is not None:
+            own = arrivals.jitter if isinstance(arrivals, Periodic) and not arrivals.sporadic else None
+            value = None if own is None else own + late - early
+            yield _result(constraint, constraint.event, "jitter", constraint.jitter, value)
+
+    # Order
+
+    def _order(self, constraint: OrderConstraint) -> Iterator[RequirementResult]:
+        wanted = [name for group in constraint.groups for name in group]
+        for process in constraint.processes or tuple(self.evaluation.known.system.processes):
+            called = [
+                place.activity.runnable
+                for place in self.evaluation.resolver.spots.places(process)
+                if isinstance(place.activity, Call) and len(place.outer) == 1
+            ]
+            if not any(name in called for name in wanted):
+                continue
+            holds = in_order(called, constraint)
+            yield RequirementResult(
+                name=constraint.name,
+                object=process,
+                quantity="order of runnables",
+                is_upper=True,
+                limit=None,
+                value=None,
+                verdict=Verdict.MET if holds else Verdict.MISSED,
+            )
+
+
+def _result(
+    constraint: Named, what: str, quantity: str, limit: Time, value: Time | None, reason: str = "", is_upper: bool = True
+) -> RequirementResult:
+    if not is_upper and value is None and not reason:
+        value = 0  # nothing is faster than at once
+    keeps = value is not None and (value <= limit if is_upper else value >= limit)
+    return RequirementResult(
+        name=constraint.name,
+        object=what,
+        quantity=quantity,
+        is_upper=is_upper,
+        limit=limit,
+        value=value,
+        verdict=Verdict.UNKNOWN if value is None else Verdict.MET if keeps else Verdict.MISSED,
+        reason=reason if value is None else "",
+    )
+
+
+def _time(value: Value | None) -> Time | None:
+    return value.value if value is not None else None
+
+
+def _difference(latest: Sequence[Time | None], earliest: Sequence[Time | None]) -> Time | None:
+    if None in latest or None in earliest:
+        return None
+    return max(time for time in latest if time is not None) - min(time for time in earliest if time is not None)
+
+
+def _cycles(time: Time | None, cycles: int | None, period: Time | None) -> Time | None:
+    if time is not None or cycles is None:
+        return time
+    if period is None:
+        raise UnknownError("activations are no time where the period of the writer is not known")
+    return cycles * period
+
+
+def _longest(arrivals: Arrivals, count: int) -> Time | None:
+    """The longest time that so many steps from one arrival to the next can take."""
+    if isinstance(arrivals, Periodic) and not arrivals.sporadic:
+        return count * arrivals.period + arrivals.jitter
+    return None if arrivals.gap is None else count * arrivals.gap
+
+
+def _reads(place: Place, label: str) -> bool:
+    access = place.activity
+    return isinstance(access, LabelAccess) and access.label == label and access.kind is AccessKind.READ

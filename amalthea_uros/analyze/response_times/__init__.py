@@ -1,0 +1,1 @@
+"""Response times, one method per file."""

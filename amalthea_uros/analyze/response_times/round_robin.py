@@ -1,0 +1,78 @@
+"""Response times of tasks that share a priority in slices of time.
+
+After R. Racu, L. Li, R. Henia, A. Hamann and R. Ernst, "Improved response time analysis of tasks scheduled under preemptive
+round-robin", CODES+ISSS 2007: while a task is served its q jobs in slices, each other task of its priority gets a slice at most before
+each of these, and no more than it demands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
+from amalthea_uros.analyze.response_times.fixed_priority import most_jobs, unbounded
+from amalthea_uros.analyze.response_times.kernel import LIMIT, MOST_STEPS
+from amalthea_uros.analyze.response_times.task import Claim, Response, Task
+from amalthea_uros.units import Time
+
+METHOD = "busy window, round robin"
+SOURCE = "Racu, Li, Henia, Hamann, Ernst 2007"
+
+
+def response_time(task: Task, others: Sequence[Task], higher: Interference, blocking: Time = 0) -> Response:
+    """The response time of a task among others of its priority.
+
+    Parameters
+    ----------
+    higher : what comes before all of them
+    """
+    if _overloads(task, others, higher):
+        return unbounded(task.cost.best, Interference.of([*higher.tasks, *others], higher.supply), task, METHOD, SOURCE)
+    completions: list[Time] = []
+    for job in range(1, most_jobs(task)):
+        end = _end(task, job, others, higher, blocking)
+        if end > LIMIT:
+            break
+        completions.append(end)
+        if end <= task.arrivals.span(job + 1):
+            return _response(task, completions, blocking)
+    reason = "its busy window does not end: the demand fills the processor"
+    return Response(worst=None, best=task.cost.best, method=METHOD, source=SOURCE, reason=reason)
+
+
+def _overloads(task: Task, others: Sequence[Task], higher: Interference) -> bool:
+    """Whether a task is served less than it demands; slices keep others that demand too much from taking all."""
+    own = demand_rate(task)
+    between = sum((min(own * other.slice / task.slice, demand_rate(other)) for other in others), own)
+    return sum(map(demand_rate, higher.tasks), between) > higher.supply.rate
+
+
+def _end(task: Task, job: int, others: Sequence[Task], higher: Interference, blocking: Time) -> Time:
+    own = task.cost.most(job)
+    slices = -(-own // task.slice)
+    end = 0
+    for _ in range(MOST_STEPS):
+        between = sum(min(slices * other.slice, other.cost.most(other.arrivals.most(end))) for other in others)
+        reached = higher.window(blocking + own + between, end)
+        if reached is None:
+            break
+        if reached == end:
+            return end
+        end = reached
+    return LIMIT + 1
+
+
+def _response(task: Task, completions: Sequence[Time], blocking: Time) -> Response:
+    worst_job = max(range(1, len(completions) + 1), key=lambda job: completions[job - 1] - task.arrivals.span(job))
+    window, own, earlier = completions[worst_job - 1], task.cost.most(worst_job), task.arrivals.span(worst_job)
+    return Response(
+        worst=window - earlier,
+        best=task.cost.best,
+        method=METHOD,
+        source=SOURCE,
+        claim=Claim.BOUND,
+        jobs=len(completions),
+        window=window,
+        completions=tuple(completions),
+        terms={"own": own, "interference": window - own - blocking, "blocking": blocking, "earlier arrival": -earlier},
+    )

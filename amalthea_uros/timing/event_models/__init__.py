@@ -1,0 +1,1 @@
+"""Event models: bounds on how often something happens."""
