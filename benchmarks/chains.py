@@ -14,15 +14,15 @@ from itertools import pairwise
 from random import Random
 
 from amalthea_uros.analyze.chains import job_chains
-from amalthea_uros.analyze.chains.job_times import Track
+from amalthea_uros.analyze.chains.job_times import ReadWriteTimes
 from amalthea_uros.analyze.response_times import kernel, schedule
-from amalthea_uros.analyze.response_times.schedule import Jobs, Released
+from amalthea_uros.analyze.response_times.schedule import Jobs, PeriodicTask
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import events, mapping, os, software, stimuli
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.timing.multiframe import MultiframeDemand
 
 MILLISECOND = 10**9
 #: 43,000 jobs in a hyperperiod of 1 s.
@@ -30,15 +30,15 @@ PERIODS = (*[1] * 40, *[2] * 5, 5, 10, 20, 100, 1000)
 LENGTH = 15
 
 
-def task_set(random: Random) -> list[Released]:
+def task_set(random: Random) -> list[PeriodicTask]:
     """50 tasks at 70 % load."""
     shares = [random.random() for _ in PERIODS]
     return [
-        Released(
+        PeriodicTask(
             name=f"T{index}",
             period=period * MILLISECOND,
             offset=0,
-            cost=Cost.constant(max(1, int(period * MILLISECOND * 0.7 * share / sum(shares)))),
+            cost=MultiframeDemand.constant(max(1, int(period * MILLISECOND * 0.7 * share / sum(shares)))),
             priority=-index,
         )
         for index, (period, share) in enumerate(zip(PERIODS, shares, strict=True))
@@ -48,14 +48,15 @@ def task_set(random: Random) -> list[Released]:
 def four_quantities(jobs: list[Jobs], chain: list[int], cycle: int) -> tuple[int, int, int, int]:
     """The maxima of a chain."""
     tracks = [
-        Track(releases=jobs[i].releases, reads=jobs[i].begins, writes=jobs[i].ends, cycle=cycle, until=2 * cycle) for i in chain
+        ReadWriteTimes(releases=jobs[i].releases, reads=jobs[i].begins, writes=jobs[i].ends, cycle=cycle, until=2 * cycle)
+        for i in chain
     ]
-    found = job_chains.follow(tracks, cycle)
+    found = job_chains.build_job_chains(tracks, cycle)
     assert found is not None
     return found.reaction_time, found.data_age, int(found.first_to_first.max()), int(found.last_to_last.max())
 
 
-def whole_system(tasks: list[Released], chains: list[list[int]]) -> System:
+def whole_system(tasks: list[PeriodicTask], chains: list[list[int]]) -> System:
     """The tasks as a system, each of which reads what any other one writes, with chains through them."""
     labels = [software.LabelAccess(label=task.name, kind=software.AccessKind.READ) for task in tasks]
     made = [
@@ -111,14 +112,14 @@ def main() -> None:
     cycle = schedule.hyperperiod(tasks)
     print(f"{len(tasks)} tasks, {sum(cycle // task.period for task in tasks):,} jobs")
     kernel.dispatch.keep_python()
-    took = least_time(lambda: schedule.schedule(tasks, cycle, Cost.worst_of), options.repeat)
+    took = least_time(lambda: schedule.schedule(tasks, cycle, MultiframeDemand.worst_of), options.repeat)
     print(f"schedule as Python: {took:.0f} ms")
     if find_spec("numba"):
         kernel.dispatch.compile()
-        schedule.schedule(tasks, MILLISECOND, Cost.worst_of)
-        took = least_time(lambda: schedule.schedule(tasks, cycle, Cost.worst_of), options.repeat)
+        schedule.schedule(tasks, MILLISECOND, MultiframeDemand.worst_of)
+        took = least_time(lambda: schedule.schedule(tasks, cycle, MultiframeDemand.worst_of), options.repeat)
         print(f"schedule compiled: {took:.1f} ms")
-    jobs = schedule.schedule(tasks, 2 * cycle, Cost.worst_of)
+    jobs = schedule.schedule(tasks, 2 * cycle, MultiframeDemand.worst_of)
     for length in (5, 10, LENGTH):
         chains = [random.sample(range(len(tasks)), length) for _ in range(20)]
         took = least_time(lambda chains=chains: [four_quantities(jobs, chain, cycle) for chain in chains], options.repeat)

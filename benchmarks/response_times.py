@@ -22,8 +22,8 @@ from amalthea_uros.perf import mapping, os, software, stimuli
 from amalthea_uros.perf.distributions import Statistics
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.event_models.base import Periodic
-from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.multiframe import MultiframeDemand
 
 PERIODS = (1, 2, 5, 10, 20, 50, 100, 200, 1000)
 MILLISECOND = 10**9
@@ -37,7 +37,7 @@ def task_set(count: int, load: float, random: Random, jitter: bool) -> list[Task
         Task(
             name=f"T{index}",
             arrivals=Periodic(period, random.randrange(period // 10) if jitter else 0),
-            cost=Cost.constant(max(1, int(period * load * share / sum(shares)))),
+            cost=MultiframeDemand.constant(max(1, int(period * load * share / sum(shares)))),
             priority=-index,
         )
         for index, (period, share) in enumerate(zip(periods, shares, strict=True))

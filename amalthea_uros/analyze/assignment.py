@@ -10,16 +10,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.analyze.response_times.blocking import Blocking, is_interruptible
+from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import response_time
-from amalthea_uros.analyze.response_times.task import Sharing, Task
-from amalthea_uros.analyze.system import prepare, respond
-from amalthea_uros.perf.system import System
-from amalthea_uros.timing.context import Known
-from amalthea_uros.timing.event_models.base import finer
-from amalthea_uros.timing.scheduling import Placed
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.timing.event_models import rescaled
+from amalthea_uros.timing.preemption import is_preemptive
+from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
 from amalthea_uros.units import Time
 
 
@@ -64,48 +63,48 @@ class Proposal:
     reason: str = ""
 
 
-def propose(system: System, settings: Settings | None = None) -> list[Proposal]:
+def propose_priorities(analysis: Analysis) -> list[Proposal]:
     """Priorities for each core on which they decide."""
-    known = prepare(system, settings)
-    respond(known)
-    cores = {core: known.on_core(core) for core in system.cores}
-    return [_propose(core, here, known) for core, here in cores.items() if any(not placed.is_isr for placed in here)]
+    solution = analysis.solution
+    cores = {core: solution.context.on_core(core) for core in solution.context.system.cores}
+    return [_propose(core, here, solution) for core, here in cores.items() if any(not item.is_isr for item in here)]
 
 
-def _propose(core: str, here: Sequence[Placed], known: Known) -> Proposal:
-    tasks = [placed for placed in here if not placed.is_isr]
-    current = {placed.name: placed.priority for placed in tasks}
-    reason = next((why for placed in here if (why := _obstacle(placed, known))), "")
+def _propose(core: str, here: Sequence[ScheduledProcess], solution: Solution) -> Proposal:
+    tasks = [item for item in here if not item.is_isr]
+    current = {item.name: item.priority for item in tasks}
+    reason = next((why for item in here if (why := _obstacle(item, solution))), "")
     if reason:
         return Proposal(core=core, current=current, priorities=None, reason=reason)
-    grains = known.demands.grains(core)
-    deadlines = [(placed.deadline or 0) * grains for placed in tasks]
-    above = [_task(placed, known, grains) for placed in here if placed.is_isr]
-    order = assign([_task(placed, known, grains) for placed in tasks], deadlines, above)
+    time_base = solution.context.demand_model.time_base(core)
+    deadlines = [(item.deadline or 0) * time_base for item in tasks]
+    above = [_task(item, solution) for item in here if item.is_isr]
+    order = assign([_task(item, solution) for item in tasks], deadlines, above)
     if order is None:
         return Proposal(core=core, current=current, priorities=None, reason="no assignment of priorities meets all deadlines")
     numbers = sorted({priority for priority in current.values() if priority is not None})
     if len(numbers) < len(tasks):
         numbers = list(range(1, len(tasks) + 1))
     found = {tasks[index].name: number for index, number in zip(order, numbers, strict=True)}
-    return Proposal(core=core, current=current, priorities={placed.name: found[placed.name] for placed in tasks})
+    return Proposal(core=core, current=current, priorities={item.name: found[item.name] for item in tasks})
 
 
-def _obstacle(placed: Placed, known: Known) -> str:
+def _obstacle(item: ScheduledProcess, solution: Solution) -> str:
     """Why nothing can be proposed for the core of a process."""
-    name = placed.name
-    if name not in known.costs or name not in known.arrivals:
-        return f"too little is known of {name!r}: {known.reasons.get(name, '')}"
-    if placed.is_isr:
+    name = item.name
+    if not solution.is_known(name):
+        return f"too little is known of {name!r}: {solution.reasons.get(name, '')}"
+    if item.is_isr:
         return ""
-    if placed.deadline is None:
+    if item.deadline is None:
         return f"{name!r} has no deadline"
-    if placed.server is not None or placed.sharing is not Sharing.ARRIVAL or len(placed.rank) != len((0, placed.priority)):
+    if item.server is not None or item.equal_priority is not EqualPriority.FIFO or len(item.rank) != len((0, item.priority)):
         return f"more than one priority decides about {name!r}"
-    if not is_interruptible(placed) or Blocking([placed], known.demands).ceilings:
+    if not is_preemptive(item) or Blocking([item], solution.context.demand_model).ceilings:
         return f"{name!r} may hold up others, which depends on the priorities"
     return ""
 
 
-def _task(placed: Placed, known: Known, grains: int) -> Task:
-    return Task(name=placed.name, arrivals=finer(known.arrivals[placed.name], grains), cost=known.costs[placed.name])
+def _task(item: ScheduledProcess, solution: Solution) -> Task:
+    events = rescaled(solution.event_models[item.name], solution.context.time_base(item.name))
+    return Task(name=item.name, arrivals=events, cost=solution.context.demands[item.name])

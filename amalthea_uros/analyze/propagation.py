@@ -1,137 +1,102 @@
-"""Activations that spread through a system: a process that another one triggers arrives as irregularly as that one ends.
+"""Activations that spread through a system: a process that another one triggers is activated as irregularly as that one ends.
 
-Compositional analysis (K. Richter 2005): the arrivals of the triggered process are derived from those of the triggering one and the
-times at which the jobs of its busy window end. This is repeated until nothing changes; irregularity only grows, so that the least fixed
-point is found, or none.
+Compositional analysis (K. Richter 2005): the activations of the triggered process are derived from those of the triggering one and the
+completions of the jobs in its busy window. This is repeated until nothing changes; irregularity only grows, so that the least fixed
+point is found, or there is none.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
 
-from amalthea_uros.analyze.response_times.task import Response
-from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
-from amalthea_uros.perf.software import Process, Trigger
-from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess
-from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.occurrences import Occurrence, occurrences, raises
-from amalthea_uros.timing.event_models.base import Arrivals, Behind, Delayed, Every, Repeated, Together
-from amalthea_uros.timing.event_models.stimuli import arrivals_of
+from amalthea_uros.analyze.response_times.core import responses_on
+from amalthea_uros.analyze.results import Response
+from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.perf.software import Process
+from amalthea_uros.timing.activation import Output, UnknownActivationError
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, Periodic
+from amalthea_uros.timing.limits import MAX_INPUT
 from amalthea_uros.units import Time
 
-
-class UnknownArrivalsError(Exception):
-    """Nothing bounds the arrivals of a process; the text says why."""
-
-
-class Cause(NamedTuple):
-    """A process that causes something, how often in a job, and whether only every n-th time."""
-
-    process: Process
-    times: int
-    counter: Counter | None
+#: Rounds of propagation, and jobs of busy windows in all of them; irregularity that still grows then will not stop.
+MAX_ROUNDS = 100
+MAX_JOBS = 50_000
 
 
-@dataclass(slots=True)
-class Propagation:
-    """The arrivals of all processes, given their response times so far.
+def solve(context: TimingContext) -> Solution:
+    """All response times, computed as often as they change the activations of others."""
+    solution = Solution(context, reasons=dict(context.reasons))
+    unsettled: set[str] = set()
+    while True:
+        growing = _settle(solution, unsettled)
+        if not growing:
+            return solution
+        # Without those that do not settle, and what follows from them, the others may.
+        unsettled |= growing
+        for name in growing:
+            solution.mark_unknown(
+                name, "its response time and the arrivals of what it triggers make each other grow without an end"
+            )
 
-    Attributes
-    ----------
-    least_costs : best-case execution times, as far as they are known
-    unknown : processes of which the response time is not known
-    triggers : who triggers a stimulus
-    """
 
-    system: System
-    least_costs: Mapping[str, Time]
-    unknown: Mapping[str, str]
-    triggers: dict[str, list[Cause]] = field(default_factory=dict)
-    happens: list[Occurrence] = field(default_factory=list)
+def _settle(solution: Solution, unsettled: set[str]) -> set[str]:
+    """Find response times that fit the activations; gives the processes for which there are none."""
+    responses: dict[str, Response] = {}
+    work = 0
+    for number in range(MAX_ROUNDS):
+        before = responses
+        solution.event_models = _event_models(solution, unsettled, before)
+        responses = {}
+        for core in solution.context.system.cores:
+            responses |= responses_on(core, solution)
+        if responses == before:
+            solution.responses = responses
+            return set()
+        work += sum(response.jobs for response in responses.values())
+        if number and work > MAX_JOBS:
+            break
+    return {name for name, response in responses.items() if response != before.get(name)}
 
-    def __post_init__(self) -> None:
-        self.happens = list(occurrences(self.system))
-        for what in self.happens:
-            if isinstance(what.activity, Trigger):
-                causes = self.triggers.setdefault(what.activity.stimulus, [])
-                causes.append(Cause(what.process, what.times, what.activity.counter))
 
-    def arrivals(self, process: Process, responses: Mapping[str, Response], above: tuple[str, ...] = ()) -> Arrivals:
-        """The event model of a process.
+def _event_models(solution: Solution, unsettled: set[str], responses: Mapping[str, Response]) -> dict[str, EventModel]:
+    """The activations of each process, given the response times so far."""
+    context = solution.context
+    output = _output(solution, responses)
+    found: dict[str, EventModel] = {}
+    for name, scheduled in context.scheduled.items():
+        if name in unsettled:
+            continue
+        try:
+            events = context.activations.of(scheduled.process, output)
+            if isinstance(events, Periodic) and events.jitter * context.time_base(name) > MAX_INPUT:
+                raise UnknownActivationError("its jitter is longer than can be counted")
+            found[name] = events
+        except UnknownActivationError as error:
+            context.notes.warning("ANA005", f"the arrivals of {name!r} are not known: {error}", scheduled.process)
+            solution.mark_unknown(name, str(error))
+    return found
 
-        Raises
-        ------
-        UnknownArrivalsError : it is never activated, or nothing bounds how often.
-        """
-        if process.name in above:
-            raise UnknownArrivalsError(f"it is triggered in a circle: {' -> '.join((*above, process.name))}")
-        found = [self._of(name, responses, (*above, process.name)) for name in process.stimuli]
-        if not found:
-            raise UnknownArrivalsError("it has no stimulus, so that nothing activates it")
-        return found[0] if len(found) == 1 else Together(tuple(found))
 
-    def _of(self, name: str, responses: Mapping[str, Response], above: tuple[str, ...]) -> Arrivals:
-        stimulus = self.system.stimuli_by_name.get(name)
-        if stimulus is None:
-            raise UnknownArrivalsError(f"the stimulus {name!r} is not part of the model")
-        if not isinstance(stimulus, InterProcess | EventTriggered):
-            arrivals = arrivals_of(stimulus, self.system)
-            if arrivals is None:
-                raise UnknownArrivalsError(f"nothing bounds how often {name!r} occurs")
-            return arrivals
-        is_triggered = isinstance(stimulus, InterProcess)
-        causes = self.triggers.get(name, []) if is_triggered else self._causes(stimulus)  # type: ignore[arg-type]
-        if not causes:
-            raise UnknownArrivalsError(f"nothing triggers {name!r}")
-        sources = [self._behind(cause, responses, above) for cause in causes]
-        together = sources[0] if len(sources) == 1 else Together(tuple(sources))
-        return _counted(together, stimulus.counter)
+def _output(solution: Solution, responses: Mapping[str, Response]) -> Output:
+    """The events that processes cause by their jobs."""
 
-    def _causes(self, stimulus: EventTriggered) -> list[Cause]:
-        """The processes in which the events of a stimulus occur."""
-        found: list[Cause] = []
-        for name in stimulus.events:
-            event = self.system.events_by_name.get(name)
-            if event is None:
-                raise UnknownArrivalsError(f"the event {name!r} is not part of the model")
-            self._check(event)
-            causes = [Cause(what.process, what.times, None) for what in self.happens if raises(what, event)]
-            if not causes and isinstance(event, CustomEvent):
-                raise UnknownArrivalsError(f"nothing in the model raises the event {name!r}")
-            found += causes
-        return found
-
-    def _check(self, event: Event) -> None:
-        """Refuse events that may occur otherwise than by what processes execute."""
-        if isinstance(event, RunnableEvent) and event.change not in (RunnableChange.START, RunnableChange.TERMINATE):
-            raise UnknownArrivalsError(f"nothing bounds how often the event {event.name!r} occurs")
-        if isinstance(event, ModeLabelEvent):
-            assigned = {mode.label for stimulus in self.system.stimuli.stimuli for mode in stimulus.assignments}
-            if event.label is None or event.label in assigned:
-                raise UnknownArrivalsError(f"stimuli raise the event {event.name!r}, too")
-
-    def _behind(self, cause: Cause, responses: Mapping[str, Response], above: tuple[str, ...]) -> Arrivals:
-        """The arrivals that a process causes somewhere between its start and its end."""
-        process = cause.process
-        if process.name in self.unknown:
-            raise UnknownArrivalsError(f"too little is known of {process.name!r}, which triggers it")
-        found = self.arrivals(process, responses, above)
+    def output(process: Process, activations: Callable[[], EventModel]) -> EventModel:
+        if process.name in solution.reasons:
+            raise UnknownActivationError(f"too little is known of {process.name!r}, which triggers it")
+        events = activations()
         response = responses.get(process.name)
-        if response is not None:
-            if response.worst is None:
-                raise UnknownArrivalsError(f"{process.name!r}, which triggers it, has no bounded response time")
-            found = behind(found, response, self.least_costs.get(process.name, 0))
-        return _counted(found if cause.times == 1 else Repeated(found, cause.times), cause.counter)
+        if response is None:
+            return events
+        if response.worst is None:
+            raise UnknownActivationError(f"{process.name!r}, which triggers it, has no bounded response time")
+        return completions(events, response, solution.bcet(process.name))
+
+    return output
 
 
-def behind(arrivals: Arrivals, response: Response, least_cost: Time) -> Arrivals:
-    """The ends of the jobs of a task as arrivals; each of them costs something at least."""
+def completions(events: EventModel, response: Response, bcet: Time) -> EventModel:
+    """The completions of the jobs of a task; each of them takes its best-case execution time at least."""
     if response.completions:
-        return Behind(arrivals, response.completions, least_cost)
-    return Delayed(arrivals, (response.worst or 0) - least_cost)
-
-
-def _counted(arrivals: Arrivals, counter: Counter | None) -> Arrivals:
-    return Every(arrivals, counter.prescaler) if counter is not None and counter.prescaler > 1 else arrivals
+        return OutputEventModel(events, response.completions, bcet)
+    return Delayed(events, (response.worst or 0) - bcet)

@@ -11,16 +11,6 @@ from amalthea_uros.timing.notes import Notes
 from amalthea_uros.units import Time
 
 
-def upper_response_limits(system: System) -> dict[str, Time]:
-    """The deadline of processes that an upper limit of the response time gives; of several the shortest."""
-    found: dict[str, Time] = {}
-    for requirement in system.constraints.requirements:
-        match requirement.limit:
-            case TimeLimit(metric=TimeMetric.RESPONSE_TIME, bound=Bound.UPPER, value=value) if requirement.process:
-                found[requirement.process] = min(value, found.get(requirement.process, value))
-    return found
-
-
 def judge(system: System, processes: Mapping[str, ProcessResult], notes: Notes) -> Iterator[RequirementResult]:
     """The verdict on each limit of a time; limits of something else are told to be left out."""
     for requirement in system.constraints.requirements:
@@ -57,7 +47,7 @@ def _range(process: ProcessResult, metric: TimeMetric) -> tuple[Time | None, Tim
         case TimeMetric.NET_EXECUTION_TIME | TimeMetric.RUNNING_TIME | TimeMetric.CORE_EXECUTION_TIME:
             return least, most
         case TimeMetric.ACTIVATE_TO_ACTIVATE:
-            return process.distance, process.gap
+            return process.min_interarrival, process.max_interarrival
     response = process.response
     if response is None or least is None:
         return None, None
@@ -85,15 +75,15 @@ def _between_jobs(
     process: ProcessResult, metric: TimeMetric, waits: Time, best: Time, worst: Time
 ) -> tuple[Time | None, Time | None]:
     """Times from a job to the next one: the distance of their activations, and how much earlier or later both may start or end."""
-    if process.distance is None:
+    if process.min_interarrival is None:
         return None, None
     match metric:
         case TimeMetric.START_TO_START:
-            return max(0, process.distance - waits), _plus(process.gap, waits)
+            return max(0, process.min_interarrival - waits), _plus(process.max_interarrival, waits)
         case TimeMetric.END_TO_END:
-            return max(0, process.distance - (worst - best)), _plus(process.gap, worst - best)
+            return max(0, process.min_interarrival - (worst - best)), _plus(process.max_interarrival, worst - best)
         case TimeMetric.END_TO_START:
-            return process.distance - worst, _plus(process.gap, waits - best)
+            return process.min_interarrival - worst, _plus(process.max_interarrival, waits - best)
     return None, None
 
 

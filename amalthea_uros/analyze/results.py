@@ -2,14 +2,51 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
-from amalthea_uros.analyze.chains.result import ChainResult
-from amalthea_uros.analyze.response_times.task import Response
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.units import Frequency, Time
+
+if TYPE_CHECKING:
+    from amalthea_uros.analyze.solution import Solution
+
+
+class Claim(StrEnum):
+    """What a number claims."""
+
+    EXACT = "exact"
+    BOUND = "bound"
+    OBSERVED = "observed"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Response:
+    """The response time of a task, from its arrival to its end.
+
+    Attributes
+    ----------
+    worst : None if there is no finite bound, and then `reason` says why
+    best : least response time that is possible
+    jobs : how many jobs of the busy window were looked at
+    window : length of the busy window up to the end of the worst job
+    completions : when its jobs end at the latest, from its start; empty if that is not known
+    terms : what the worst case is made of: own, interference, blocking; it is their sum
+    """
+
+    worst: Time | None
+    best: Time
+    method: str
+    source: str
+    claim: Claim = Claim.EXACT
+    jobs: int = 1
+    window: Time = 0
+    completions: tuple[Time, ...] = ()
+    terms: Mapping[str, Time] = field(default_factory=dict)
+    reason: str = ""
 
 
 class Verdict(StrEnum):
@@ -39,7 +76,7 @@ class ProcessResult:
     Attributes
     ----------
     response : None if it is not known, and then `reason` says why
-    distance, gap : the least and the longest time from one activation to the next; None if that is not known
+    min_interarrival, max_interarrival : time from one activation to the next; None if it is unknown
     """
 
     name: str
@@ -54,8 +91,73 @@ class ProcessResult:
     deadline: Time | None
     verdict: Verdict
     reason: str = ""
-    distance: Time | None = None
-    gap: Time | None = None
+    min_interarrival: Time | None = None
+    max_interarrival: Time | None = None
+
+
+class Quantity(StrEnum):
+    """A latency from the start of a chain to its end."""
+
+    MAX_REACTION_TIME = "max_reaction_time"
+    MAX_REDUCED_REACTION_TIME = "max_reduced_reaction_time"
+    MAX_DATA_AGE = "max_data_age"
+    MAX_REDUCED_DATA_AGE = "max_reduced_data_age"
+    MAX_FIRST_TO_LAST = "max_first_to_last"
+    MAX_LAST_TO_FIRST = "max_last_to_first"
+    MIN_FIRST_TO_FIRST = "min_first_to_first"
+    MIN_LAST_TO_LAST = "min_last_to_last"
+    MIN_LAST_TO_FIRST = "min_last_to_first"
+    MEAN_REACTION_TIME = "mean_reaction_time"
+    MEAN_FIRST_TO_FIRST = "mean_first_to_first"
+    MEAN_LAST_TO_LAST = "mean_last_to_last"
+
+    @property
+    def is_upper(self) -> bool:
+        """Whether a bound of it is one from above."""
+        return self.value.startswith("max")
+
+    @property
+    def is_mean(self) -> bool:
+        """Whether it is a mean value."""
+        return self.value.startswith("mean")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Value:
+    """A quantity as one method tells it, in picoseconds; None: there is no finite value, or not known."""
+
+    quantity: Quantity
+    value: Time | None
+    claim: Claim
+    method: str
+    source: str
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChainResult:
+    """A chain.
+
+    Attributes
+    ----------
+    routes : for people: events, and what carries the effect between them
+    values : the tightest of each quantity
+    everything : those of all methods
+    why : why they are exact, or bounds
+    reason : why there are no values, or some are missing
+    """
+
+    name: str
+    communication: str
+    routes: tuple[str, ...] = ()
+    values: tuple[Value, ...] = ()
+    everything: tuple[Value, ...] = ()
+    why: str = ""
+    reason: str = ""
+
+    def value(self, quantity: Quantity) -> Value | None:
+        """The tightest value of a quantity."""
+        return next((value for value in self.values if value.quantity is quantity), None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,9 +193,12 @@ class Analysis:
 
     Attributes
     ----------
+    solution : the response times with the context they were computed in, for explanations and proposals
     assumptions : sentences on which the numbers rest
     findings : what could not be taken into account
     """
+
+    solution: Solution = field(repr=False, compare=False)
 
     processors: tuple[ProcessorResult, ...]
     processes: tuple[ProcessResult, ...]

@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.system import System
 from amalthea_uros.timing.settings import Settings
 
 #: Factors below 1 are told to a thousandth, those above to a thousandth of themselves.
@@ -34,27 +34,35 @@ class Sensitivity:
     processes: Mapping[str, Fraction | None]
 
 
-def sensitivity(system: System, settings: Settings | None = None) -> Sensitivity:
+def sensitivity(analysis: Analysis) -> Sensitivity:
     """The greatest factors; deadlines and requirements that cannot be judged do not count."""
-    settings = settings or Settings()
     return Sensitivity(
-        everything=greatest_scale(system, settings),
-        processes={name: _greatest_of(name, system, settings) for name in system.processes},
+        everything=greatest_scale(analysis),
+        processes={process.name: _greatest_of(process.name, analysis) for process in analysis.processes},
     )
 
 
-def greatest_scale(system: System, settings: Settings | None = None) -> Fraction | None:
+def greatest_scale(analysis: Analysis) -> Fraction | None:
     """The greatest factor on all execution times."""
-    settings = settings or Settings()
-    return _greatest(lambda factor: not analyze_system(system, replace(settings, scale=settings.scale * factor)).misses)
+    context = analysis.solution.context
+    scale = context.settings.scale
+    return _greatest(lambda factor: _holds(analysis, factor, replace(context.settings, scale=scale * factor)))
 
 
-def _greatest_of(name: str, system: System, settings: Settings) -> Fraction | None:
+def _greatest_of(name: str, analysis: Analysis) -> Fraction | None:
+    settings = analysis.solution.context.settings
+
     def holds(factor: Fraction) -> bool:
         factors = {**settings.factors, name: settings.factors.get(name, 1) * factor}
-        return not analyze_system(system, replace(settings, factors=factors)).misses
+        return _holds(analysis, factor, replace(settings, factors=factors))
 
     return _greatest(holds)
+
+
+def _holds(analysis: Analysis, factor: Fraction, settings: Settings) -> bool:
+    """Whether nothing is missed with changed settings; a factor of 1 changes nothing."""
+    changed = analysis if factor == 1 else analyze_system(analysis.solution.context.system, settings)
+    return not changed.misses
 
 
 def _greatest(holds: Callable[[Fraction], bool]) -> Fraction | None:

@@ -1,4 +1,4 @@
-"""The response times, loads and verdicts of a whole system."""
+"""The response times, loads, chain latencies and verdicts of a whole system."""
 
 from __future__ import annotations
 
@@ -6,116 +6,59 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from amalthea_uros.analyze.chains import phases
-from amalthea_uros.analyze.chains.constraints import Judge
+from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
 from amalthea_uros.analyze.chains.evaluate import Evaluation
-from amalthea_uros.analyze.chains.result import ChainResult
-from amalthea_uros.analyze.propagation import Propagation
-from amalthea_uros.analyze.requirements import judge, upper_response_limits
-from amalthea_uros.analyze.response_times.blocking import preemption
-from amalthea_uros.analyze.response_times.core import responses_on
-from amalthea_uros.analyze.response_times.task import Response
-from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, Verdict
+from amalthea_uros.analyze.propagation import solve
+from amalthea_uros.analyze.requirements import judge
+from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessorResult, ProcessResult, Response, Verdict
+from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.context import Known
-from amalthea_uros.timing.notes import Notes
+from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.overheads import COUNTED
-from amalthea_uros.timing.settings import Memory, Settings
+from amalthea_uros.timing.preemption import preemption
+from amalthea_uros.timing.releases import response_time_limits
+from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time
-
-#: Rounds of propagation, and jobs of busy windows in all of them; irregularity that still grows then will not stop.
-MOST_ROUNDS = 100
-MOST_JOBS = 50_000
 
 
 def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
     """The analysis of a system."""
-    known = prepare(system, settings)
-    responses = respond(known)
-    _note_left_out(known, responses)
-    limits = upper_response_limits(system)
-    processes = tuple(_process(name, known, responses.get(name), limits) for name in system.processes)
-    evaluation = Evaluation(known, responses)
+    context = TimingContext.of(system, settings)
+    solution = solve(context)
+    _note_left_out(solution)
+    limits = response_time_limits(system)
+    processes = tuple(_process(name, solution, limits) for name in system.processes)
+    evaluation = Evaluation(solution)
     chains = tuple(_chains(evaluation))
-    judged = judge(system, {process.name: process for process in processes}, known.notes)
-    requirements = (*judged, *Judge(evaluation, {chain.name: chain for chain in chains}).all())
+    judged = judge(system, {process.name: process for process in processes}, context.notes)
+    requirements = (*judged, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all())
     return Analysis(
-        processors=tuple(_processors(known)),
+        solution=solution,
+        processors=tuple(_processors(solution)),
         processes=processes,
         chains=chains,
         requirements=requirements,
-        assumptions=tuple(known.notes.assumptions),
-        findings=tuple(known.notes.found),
+        assumptions=tuple(context.notes.assumptions),
+        findings=tuple(context.notes.found),
     )
 
 
 def _chains(evaluation: Evaluation) -> Iterator[ChainResult]:
-    """The chains, with all phases of the counters at which they start, if that is wanted."""
-    known = evaluation.known
-    for chain in known.system.events.chains:
+    """The chains, over all phases of the counters at which they start, if that is wanted."""
+    context = evaluation.context
+    for chain in context.system.events.chains:
         found = evaluation.chain(chain)
-        if known.settings.any_phase and found.values:
-            variants = [prepare(system, known.settings) for system in phases.variants(chain, known.system)]
-            results = [Evaluation(variant, respond(variant)).chain(chain) for variant in variants]
+        if context.settings.any_phase and found.values:
+            variants = [TimingContext.of(system, context.settings) for system in phases.variants(chain, context)]
+            results = [Evaluation(solve(variant)).chain(chain) for variant in variants]
             found = phases.merged(results) if results else found
         yield found
 
 
-def prepare(system: System, settings: Settings | None = None) -> Known:
-    """What is known of a system before response times."""
-    settings = settings or Settings()
-    known = Known(system, settings)
-    _note_settings(settings, known.notes)
-    known.place()
-    return known
-
-
-def respond(known: Known) -> dict[str, Response]:
-    """All response times, computed as often as they change the arrivals of others."""
-    least = {name: cost.best // known.demands.grains(known.placed[name].core) for name, cost in known.costs.items()}
-    propagation = Propagation(known.system, least, known.reasons)
-    while True:
-        responses, growing = _settle(known, propagation)
-        if not growing:
-            return responses
-        # Without those that do not settle, and what comes behind them, the others may.
-        known.unsettled |= growing
-        for name in growing:
-            known.give_up(name, "its response time and the arrivals of what it triggers make each other grow without an end")
-
-
-def _settle(known: Known, propagation: Propagation) -> tuple[dict[str, Response], set[str]]:
-    """Response times that fit to the arrivals, and the processes for which there are none."""
-    responses: dict[str, Response] = {}
-    work = 0
-    for number in range(MOST_ROUNDS):
-        before = responses
-        known.find_arrivals(propagation, before)
-        responses = {}
-        for core in known.system.cores:
-            responses |= responses_on(core, known)
-        if responses == before:
-            return responses, set()
-        work += sum(response.jobs for response in responses.values())
-        if number and work > MOST_JOBS:
-            break
-    return {}, {name for name, response in responses.items() if response != before.get(name)}
-
-
-def _note_settings(settings: Settings, notes: Notes) -> None:
-    if settings.scale != 1:
-        notes.assume(f"all execution times are multiplied by {float(settings.scale):g}")
-    for name, factor in settings.factors.items():
-        notes.assume(f"the execution times of {name} are multiplied by {float(factor):g}")
-    for label, value in settings.modes.items():
-        notes.assume(f"the mode {label} is always {value}")
-    if settings.memory is not Memory.NONE:
-        notes.assume("accesses to memory do not wait for those of other cores")
-
-
-def _note_left_out(known: Known, responses: Mapping[str, Response]) -> None:
-    """Note what the system has and the analysis does not take into account."""
-    system, notes = known.system, known.notes
+def _note_left_out(solution: Solution) -> None:
+    """Report what the system has and the analysis does not take into account."""
+    system, notes = solution.context.system, solution.context.notes
     costs = {overhead.name: overhead for overhead in system.os.overheads}
     for operating_system in system.os.systems:
         overhead = costs.get(operating_system.overhead or "")
@@ -123,38 +66,39 @@ def _note_left_out(known: Known, responses: Mapping[str, Response]) -> None:
             if service not in COUNTED:
                 message = f"the cost of {service!r} in {operating_system.name!r} is not taken into account"
                 notes.warning("ANA006", message, overhead)
-    for name, response in responses.items():
-        process = known.placed[name].process
+    for name, response in solution.responses.items():
+        process = solution.context.scheduled[name].process
         if not isinstance(process, Task) or response.worst is None:
             continue
-        jobs = known.arrivals[name].most(response.worst)
+        jobs = solution.event_models[name].eta_plus(response.worst)
         if jobs > process.activation_limit:
             limit = process.activation_limit
             message = f"{name!r} can be activated {jobs} times before it ends; more than {limit} at a time are lost"
             notes.warning("ANA007", message, process)
 
 
-def _process(name: str, known: Known, response: Response | None, limits: Mapping[str, Time]) -> ProcessResult:
-    """What is told of a process; its costs in picoseconds."""
-    placed, cost, process = known.placed.get(name), known.costs.get(name), known.system.processes[name]
-    deadline = placed.deadline if placed is not None and placed.deadline is not None else limits.get(name)
-    grains = known.demands.grains(placed.core) if placed else 1
-    arrivals = known.arrivals.get(name)
+def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> ProcessResult:
+    """The result of a process; its execution times in picoseconds."""
+    context, response = solution.context, solution.responses.get(name)
+    scheduled, demand, process = context.scheduled.get(name), context.demands.get(name), context.system.processes[name]
+    deadline = scheduled.deadline if scheduled is not None and scheduled.deadline is not None else limits.get(name)
+    time_base = context.time_base(name) if scheduled else 1
+    events = solution.event_models.get(name)
     return ProcessResult(
         name=name,
         is_isr=not isinstance(process, Task),
-        processor=placed.core if placed else None,
-        priority=placed.priority if placed else None,
-        preemption=str(preemption(placed) if placed else getattr(process, "preemption", Preemption.PREEMPTIVE)),
-        bcet=cost.best // grains if cost else None,
-        acet=cost.mean / grains if cost else None,
-        wcet=-(-cost.worst // grains) if cost else None,
+        processor=scheduled.core if scheduled else None,
+        priority=scheduled.priority if scheduled else None,
+        preemption=str(preemption(scheduled) if scheduled else getattr(process, "preemption", Preemption.PREEMPTIVE)),
+        bcet=demand.best // time_base if demand else None,
+        acet=demand.mean / time_base if demand else None,
+        wcet=-(-demand.worst // time_base) if demand else None,
         response=response,
         deadline=deadline,
         verdict=_verdict(response, deadline),
-        reason=response.reason if response is not None else known.reasons.get(name, ""),
-        distance=arrivals.span(2) if arrivals is not None else None,
-        gap=arrivals.gap if arrivals is not None else None,
+        reason=response.reason if response is not None else solution.reasons.get(name, ""),
+        min_interarrival=events.delta_min(2) if events is not None else None,
+        max_interarrival=events.max_interarrival if events is not None else None,
     )
 
 
@@ -168,19 +112,24 @@ def _verdict(response: Response | None, deadline: Time | None) -> Verdict:
     return Verdict.MET if response.worst <= deadline else Verdict.MISSED
 
 
-def _processors(known: Known) -> Iterator[ProcessorResult]:
-    """The load of each core; not known where something on it is not."""
-    for core in known.system.cores:
-        here = [placed.process.name for placed in known.on_core(core)]
-        is_known = all(name in known.costs and name in known.arrivals for name in here)
-        is_known = is_known and (core, True) not in known.disturbed and (core, False) not in known.disturbed
-        rates = {name: known.arrivals[name].rate / known.demands.grains(core) for name in here} if is_known else {}
+def _processors(solution: Solution) -> Iterator[ProcessorResult]:
+    """The load of each core; unknown where something on it is unknown."""
+    context = solution.context
+    demands = context.demands
+    for core in context.system.cores:
+        here = [scheduled.name for scheduled in context.on_core(core)]
+        is_known = all(map(solution.is_known, here))
+        is_known = (
+            is_known and (core, True) not in context.unanalysable_cores and (core, False) not in context.unanalysable_cores
+        )
+        time_base = context.demand_model.time_base(core)
+        rates = {name: solution.event_models[name].rate / time_base for name in here} if is_known else {}
         yield ProcessorResult(
             name=core,
-            frequency=known.demands.frequency(core),
-            best=_sum(known.costs[name].mean_best * rate for name, rate in rates.items()) if is_known else None,
-            mean=_sum(known.costs[name].mean * rate for name, rate in rates.items()) if is_known else None,
-            worst=_sum(known.costs[name].mean_worst * rate for name, rate in rates.items()) if is_known else None,
+            frequency=context.demand_model.frequency(core),
+            best=_sum(demands[name].mean_best * rate for name, rate in rates.items()) if is_known else None,
+            mean=_sum(demands[name].mean * rate for name, rate in rates.items()) if is_known else None,
+            worst=_sum(demands[name].mean_worst * rate for name, rate in rates.items()) if is_known else None,
         )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, dataclass, fields
+from functools import partial
 from typing import Any
 
 from amalthea_uros.bridge.codecs import PLAIN, Codec
@@ -40,6 +41,8 @@ class Entry:
         self.columns = columns
         self.is_named = issubclass(ours, Named)
         declared = {field.name: field for field in fields(ours)}
+        self.has_origin = "origin" in declared
+        self.is_activity = "locate" in declared
         self._defaults = {column.name: _default(declared[column.name]) for column in columns}
         features = features_of(theirs)
         self._xml_names = {column.feature: features[column.feature].xml_name for column in columns}
@@ -85,7 +88,10 @@ class Entry:
             values[column.name] = value
         if self.is_named:
             values["name"] = context.names[element]
+        if self.has_origin:
             values["origin"] = context.location(element)
+        if self.is_activity:
+            values["locate"] = partial(context.location, element)
         return self.ours(**values)
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from amalthea_uros.analyze.assignment import propose
+from amalthea_uros.analyze.assignment import propose_priorities
 from amalthea_uros.analyze.explanation import shares
 from amalthea_uros.analyze.sensitivity import sensitivity
 from amalthea_uros.analyze.system import analyze_system
@@ -122,15 +122,15 @@ def command(
     )
     analysis = analyze_system(system, settings)
     extras = Extras(
-        sensitivity=sensitivity(system, settings) if with_sensitivity else None,
-        proposals=tuple(propose(system, settings)) if with_priorities else None,
+        sensitivity=sensitivity(analysis) if with_sensitivity else None,
+        proposals=tuple(propose_priorities(analysis)) if with_priorities else None,
     )
     Terminal(sys.stderr).findings((*findings, *analysis.findings))
     for output in outputs:
         if output.format == "json":
             output.write(partial(write_json, analysis, extras, paths, findings, method == "all"))
         elif explain is not None:
-            output.write(partial(write_explanation, analysis, explain, shares(system, settings, explain)))
+            output.write(partial(write_explanation, analysis, explain, shares(analysis, explain)))
         elif chain is not None:
             output.write(partial(write_chain, analysis, chain, method == "all"))
         else:

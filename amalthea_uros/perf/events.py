@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
 
-from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.named import Located, Named
 
 
 class ProcessChange(StrEnum):
@@ -170,7 +170,7 @@ class ChainReference:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Segment:
+class Segment(Located):
     """A part of a chain that is described on the spot.
 
     Attributes

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from amalthea_uros.perf.named import Located
 from amalthea_uros.perf.os import Parameter
 from amalthea_uros.units import Time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TaskAllocation:
+class TaskAllocation(Located):
     """A task on a scheduler.
 
     Attributes
@@ -28,7 +29,7 @@ class TaskAllocation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class IsrAllocation:
+class IsrAllocation(Located):
     """An interrupt service routine on an interrupt controller."""
 
     isr: str
@@ -37,7 +38,7 @@ class IsrAllocation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Placement:
+class Placement(Located):
     """A label, channel or other element in a memory.
 
     Attributes

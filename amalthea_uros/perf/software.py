@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TypeAlias
 
 from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.perf.distributions import Distribution
-from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.named import Locate, Named
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.units import DataSize
 
@@ -29,21 +29,33 @@ class Demand:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Execute:
+class AbstractActivity:
+    """What all activities have.
+
+    Attributes
+    ----------
+    locate : finds the place in a file that it comes from; None: it does not come from a file
+    """
+
+    locate: Locate | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Execute(AbstractActivity):
     """Computation that takes ticks of the core's clock."""
 
     demand: Demand
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ExecutionNeed:
+class ExecutionNeed(AbstractActivity):
     """Computation counted in something else, such as instructions, that a feature of the core type converts to ticks."""
 
     needs: tuple[tuple[str, Distribution[int]], ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Call:
+class Call(AbstractActivity):
     """Execution of a runnable within the caller.
 
     Attributes
@@ -91,7 +103,7 @@ class Protection(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LabelAccess:
+class LabelAccess(AbstractActivity):
     """Read or write of a label.
 
     Attributes
@@ -108,7 +120,45 @@ class LabelAccess:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Group:
+class SenderReceiverAccess(AbstractActivity):
+    """Read or write of a label by sender-receiver communication.
+
+    Attributes
+    ----------
+    notifies : runnables that are notified of a write
+    """
+
+    label: str
+    kind: AccessKind
+    buffered: bool = False
+    notifies: tuple[str, ...] = ()
+
+
+class ServerCallKind(StrEnum):
+    """Whether a client waits for the server, goes on at once, or fetches the result of an earlier call."""
+
+    SYNCHRONOUS = "synchronous"
+    ASYNCHRONOUS = "asynchronous"
+    GET_RESULT = "get result"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServerCall(AbstractActivity):
+    """Call of a runnable that another process executes.
+
+    Attributes
+    ----------
+    result : runnable that is executed when the result of an asynchronous call has arrived
+    """
+
+    runnable: str
+    kind: ServerCallKind = ServerCallKind.SYNCHRONOUS
+    result: str | None = None
+    waiting: Waiting | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Group(AbstractActivity):
     """Activities taken together.
 
     Attributes
@@ -132,7 +182,7 @@ class Chance:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ProbabilitySwitch:
+class ProbabilitySwitch(AbstractActivity):
     """One of several branches, by chance."""
 
     branches: tuple[Chance, ...]
@@ -148,7 +198,7 @@ class Case:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Switch:
+class Switch(AbstractActivity):
     """The first branch whose condition holds, or else the default."""
 
     cases: tuple[Case, ...]
@@ -156,7 +206,7 @@ class Switch:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Loop:
+class Loop(AbstractActivity):
     """Repeated while the condition holds, which is tested first."""
 
     activities: tuple[Activity, ...]
@@ -179,7 +229,7 @@ class Waiting(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SemaphoreAccess:
+class SemaphoreAccess(AbstractActivity):
     """Begin or end of a critical section."""
 
     semaphore: str
@@ -188,7 +238,7 @@ class SemaphoreAccess:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Trigger:
+class Trigger(AbstractActivity):
     """Firing of an inter-process stimulus."""
 
     stimulus: str
@@ -196,14 +246,14 @@ class Trigger:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RaiseEvent:
+class RaiseEvent(AbstractActivity):
     """Raising of a custom event."""
 
     event: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SetEvent:
+class SetEvent(AbstractActivity):
     """Setting of OS events, for one process or (None) for every one."""
 
     events: tuple[str, ...]
@@ -212,7 +262,7 @@ class SetEvent:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ClearEvent:
+class ClearEvent(AbstractActivity):
     """Clearing of OS events."""
 
     events: tuple[str, ...]
@@ -220,7 +270,7 @@ class ClearEvent:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WaitEvent:
+class WaitEvent(AbstractActivity):
     """Waiting for OS events, for all of them or for any."""
 
     events: tuple[str, ...]
@@ -230,7 +280,7 @@ class WaitEvent:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Send:
+class Send(AbstractActivity):
     """Putting elements into a channel."""
 
     channel: str
@@ -247,7 +297,7 @@ class ReceiveOperation(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Receive:
+class Receive(AbstractActivity):
     """Getting elements out of a channel."""
 
     channel: str
@@ -268,7 +318,7 @@ class ModeOperation(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ModeAccess:
+class ModeAccess(AbstractActivity):
     """Access to a mode label; `value` is what is set, `step` by how much it changes."""
 
     label: str
@@ -277,20 +327,20 @@ class ModeAccess:
     step: int = 1
 
 
-@dataclass(frozen=True, slots=True)
-class SchedulePoint:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SchedulePoint(AbstractActivity):
     """Call of the scheduler, where cooperative tasks can be preempted."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Terminate:
+class Terminate(AbstractActivity):
     """Immediate end of the job."""
 
     counter: Counter | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Migrate:
+class Migrate(AbstractActivity):
     """Move of the task to another scheduler."""
 
     scheduler: str
@@ -313,6 +363,8 @@ Activity: TypeAlias = (
     | WaitEvent
     | Send
     | Receive
+    | SenderReceiverAccess
+    | ServerCall
     | ModeAccess
     | SchedulePoint
     | Terminate
@@ -324,19 +376,20 @@ def walk(activities: tuple[Activity, ...]) -> Iterator[Activity]:
     """All activities with those inside groups, branches and loops, in order."""
     for activity in activities:
         yield activity
-        for inner in _inner(activity):
+        for inner in inner_activities(activity):
             yield from walk(inner)
 
 
-def _inner(activity: Activity) -> Iterator[tuple[Activity, ...]]:
+def inner_activities(activity: Activity) -> tuple[tuple[Activity, ...], ...]:
+    """The lists of activities in a group, in branches and in a loop."""
     match activity:
         case Group() | Loop():
-            yield activity.activities
+            return (activity.activities,)
         case ProbabilitySwitch():
-            yield from (branch.activities for branch in activity.branches)
+            return tuple(branch.activities for branch in activity.branches)
         case Switch():
-            yield from (case.activities for case in activity.cases)
-            yield activity.default or ()
+            return (*(case.activities for case in activity.cases), activity.default or ())
+    return ()
 
 
 class Preemption(StrEnum):

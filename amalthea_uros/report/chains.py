@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import IO, Any
 
-from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.result import ChainResult
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity, Value
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.timing.dataflow.paths import Path
 from amalthea_uros.units import time_text
@@ -85,9 +83,7 @@ def write_paths(paths: Sequence[Path], chains: Sequence[ChainResult], stream: IO
     rows = []
     for number, (path, chain) in enumerate(zip(paths, chains, strict=True), start=1):
         first, *others = path.processes
-        text = first + "".join(
-            f" -[{', '.join(carriers)}]-> {process}" for carriers, process in zip(path.carriers, others, strict=True)
-        )
+        text = first + "".join(f" -[{', '.join(links)}]-> {process}" for links, process in zip(path.links, others, strict=True))
         values = [chain.value(_COLUMNS[column]) for column in ("min", "max", "data age")]
         claims = dict.fromkeys(str(value.claim) for value in values if value is not None)
         rows.append((number, *map(_time, values), chain.reason or ", ".join(claims), text))

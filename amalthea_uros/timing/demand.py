@@ -1,9 +1,9 @@
-"""The execution demand of processes: their activity graphs walked, ticks turned into time on a core.
+"""Execution demand of processes: the sum over their activity graphs, with ticks converted to time on a core.
 
-A tick is often no whole number of picoseconds. So that nothing is rounded before the end, the demand on a core is counted in grains:
-the greatest parts of a picosecond of which a tick is a whole number (a third of one at 300 MHz). Of branches the worst one counts in
-the worst case and the best one in the best case; a call that is executed every n-th time only stays a part of its own, so that a job
-without it does not pay for it.
+A tick is often not a whole number of picoseconds. To avoid rounding before the end, demand on a core is counted in its time base: the
+largest fraction of a picosecond of which a tick is a multiple (a third of a picosecond at 300 MHz). Of several branches, the longest
+counts in the worst case and the shortest in the best case; a call that is executed every n-th time only is a frame of its own, so that
+jobs without it do not pay for it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import ceil, floor
 
-from amalthea_uros.analyze.response_times.kernel import LIMIT
 from amalthea_uros.perf.distributions import Distribution, highest, lowest
 from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import (
@@ -33,25 +32,26 @@ from amalthea_uros.perf.software import (
     Runnable,
     Switch,
     WaitEvent,
-    walk,
 )
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.dataflow.positions import positions
+from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.timing.means import mean
 from amalthea_uros.timing.memory import MemoryAccess, count_of
 from amalthea_uros.timing.modes import holds
-from amalthea_uros.timing.multiframe import Cost, Part
+from amalthea_uros.timing.multiframe import Frame, MultiframeDemand
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
 from amalthea_uros.timing.overheads import Overheads
 from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.units import Frequency, time_of_ticks
 
-#: Finer grains would bring times near to the limits of whole numbers of 64 bits.
-MOST_GRAINS = 1000
+#: A finer time base would bring times near the limits of 64-bit integers.
+MAX_TIME_BASE = 1000
 
 
 @dataclass(slots=True)
-class Demands:
+class DemandModel:
     """The demand of the processes of a system."""
 
     system: System
@@ -59,19 +59,19 @@ class Demands:
     settings: Settings = field(default_factory=Settings)
     memory: MemoryAccess = field(init=False)
     overheads: Overheads = field(init=False)
-    _known: dict[tuple[str, str], tuple[Part, ...]] = field(default_factory=dict)
+    _of_runnables: dict[tuple[str, str], tuple[Frame, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.memory = MemoryAccess(self.system, self.notes, self.frequency)
         self.overheads = Overheads(self.system)
 
-    def grains(self, core: str) -> int:
-        """How many grains a picosecond has on a core; 1 where they would be too small, and then demand is rounded outwards."""
+    def time_base(self, core: str) -> int:
+        """Parts of a picosecond in which a core is counted; 1 where they would be too small, and then demand is rounded outwards."""
         frequency = self.frequency(core)
         if frequency is None:
             return 1
         fineness = (time_of_ticks(1, frequency) * self.settings.scale).denominator
-        return fineness if fineness <= MOST_GRAINS else 1
+        return fineness if fineness <= MAX_TIME_BASE else 1
 
     def frequency(self, core: str) -> Frequency | None:
         """The clock of a core, None if it is not known."""
@@ -80,53 +80,47 @@ class Demands:
         clock = self.system.clocks.get(self.system.cores[core].clock or "")
         return clock.frequency if clock is not None and clock.frequency else None
 
-    def cost(self, process: Process, core: str) -> Cost:
-        """What the jobs of a process cost on a core, in its grains.
+    def of_process(self, process: Process, core: str) -> MultiframeDemand:
+        """Demand of the jobs of a process on a core, in its time base.
 
         Raises
         ------
         UnknownDemandError : something in it has no bound, or the core no clock.
         """
-        parts = self._parts(process.activities, core, ())
+        frames = self._frames(process.activities, core, ())
         if self.settings.memory is Memory.IMPLICIT:
-            parts += self._copies(process.activities, core)
+            frames += self._copies(process, core)
         if isinstance(process, Isr):
-            parts += [self._ticks(demand, core) for demand in self.overheads.of_isr(process, core)]
-        return Cost(_scaled(_summed(parts), self.settings.factors.get(process.name)))
+            frames += [self._ticks(demand, core) for demand in self.overheads.of_isr(process, core)]
+        return MultiframeDemand(_scaled(_summed(frames), self.settings.factors.get(process.name)))
 
-    def piece(self, process: Process, activities: Sequence[Activity], core: str) -> Cost:
-        """What some activities of a process cost, without what comes before and behind all of them; raises as `cost`."""
-        return Cost(_scaled(_summed(self._parts(activities, core, ())), self.settings.factors.get(process.name)))
+    def of_activities(self, process: Process, activities: Sequence[Activity], core: str) -> MultiframeDemand:
+        """Demand of some activities of a process, without what precedes and follows all of them; raises as `of_process`."""
+        return MultiframeDemand(_scaled(_summed(self._frames(activities, core, ())), self.settings.factors.get(process.name)))
 
-    def decision(self, scheduler: Scheduler, core: str) -> Cost:
-        """What one decision of a scheduler costs; raises as `cost`."""
-        return Cost(_summed(self._parts(scheduler.overhead, core, ())))
+    def of_decision(self, scheduler: Scheduler, core: str) -> MultiframeDemand:
+        """Demand of one decision of a scheduler; raises as `of_process`."""
+        return MultiframeDemand(_summed(self._frames(scheduler.overhead, core, ())))
 
-    def _copies(self, activities: Sequence[Activity], core: str) -> list[Part]:
-        """The copies of all labels that a process reads, before it starts, and of those that it writes, at its end."""
-        found = dict.fromkeys((access.label, access.kind) for access in self._accesses(activities, ()))
+    def _copies(self, process: Process, core: str) -> list[Frame]:
+        """Copies of all labels that a process reads, before it starts, and of those that it writes, at its end."""
+        here = (position.activity for position in positions(process, self.system))
+        found = dict.fromkeys((access.label, access.kind) for access in here if isinstance(access, LabelAccess))
         self.notes.assume("each label is copied once at the start and once at the end of a job that reads or writes it")
-        grains = self.settings.scale * self.grains(core)
-        return [self.memory.part(core, label, kind, count_of(1), grains) for label, kind in found]
+        time_base = self.settings.scale * self.time_base(core)
+        return [self.memory.frame(core, label, kind, count_of(1), time_base) for label, kind in found]
 
-    def _accesses(self, activities: Sequence[Activity], above: tuple[str, ...]) -> Iterator[LabelAccess]:
-        for activity in walk(tuple(activities)):
-            if isinstance(activity, LabelAccess):
-                yield activity
-            elif isinstance(activity, Call) and activity.runnable in self.system.runnables and activity.runnable not in above:
-                yield from self._accesses(self.system.runnables[activity.runnable].activities, (*above, activity.runnable))
+    def _frames(self, activities: Iterable[Activity], core: str, above: tuple[str, ...]) -> list[Frame]:
+        return [frame for activity in activities for frame in self._with_services(activity, core, above)]
 
-    def _parts(self, activities: Iterable[Activity], core: str, above: tuple[str, ...]) -> list[Part]:
-        return [part for activity in activities for part in self._with_services(activity, core, above)]
-
-    def _with_services(self, activity: Activity, core: str, above: tuple[str, ...]) -> Iterator[Part]:
-        """The parts of one activity, and of the services of the operating system that it calls."""
+    def _with_services(self, activity: Activity, core: str, above: tuple[str, ...]) -> Iterator[Frame]:
+        """The frames of one activity, and of the services of the operating system that it calls."""
         yield from self._of(activity, core, above)
         for demand in self.overheads.of_activity(activity, core):
             yield self._ticks(demand, core)
 
-    def _of(self, activity: Activity, core: str, above: tuple[str, ...]) -> Sequence[Part]:
-        """The parts of one activity; what takes no time has none."""
+    def _of(self, activity: Activity, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
+        """The frames of one activity; what takes no time has none."""
         match activity:
             case Execute(demand=demand):
                 return [self._ticks(demand, core)]
@@ -134,16 +128,16 @@ class Demands:
                 scale = self.settings.scale
                 return [self._time(need, self._ticks_per_unit(name, core) * scale, core) for name, need in needs]
             case LabelAccess(label=label, kind=kind, times=times) if self.settings.memory is Memory.EXPLICIT:
-                return [self.memory.part(core, label, kind, count_of(times), self.settings.scale * self.grains(core))]
+                return [self.memory.frame(core, label, kind, count_of(times), self.settings.scale * self.time_base(core))]
             case Call():
                 return self._call(activity, core, above)
             case Group(activities=inner):
-                return self._parts(inner, core, above)
+                return self._frames(inner, core, above)
             case ProbabilitySwitch(branches=branches):
                 weights = [branch.weight for branch in branches]
-                return _one_of([self._parts(branch.activities, core, above) for branch in branches], weights)
+                return _one_of([self._frames(branch.activities, core, above) for branch in branches], weights)
             case Switch():
-                alternatives = [self._parts(inner, core, above) for inner in self._possible(activity)]
+                alternatives = [self._frames(inner, core, above) for inner in self._possible(activity)]
                 return _one_of(alternatives, [1.0] * len(alternatives))
             case Loop(condition=condition):
                 if holds(condition, self.settings.modes) is False:
@@ -166,50 +160,50 @@ class Demands:
                 return found
         return [*found, switch.default or ()]
 
-    def _ticks(self, demand: Demand, core: str) -> Part:
+    def _ticks(self, demand: Demand, core: str) -> Frame:
         ticks = dict(demand.by_core_type).get(self.system.cores[core].type or "", demand.ticks)
         if ticks is None:
             raise UnknownDemandError(f"there are ticks without a value for {core}")
         return self._time(ticks, self.settings.scale, core)
 
-    def _call(self, call: Call, core: str, above: tuple[str, ...]) -> Sequence[Part]:
+    def _call(self, call: Call, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
         runnable = self.system.runnables.get(call.runnable)
         if runnable is None:
-            raise UnknownDemandError(f"the runnable {call.runnable!r} is not part of the model")
+            raise UnknownDemandError(f"the runnable {call.runnable!r} is not frame of the model")
         if runnable.name in above:
             raise UnknownDemandError(f"the runnable {runnable.name!r} calls itself")
-        parts = self._runnable(runnable, core, above)
+        frames = self._runnable(runnable, core, above)
         match runnable.condition and holds(runnable.condition, self.settings.modes):
             case False:
                 return []
             case None if runnable.condition is not None:
-                parts = [replace(_any_time(part), best=0) for part in parts]
+                frames = [replace(_any_time(frame), best=0) for frame in frames]
         if call.times is not None:
-            parts = [_repeated(part, call.times) for part in parts]
-        return [_counted(part, call.counter) for part in parts] if call.counter else parts
+            frames = [_repeated(frame, call.times) for frame in frames]
+        return [_counted(frame, call.counter) for frame in frames] if call.counter else frames
 
-    def _runnable(self, runnable: Runnable, core: str, above: tuple[str, ...]) -> Sequence[Part]:
-        """The parts of a runnable; counters within it are not known to fall on certain jobs."""
+    def _runnable(self, runnable: Runnable, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
+        """The frames of a runnable; counters within it are not known to fall on certain jobs."""
         key = (runnable.name, core)
-        if key not in self._known:
-            inner = self._parts(runnable.activities, core, (*above, runnable.name))
-            self._known[key] = _summed([_any_time(part) for part in inner])
-        return self._known[key]
+        if key not in self._of_runnables:
+            inner = self._frames(runnable.activities, core, (*above, runnable.name))
+            self._of_runnables[key] = _summed([_any_time(frame) for frame in inner])
+        return self._of_runnables[key]
 
-    def _time(self, ticks: Distribution[int], factor: Fraction, core: str) -> Part:
-        """The grains that ticks take, or units of something that takes `factor` ticks each."""
+    def _time(self, ticks: Distribution[int], factor: Fraction, core: str) -> Frame:
+        """The time_base that ticks take, or units of something that takes `factor` ticks each."""
         frequency = self.frequency(core)
         if frequency is None:
             raise UnknownDemandError(f"the clock of the core {core!r} is not known")
         worst, best = highest(ticks), lowest(ticks)
         if worst is None or best is None:
             raise UnknownDemandError("there is a distribution of ticks without bounds")
-        tick = time_of_ticks(1, frequency) * factor * self.grains(core)
+        tick = time_of_ticks(1, frequency) * factor * self.time_base(core)
         if worst * tick > LIMIT:
             raise UnknownDemandError("there is an execution time beyond 13 days")
         # No time runs backwards, and none is longer than the longest, whatever a file says.
         longest = max(0, ceil(worst * tick))
-        return Part(worst=longest, best=min(max(0, floor(best * tick)), longest), average=max(Fraction(0), mean(ticks) * tick))
+        return Frame(worst=longest, best=min(max(0, floor(best * tick)), longest), average=max(Fraction(0), mean(ticks) * tick))
 
     def _ticks_per_unit(self, need: str, core: str) -> Fraction:
         """What a unit of an execution need takes: the value of the feature, or its inverse for instructions per cycle."""
@@ -224,58 +218,62 @@ class Demands:
         raise UnknownDemandError(f"the type of {core} does not say what a unit of {need!r} costs")
 
 
-def _summed(parts: Sequence[Part]) -> tuple[Part, ...]:
+def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:
     """Parts of the same jobs taken together."""
-    found: dict[tuple[int, int], Part] = {}
-    for part in parts:
-        key = (part.prescaler, part.offset)
+    found: dict[tuple[int, int], Frame] = {}
+    for frame in frames:
+        key = (frame.prescaler, frame.offset)
         same = found.get(key)
         found[key] = (
-            part
+            frame
             if same is None
-            else replace(same, worst=same.worst + part.worst, best=same.best + part.best, average=same.average + part.average)
+            else replace(
+                same, worst=same.worst + frame.worst, best=same.best + frame.best, average=same.average + frame.average
+            )
         )
     return tuple(found.values())
 
 
-def _scaled(parts: tuple[Part, ...], factor: Fraction | None) -> tuple[Part, ...]:
+def _scaled(frames: tuple[Frame, ...], factor: Fraction | None) -> tuple[Frame, ...]:
     """Parts that take longer or shorter by a factor."""
     if factor is None:
-        return parts
+        return frames
     return tuple(
-        replace(part, worst=ceil(part.worst * factor), best=floor(part.best * factor), average=part.average * factor)
-        for part in parts
+        replace(frame, worst=ceil(frame.worst * factor), best=floor(frame.best * factor), average=frame.average * factor)
+        for frame in frames
     )
 
 
-def _counted(part: Part, counter: Counter) -> Part:
-    """A part that is executed whenever a counter lets it through."""
-    return replace(part, prescaler=counter.prescaler, offset=counter.offset)
+def _counted(frame: Frame, counter: Counter) -> Frame:
+    """A frame that is executed whenever a counter lets it through."""
+    return replace(frame, prescaler=counter.prescaler, offset=counter.offset)
 
 
-def _any_time(part: Part) -> Part:
-    """A part of which it is not known in which jobs it falls: it may in each, and may not in each."""
-    if part.prescaler == 1 and part.offset <= 1:
-        return part
-    return Part(worst=part.worst, best=0, average=part.average / part.prescaler)
+def _any_time(frame: Frame) -> Frame:
+    """A frame of which it is not known in which jobs it falls: it may in each, and may not in each."""
+    if frame.prescaler == 1 and frame.offset <= 1:
+        return frame
+    return Frame(worst=frame.worst, best=0, average=frame.average / frame.prescaler)
 
 
-def _repeated(part: Part, times: Count | float) -> Part:
-    """A part that is executed several times."""
+def _repeated(frame: Frame, times: Count | float) -> Frame:
+    """A frame that is executed several times."""
     least, average, most = (times.least, times.mean, times.most) if isinstance(times, Count) else (times, times, times)
-    return replace(part, worst=part.worst * ceil(most), best=part.best * floor(least), average=part.average * Fraction(average))
+    return replace(
+        frame, worst=frame.worst * ceil(most), best=frame.best * floor(least), average=frame.average * Fraction(average)
+    )
 
 
-def _one_of(alternatives: Sequence[Sequence[Part]], weights: Sequence[float]) -> Sequence[Part]:
-    """The part that stands for any of some alternatives."""
-    plain = [[_any_time(part) for part in parts] for parts in alternatives]
-    worst = [sum(part.worst for part in parts) for parts in plain]
-    best = [sum(part.best for part in parts) for parts in plain]
-    average = [sum((part.average for part in parts), Fraction(0)) for parts in plain]
+def _one_of(alternatives: Sequence[Sequence[Frame]], weights: Sequence[float]) -> Sequence[Frame]:
+    """The frame that stands for any of some alternatives."""
+    plain = [[_any_time(frame) for frame in frames] for frames in alternatives]
+    worst = [sum(frame.worst for frame in frames) for frames in plain]
+    best = [sum(frame.best for frame in frames) for frames in plain]
+    average = [sum((frame.average for frame in frames), Fraction(0)) for frames in plain]
     total = sum(map(Fraction, weights))
     if not worst:
         return []
     if not total:
         weights, total = [1.0] * len(worst), Fraction(len(worst))
     weighted = sum((value * Fraction(weight) for value, weight in zip(average, weights, strict=True)), Fraction(0))
-    return [Part(worst=max(worst), best=min(best), average=weighted / total)]
+    return [Frame(worst=max(worst), best=min(best), average=weighted / total)]

@@ -16,7 +16,7 @@ from amalthea_uros.perf.hardware import Access, Cache, Connection, Interconnect,
 from amalthea_uros.perf.software import AccessKind, Count
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.means import mean
-from amalthea_uros.timing.multiframe import Part
+from amalthea_uros.timing.multiframe import Frame
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
 from amalthea_uros.units import SECOND, Frequency, down, time_of_ticks, up
 
@@ -39,7 +39,7 @@ class MemoryAccess:
     frequency: Callable[[str], Frequency | None]
     _known: dict[tuple[str, str, AccessKind], Times] = field(default_factory=dict)
 
-    def part(self, core: str, label: str, kind: AccessKind, count: tuple[int, Fraction, int], grains: Fraction) -> Part:
+    def frame(self, core: str, label: str, kind: AccessKind, count: tuple[int, Fraction, int], time_base: Fraction) -> Frame:
         """What some accesses cost, in parts of a picosecond.
 
         Parameters
@@ -50,8 +50,10 @@ class MemoryAccess:
         if key not in self._known:
             self._known[key] = self._times(core, label, kind)
         least, average, most = self._known[key]
-        return Part(
-            worst=up(most * count[2] * grains), best=down(least * count[0] * grains), average=average * count[1] * grains
+        return Frame(
+            worst=up(most * count[2] * time_base),
+            best=down(least * count[0] * time_base),
+            average=average * count[1] * time_base,
         )
 
     def _times(self, core: str, label: str, kind: AccessKind) -> Times:

@@ -1,7 +1,7 @@
-"""What jobs cost: not every job costs the same where something runs every n-th time only (multi-frame demand).
+"""Multiframe demand: jobs demand different amounts where something is executed every n-th time only.
 
-After A. K. Mok and D. Chen, "A multiframe model for real-time tasks", IEEE Transactions on Software Engineering 23(10), 1997. Parts
-with different prescalers are taken to meet in one job, which is what counters that start together do.
+After A. K. Mok and D. Chen, "A multiframe model for real-time tasks", IEEE Transactions on Software Engineering 23(10), 1997. Frames
+with different prescalers may meet in one job, as counters that start together do.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from amalthea_uros.units import Time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Part:
-    """Something that a job executes, every n-th time.
+class Frame:
+    """Demand of every n-th job.
 
     Attributes
     ----------
     average : mean, for loads
-    offset : number of the first time, counted from 1; 0 stands for the prescaler itself
+    offset : number of the first such job, counted from 1; 0 means the prescaler itself
     """
 
     worst: Time
@@ -34,53 +34,53 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
-class Cost:
+class MultiframeDemand:
     """The demand of the jobs of a process."""
 
-    parts: tuple[Part, ...]
+    frames: tuple[Frame, ...]
 
     @classmethod
-    def constant(cls, worst: Time, best: Time | None = None) -> Cost:
+    def constant(cls, worst: Time, best: Time | None = None) -> MultiframeDemand:
         """The same for all jobs."""
-        return cls((Part(worst=worst, best=worst if best is None else best, average=Fraction(worst)),))
+        return cls((Frame(worst=worst, best=worst if best is None else best, average=Fraction(worst)),))
 
-    def most(self, count: int) -> Time:
+    def max_demand(self, count: int) -> Time:
         """The most that so many consecutive jobs execute."""
-        return sum(part.worst * -(-count // part.prescaler) for part in self.parts)
+        return sum(frame.worst * -(-count // frame.prescaler) for frame in self.frames)
 
-    def least(self, count: int) -> Time:
+    def min_demand(self, count: int) -> Time:
         """The least that so many consecutive jobs execute."""
-        return sum(part.best * (count // part.prescaler) for part in self.parts)
+        return sum(frame.best * (count // frame.prescaler) for frame in self.frames)
 
     @property
     def worst(self) -> Time:
         """The worst-case execution time of a single job."""
-        return self.most(1)
+        return self.max_demand(1)
 
     @property
     def best(self) -> Time:
         """The best-case execution time of a single job."""
-        return self.least(1)
+        return self.min_demand(1)
 
     def worst_of(self, job: int) -> Time:
         """The most that a certain job executes, counted from 1."""
-        return sum(part.worst for part in self.parts if part.falls_on(job))
+        return sum(frame.worst for frame in self.frames if frame.falls_on(job))
 
     def best_of(self, job: int) -> Time:
         """The least that a certain job executes, counted from 1."""
-        return sum(part.best for part in self.parts if part.falls_on(job))
+        return sum(frame.best for frame in self.frames if frame.falls_on(job))
 
     @property
     def mean_worst(self) -> Fraction:
         """The worst-case execution time per job in the long run."""
-        return sum((Fraction(part.worst, part.prescaler) for part in self.parts), Fraction(0))
+        return sum((Fraction(frame.worst, frame.prescaler) for frame in self.frames), Fraction(0))
 
     @property
     def mean_best(self) -> Fraction:
         """The best-case execution time per job in the long run."""
-        return sum((Fraction(part.best, part.prescaler) for part in self.parts), Fraction(0))
+        return sum((Fraction(frame.best, frame.prescaler) for frame in self.frames), Fraction(0))
 
     @property
     def mean(self) -> Fraction:
         """The mean execution time per job in the long run."""
-        return sum((part.average / part.prescaler for part in self.parts), Fraction(0))
+        return sum((frame.average / frame.prescaler for frame in self.frames), Fraction(0))

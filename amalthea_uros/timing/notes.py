@@ -1,4 +1,4 @@
-"""What an analysis has to say about a system: assumptions, and what it could not take into account."""
+"""What the reading of a system has to report: assumptions, and what is not taken into account."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from amalthea_uros.perf.named import Named
 
 
 class UnknownDemandError(Exception):
-    """The demand of a process is not known; the text says why."""
+    """The execution demand of a process is unknown; the text says why."""
 
 
 @dataclass(slots=True)
@@ -20,10 +20,10 @@ class Notes:
     assumptions: dict[str, None] = field(default_factory=dict)
 
     def warning(self, rule: str, message: str, item: Named | None) -> None:
-        """Something that the analysis cannot take into account as it is."""
+        """Add a finding about something that cannot be taken into account as it is."""
         name = item.name if item else ""
         self.found[Finding(rule, Severity.WARNING, message, item.origin if item else None, object=name)] = None
 
     def assume(self, sentence: str) -> None:
-        """An assumption on which the results rest."""
+        """Add an assumption on which the results rest."""
         self.assumptions[sentence] = None

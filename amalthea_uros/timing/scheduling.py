@@ -1,16 +1,16 @@
-"""Which core or server serves a process, by which policy and with which priority.
+"""Which core or server executes a process, by which policy and with which rank.
 
-Schedulers below each other are read as in the help of APP4MC on hierarchical scheduling: the parent decides first, by the parameters
-that stand in the association; who is below it decides only while it is served. Priorities of both levels together are a rank that is
-compared from the left. Below a server everything lives on the server's budget.
+Hierarchies of schedulers are read as in the help of APP4MC on hierarchical scheduling: the parent decides first, by the parameters of the
+association; its children decide only while they are served. The priorities of all levels form a rank that is compared from the left.
+Below a server, everything shares the server's budget.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 
-from amalthea_uros.analyze.response_times.task import Sharing
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Duration, Parameter, ParameterValue, Policy, Scheduler
 from amalthea_uros.perf.software import Process
@@ -46,22 +46,30 @@ PERIOD = ("period", "replenishment")
 Rank = tuple[int, ...]
 
 
+class EqualPriority(StrEnum):
+    """Who of the same priority is served first."""
+
+    FIFO = "first come, first served"
+    EDF = "earliest deadline first"
+    ROUND_ROBIN = "round robin"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Place:
-    """Where something is served.
+class SchedulingContext:
+    """How something is scheduled.
 
     Attributes
     ----------
-    server : on whose budget it lives; None: on none
+    server : whose budget it uses; None: no server's
     rank : higher is served first
-    sharing, slice : how those of the same rank are served
-    group : those in it do not interrupt each other
+    equal_priority, slice : how tasks of the same rank share the core
+    group : its members do not preempt each other
     """
 
     core: str = ""
     server: str | None = None
     rank: Rank = (0,)
-    sharing: Sharing = Sharing.ARRIVAL
+    equal_priority: EqualPriority = EqualPriority.FIFO
     deadline: Time | None = None
     slice: Time = 0
     group: str | None = None
@@ -69,11 +77,11 @@ class Place:
     @property
     def urgency(self) -> Rank:
         """The rank with the deadline, where that decides."""
-        return (*self.rank, -(self.deadline or 0)) if self.sharing is Sharing.DEADLINE else self.rank
+        return (*self.rank, -(self.deadline or 0)) if self.equal_priority is EqualPriority.EDF else self.rank
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Placed(Place):
+class ScheduledProcess(SchedulingContext):
     """A process on a core."""
 
     process: Process
@@ -87,7 +95,7 @@ class Placed(Place):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Server(Place):
+class Server(SchedulingContext):
     """A scheduler that gets a budget in each period, and serves others with it."""
 
     scheduler: Scheduler
@@ -100,13 +108,13 @@ class Server(Place):
         return self.scheduler.name
 
 
-class UnplacedError(Exception):
+class NotSchedulableError(Exception):
     """It is not known how a process is served; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Given:
-    """The parameters of a process or scheduler under the policy of another scheduler."""
+    """The parameters of a process or scheduler for the scheduler above it."""
 
     priority: int | None
     deadline: Time | None
@@ -120,8 +128,8 @@ class _Given:
 
 
 @dataclass(slots=True)
-class Placement:
-    """Finds the places of processes.
+class Scheduling:
+    """Finds out how processes are scheduled.
 
     Attributes
     ----------
@@ -133,68 +141,61 @@ class Placement:
     limits: Mapping[str, Time] = field(default_factory=dict)
     servers: dict[str, Server] = field(default_factory=dict)
 
-    def task(self, allocation: TaskAllocation) -> Placed:
+    def task(self, allocation: TaskAllocation) -> ScheduledProcess:
         """The place of a task.
 
         Raises
         ------
-        UnplacedError : there is no analysis for how it is scheduled.
+        NotSchedulableError : there is no analysis for how it is scheduled.
         """
         process = self.system.processes.get(allocation.task)
         scheduler = self.system.schedulers.get(allocation.scheduler)
         if process is None or scheduler is None:
-            raise UnplacedError("its task or scheduler is not part of the model")
+            raise NotSchedulableError("its task or scheduler is not part of the model")
         deadline = self.limits.get(process.name) if allocation.deadline is None else allocation.deadline
         given = _Given(allocation.priority, deadline, self._period(process), allocation.parameters)
-        place = self._under(scheduler, given, ())
-        return Placed(
+        found = self._under(scheduler, given, ())
+        return ScheduledProcess(
             process=process,
             core=self._core(scheduler, allocation.cores),
-            server=place.server,
+            server=found.server,
             is_isr=False,
             priority=allocation.priority,
             deadline=deadline,
-            rank=place.rank,
-            sharing=place.sharing,
-            slice=place.slice,
-            group=place.group,
+            rank=found.rank,
+            equal_priority=found.equal_priority,
+            slice=found.slice,
+            group=found.group,
         )
 
     def _period(self, process: Process) -> Time | None:
         stimuli = [self.system.stimuli_by_name.get(name) for name in process.stimuli]
         return min((stimulus.period for stimulus in stimuli if isinstance(stimulus, Periodic)), default=None)
 
-    def _under(self, scheduler: Scheduler, given: _Given, above: tuple[str, ...]) -> Place:
+    def _under(self, scheduler: Scheduler, given: _Given, above: tuple[str, ...]) -> SchedulingContext:
         """The place of what is given to a scheduler."""
         if scheduler.name in above:
-            raise UnplacedError("its schedulers are below each other in a circle")
+            raise NotSchedulableError("its schedulers are below each other in a circle")
         above = (*above, scheduler.name)
         policy = self._policy(scheduler)
         if policy == Policy.GROUPING:
             return self._in_group(scheduler, given, above)
         if policy in SERVERS:
             server = self._server(scheduler, above)
-            return Place(server=server.name, rank=() if given.priority is None else (given.priority,))
+            return SchedulingContext(server=server.name, rank=() if given.priority is None else (given.priority,))
         base = self._of_scheduler(scheduler, above)
-        if base.sharing is not Sharing.ARRIVAL:
-            self.notes.warning("ANA002", f"there is no analysis for {scheduler.name!r} below {base.sharing}", scheduler)
-            raise UnplacedError(f"there is no analysis for schedulers below {base.sharing}")
+        if base.equal_priority is not EqualPriority.FIFO:
+            self.notes.warning("ANA002", f"there is no analysis for {scheduler.name!r} below {base.equal_priority}", scheduler)
+            raise NotSchedulableError(f"there is no analysis for schedulers below {base.equal_priority}")
         if policy is None:
             message = f"the scheduler {scheduler.name!r} names no policy, fixed priorities with preemption are taken"
             self.notes.warning("ANA001", message, scheduler)
-        if policy is None or policy in BY_PRIORITY:
-            return self._by_priority(scheduler, policy, given, base)
-        match policy:
-            case Policy.DEADLINE_MONOTONIC:
-                return replace(base, rank=(*base.rank, -_needed(given.deadline, "deadline")))
-            case Policy.RATE_MONOTONIC:
-                stated = _time(given.of(scheduler, "period")) or given.period
-                return replace(base, rank=(*base.rank, -_needed(stated, "period")))
-            case Policy.EARLIEST_DEADLINE_FIRST:
-                return replace(base, sharing=Sharing.DEADLINE, deadline=_needed(given.deadline, "deadline"))
-        message = f"there is no analysis for the policy {policy!r} of the scheduler {scheduler.name!r}"
-        self.notes.warning("ANA002", message, scheduler)
-        raise UnplacedError(f"there is no analysis for the policy {policy}")
+        by_policy = _BY_POLICY.get(policy)
+        if by_policy is None:
+            message = f"there is no analysis for the policy {policy!r} of the scheduler {scheduler.name!r}"
+            self.notes.warning("ANA002", message, scheduler)
+            raise NotSchedulableError(f"there is no analysis for the policy {policy}")
+        return by_policy(scheduler, given, base)
 
     def _policy(self, scheduler: Scheduler) -> str | None:
         """The policy of a scheduler by its standard name."""
@@ -204,18 +205,10 @@ class Placement:
         self.notes.assume(f"the policy {scheduler.policy!r} is taken for {meant}")
         return meant
 
-    def _by_priority(self, scheduler: Scheduler, policy: str | None, given: _Given, base: Place) -> Place:
-        place = replace(base, rank=(*base.rank, _needed(given.priority, "priority")))
-        if policy == Policy.PRIORITY_BASED_ROUND_ROBIN:
-            length = _needed(_time(given.of(scheduler, "timeSliceLength")), "timeSliceLength")
-            return replace(place, sharing=Sharing.SLICES, slice=length)
-        group = given.of(scheduler, "taskGroup") if policy == Policy.OSEK else None
-        return place if group is None else replace(place, group=f"{scheduler.name}/{group}")
-
-    def _in_group(self, scheduler: Scheduler, given: _Given, above: tuple[str, ...]) -> Place:
+    def _in_group(self, scheduler: Scheduler, given: _Given, above: tuple[str, ...]) -> SchedulingContext:
         """A grouping decides nothing: its parent does, by what is stated for the process, or else for the whole group."""
         if scheduler.parent is None:
-            raise UnplacedError(f"the grouping {scheduler.name!r} has no scheduler above it")
+            raise NotSchedulableError(f"the grouping {scheduler.name!r} has no scheduler above it")
         parent, whole = self._parent(scheduler)
         merged = _Given(
             priority=whole.priority if given.priority is None else given.priority,
@@ -225,22 +218,22 @@ class Placement:
         )
         return self._under(parent, merged, above)
 
-    def _of_scheduler(self, scheduler: Scheduler, above: tuple[str, ...]) -> Place:
+    def _of_scheduler(self, scheduler: Scheduler, above: tuple[str, ...]) -> SchedulingContext:
         """The place of a scheduler itself, in front of which those of what it serves come."""
         if scheduler.parent is None:
-            return Place()
+            return SchedulingContext()
         parent, given = self._parent(scheduler)
         if scheduler.policy not in SERVERS and self._is_shared(parent, given.priority):
             message = f"the priority of {scheduler.name!r} in {parent.name!r} is that of others, too"
             self.notes.warning("ANA002", message, scheduler)
-            raise UnplacedError("there is no analysis for schedulers that share a priority")
+            raise NotSchedulableError("there is no analysis for schedulers that share a priority")
         return self._under(parent, given, above)
 
     def _parent(self, scheduler: Scheduler) -> tuple[Scheduler, _Given]:
         assert scheduler.parent is not None
         parent = self.system.schedulers.get(scheduler.parent.scheduler)
         if parent is None:
-            raise UnplacedError(f"the scheduler above {scheduler.name!r} is not part of the model")
+            raise NotSchedulableError(f"the scheduler above {scheduler.name!r} is not part of the model")
         stated = scheduler.parent
         period = _time(_Given(None, None, None, stated.parameters).of(scheduler, *PERIOD))
         deadline = period if stated.deadline is None else stated.deadline
@@ -257,18 +250,18 @@ class Placement:
 
     def _server(self, scheduler: Scheduler, above: tuple[str, ...]) -> Server:
         if scheduler.name not in self.servers:
-            place = self._of_scheduler(scheduler, above)
+            found = self._of_scheduler(scheduler, above)
             stated = _Given(None, None, None, scheduler.parent.parameters if scheduler.parent else ())
             self.servers[scheduler.name] = Server(
                 scheduler=scheduler,
                 budget=_needed(_time(stated.of(scheduler, *CAPACITY)), "capacity"),
                 period=_needed(_time(stated.of(scheduler, *PERIOD)), "period"),
                 core=self._core(scheduler, ()),
-                server=place.server,
-                rank=place.rank,
-                sharing=place.sharing,
-                deadline=place.deadline,
-                slice=place.slice,
+                server=found.server,
+                rank=found.rank,
+                equal_priority=found.equal_priority,
+                deadline=found.deadline,
+                slice=found.slice,
             )
         return self.servers[scheduler.name]
 
@@ -282,25 +275,25 @@ class Placement:
             why = "several cores serve it" if cores else "no core serves it"
             message = f"the scheduler {scheduler.name!r} decides for {len(served)} cores; only one per task is analysed"
             self.notes.warning("ANA002", message, scheduler)
-            raise UnplacedError(why)
+            raise NotSchedulableError(why)
         roots = [s.name for s in self.system.schedulers.values() if s.parent is None and cores[0] in s.cores]
         others = [name for name in roots if name != root.name]
         if others:
             message = f"the core {cores[0]!r} is served by {root.name!r} and by {others[0]!r}"
             self.notes.warning("ANA002", message, scheduler)
-            raise UnplacedError("two schedulers share its core")
+            raise NotSchedulableError("two schedulers share its core")
         return cores[0]
 
-    def isr(self, name: str, controller_name: str, priority: int | None) -> Placed:
+    def isr(self, name: str, controller_name: str, priority: int | None) -> ScheduledProcess:
         """The place of an interrupt service routine; raises as `task`."""
         process = self.system.processes.get(name)
         controller = self.system.interrupt_controllers.get(controller_name)
         if process is None or controller is None:
-            raise UnplacedError("its controller is not part of the model")
+            raise NotSchedulableError("its controller is not part of the model")
         if len(controller.cores) != 1:
-            raise UnplacedError("several cores serve it" if controller.cores else "no core serves it")
+            raise NotSchedulableError("several cores serve it" if controller.cores else "no core serves it")
         rank = (1, priority or 0)
-        return Placed(process=process, core=controller.cores[0], is_isr=True, priority=priority, rank=rank)
+        return ScheduledProcess(process=process, core=controller.cores[0], is_isr=True, priority=priority, rank=rank)
 
 
 def _time(value: ParameterValue | None) -> Time | None:
@@ -310,5 +303,48 @@ def _time(value: ParameterValue | None) -> Time | None:
 def _needed(value: int | None, what: str) -> int:
     """A value that may not be missing, and no time that may not be 0."""
     if value is None or (what != "priority" and value <= 0):
-        raise UnplacedError(f"it has no {what}")
+        raise NotSchedulableError(f"it has no {what}")
     return value
+
+
+# Policies
+
+
+def _fixed_priority(_scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
+    return replace(base, rank=(*base.rank, _needed(given.priority, "priority")))
+
+
+def _osek(scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
+    found, group = _fixed_priority(scheduler, given, base), given.of(scheduler, "taskGroup")
+    return found if group is None else replace(found, group=f"{scheduler.name}/{group}")
+
+
+def _round_robin(scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
+    found = _fixed_priority(scheduler, given, base)
+    length = _needed(_time(given.of(scheduler, "timeSliceLength")), "timeSliceLength")
+    return replace(found, equal_priority=EqualPriority.ROUND_ROBIN, slice=length)
+
+
+def _deadline_monotonic(_scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
+    return replace(base, rank=(*base.rank, -_needed(given.deadline, "deadline")))
+
+
+def _rate_monotonic(scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
+    stated = _time(given.of(scheduler, "period")) or given.period
+    return replace(base, rank=(*base.rank, -_needed(stated, "period")))
+
+
+def _earliest_deadline_first(_scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
+    return replace(base, equal_priority=EqualPriority.EDF, deadline=_needed(given.deadline, "deadline"))
+
+
+#: How a scheduler of each policy treats what is below it; without a policy, fixed priorities are assumed.
+_BY_POLICY: Mapping[str | None, Callable[[Scheduler, _Given, SchedulingContext], SchedulingContext]] = {
+    None: _fixed_priority,
+    Policy.FIXED_PRIORITY_PREEMPTIVE: _fixed_priority,
+    Policy.OSEK: _osek,
+    Policy.PRIORITY_BASED_ROUND_ROBIN: _round_robin,
+    Policy.DEADLINE_MONOTONIC: _deadline_monotonic,
+    Policy.RATE_MONOTONIC: _rate_monotonic,
+    Policy.EARLIEST_DEADLINE_FIRST: _earliest_deadline_first,
+}

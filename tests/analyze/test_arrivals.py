@@ -15,34 +15,44 @@ from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import Constant, Uniform
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.event_models.base import Behind, Curve, Delayed, Every, Once, Pattern, Periodic, Repeated, Together
-from amalthea_uros.timing.event_models.stimuli import arrivals_of
-from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.timing.event_models import (
+    AggregatedEventModel,
+    Curve,
+    Delayed,
+    Downsampled,
+    Multiplied,
+    OutputEventModel,
+    Pattern,
+    Periodic,
+    Single,
+)
+from amalthea_uros.timing.event_models.stimuli import event_model_of
+from amalthea_uros.timing.multiframe import MultiframeDemand
 
 PERIODIC = st.builds(Periodic, st.integers(1, 30), st.integers(0, 80), st.integers(0, 5)).filter(
     lambda p: p.distance <= p.period
 )
 PATTERN = st.lists(st.integers(0, 19), min_size=1, max_size=4).map(lambda times: Pattern(20, tuple(sorted(times))))
-SIMPLE = st.one_of(PERIODIC, PATTERN, st.just(Once()), st.just(Curve(((2, 3), (4, 20)))))
+SIMPLE = st.one_of(PERIODIC, PATTERN, st.just(Single()), st.just(Curve(((2, 3), (4, 20)))))
 MODELS = st.one_of(
     SIMPLE,
-    st.builds(Every, SIMPLE, st.integers(1, 4)),
+    st.builds(Downsampled, SIMPLE, st.integers(1, 4)),
     st.builds(Delayed, SIMPLE, st.integers(0, 30)),
-    st.builds(Behind, SIMPLE, st.just((3, 7)), st.integers(0, 3)),
-    st.lists(SIMPLE, min_size=1, max_size=3).map(lambda models: Together(tuple(models))),
+    st.builds(OutputEventModel, SIMPLE, st.just((3, 7)), st.integers(0, 3)),
+    st.lists(SIMPLE, min_size=1, max_size=3).map(lambda models: AggregatedEventModel(tuple(models))),
 )
 
 
 @given(MODELS, st.integers(1, 200))
 def test_as_many_arrivals_as_fit(model, window):
-    count = model.most(window)
+    count = model.eta_plus(window)
     # They span less than the window, and one more would not.
-    assert model.span(count) < window <= model.span(count + 1)
+    assert model.delta_min(count) < window <= model.delta_min(count + 1)
 
 
 @given(MODELS)
 def test_more_arrivals_never_span_less(model):
-    spans = [model.span(count) for count in range(12)]
+    spans = [model.delta_min(count) for count in range(12)]
     assert spans == sorted(spans)
     assert spans[:2] == [0, 0]
 
@@ -53,7 +63,7 @@ def test_no_jittering_arrivals_are_denser_than_their_model(period, jitter, delay
     model = Periodic(period, jitter)
     for first in range(12):
         for last in range(first, 12):
-            assert times[last] - times[first] >= model.span(last - first + 1)
+            assert times[last] - times[first] >= model.delta_min(last - first + 1)
 
 
 @given(PATTERN)
@@ -61,13 +71,13 @@ def test_a_pattern_is_as_dense_as_its_densest_place(pattern):
     times = [time + 20 * k for k in range(6) for time in pattern.times]
     for count in range(2, 2 * len(pattern.times) + 2):
         densest = min(times[i + count - 1] - times[i] for i in range(len(pattern.times)))
-        assert pattern.span(count) == densest
+        assert pattern.delta_min(count) == densest
 
 
 def test_several_arrivals_for_each_of_others():
-    repeated = Repeated(Periodic(10), 3)
-    assert [repeated.span(count) for count in range(1, 8)] == [0, 0, 0, 10, 10, 10, 20]
-    assert (repeated.most(11), repeated.rate) == (6, Fraction(3, 10))
+    repeated = Multiplied(Periodic(10), 3)
+    assert [repeated.delta_min(count) for count in range(1, 8)] == [0, 0, 0, 10, 10, 10, 20]
+    assert (repeated.eta_plus(11), repeated.rate) == (6, Fraction(3, 10))
 
 
 @pytest.mark.parametrize(
@@ -81,7 +91,7 @@ def test_several_arrivals_for_each_of_others():
         # The third occurrence would lie behind the burst.
         (perf.Burst(name="s", period=10, length=4, distance=2, count=3), Pattern(10, (0, 2))),
         (perf.Synthetic(name="s", period=10, times=(7, 1)), Pattern(10, (1, 7))),
-        (perf.Single(name="s", time=4), Once()),
+        (perf.Single(name="s", time=4), Single()),
         (
             perf.ArrivalCurve(
                 name="s", points=(perf.ArrivalCurvePoint(occurrences=2, lower=3), perf.ArrivalCurvePoint(occurrences=3))
@@ -113,7 +123,7 @@ def test_stimuli(stimulus, model):
         perf.ClockFunction(name="engine", curve=perf.Curve.SINE, period=10, lowest=Fraction(20), swing=Fraction(30)),
         perf.ClockSteps(name="steps", steps=tuple(perf.ClockStep(time=t, frequency=Fraction(t)) for t in (1, 4, 2))),
     )
-    assert arrivals_of(stimulus, System(stimuli=perf.Stimuli(clocks=clocks))) == model
+    assert event_model_of(stimulus, System(stimuli=perf.Stimuli(clocks=clocks))) == model
 
 
 def test_the_tutorial_of_compositional_analysis():
@@ -132,7 +142,10 @@ def test_the_tutorial_of_compositional_analysis():
         tasks = [
             # Lower numbers are more important there.
             Task(
-                name=t["name"], arrivals=arrivals[t["name"]], cost=Cost.constant(t["wcet"], t["bcet"]), priority=-t["priority"]
+                name=t["name"],
+                arrivals=arrivals[t["name"]],
+                cost=MultiframeDemand.constant(t["wcet"], t["bcet"]),
+                priority=-t["priority"],
             )
             for t in case["tasks"]
             if t["resource"] == resource

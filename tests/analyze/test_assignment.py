@@ -18,8 +18,8 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import Periodic
-from amalthea_uros.timing.event_models.base import Periodic as PeriodicArrivals
-from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.timing.event_models import Periodic as PeriodicArrivals
+from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 
@@ -36,7 +36,7 @@ def meets(order, tasks, deadlines):
 @given(ROWS)
 def test_there_is_an_assignment_if_and_only_if_one_of_all_orders_is_one(rows):
     tasks = [
-        AnalysedTask(name=str(index), arrivals=PeriodicArrivals(period, jitter), cost=Cost.constant(cost))
+        AnalysedTask(name=str(index), arrivals=PeriodicArrivals(period, jitter), cost=MultiframeDemand.constant(cost))
         for index, (period, jitter, cost, _) in enumerate(rows)
     ]
     deadlines = [deadline for *_, deadline in rows]
@@ -50,8 +50,8 @@ def test_there_is_an_assignment_if_and_only_if_one_of_all_orders_is_one(rows):
 def test_deadline_monotonic_order_is_not_best_with_jitter():
     # The task with the shorter deadline arrives regularly; only below the jittering one both fit.
     tasks = [
-        AnalysedTask(name="regular", arrivals=PeriodicArrivals(20), cost=Cost.constant(4)),
-        AnalysedTask(name="jittering", arrivals=PeriodicArrivals(20, 16), cost=Cost.constant(3)),
+        AnalysedTask(name="regular", arrivals=PeriodicArrivals(20), cost=MultiframeDemand.constant(4)),
+        AnalysedTask(name="jittering", arrivals=PeriodicArrivals(20, 16), cost=MultiframeDemand.constant(3)),
     ]
     assert assign(tasks, [10, 10]) is not None
 

@@ -7,9 +7,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from amalthea_uros.analyze.response_times import kernel, schedule
-from amalthea_uros.analyze.response_times.schedule import Released
+from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.compiled import Compiled, compiled
-from amalthea_uros.timing.multiframe import Cost, Part
+from amalthea_uros.timing.multiframe import Frame, MultiframeDemand
 
 np = pytest.importorskip("numpy")
 pytest.importorskip("numba")
@@ -52,11 +52,11 @@ def test_the_same_numbers(rows, window, fixed, data):
 )
 def test_the_same_schedule(rows):
     tasks = [
-        Released(
+        PeriodicTask(
             name=str(index),
             period=period,
             offset=offset,
-            cost=Cost((Part(worst=cost, best=cost), Part(worst=1, best=0, prescaler=prescaler, offset=start))),
+            cost=MultiframeDemand((Frame(worst=cost, best=cost), Frame(worst=1, best=0, prescaler=prescaler, offset=start))),
             priority=-index // 2,
         )
         for index, (period, offset, cost, prescaler, start) in enumerate(rows)
@@ -66,13 +66,13 @@ def test_the_same_schedule(rows):
     found = []
     for function in (Compiled(kernel.dispatch.__wrapped__, 0), DISPATCH):
         schedule.dispatch = function
-        found.append(schedule.schedule(tasks, 100, Cost.worst_of, watched))
+        found.append(schedule.schedule(tasks, 100, MultiframeDemand.worst_of, watched))
     schedule.dispatch = kernel.dispatch
     for python, machine, task, is_watched in zip(*found, tasks, watched, strict=True):
         assert [column.tolist() for column in dataclasses.astuple(python)] == [c.tolist() for c in dataclasses.astuple(machine)]
         if is_watched:
             executed = [0] * len(python.releases)
-            for job, begin, end in python.pieces.tolist():
+            for job, begin, end in python.execution_slices.tolist():
                 executed[job] += end - begin
             assert executed == [task.cost.worst_of(job + 1) for job in range(len(executed))]
 

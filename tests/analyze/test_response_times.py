@@ -11,10 +11,10 @@ from support import SHARED
 
 from amalthea_uros.analyze.response_times import non_preemptive, schedule
 from amalthea_uros.analyze.response_times import priority_levels as levels
-from amalthea_uros.analyze.response_times.schedule import Released
+from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.timing.event_models.base import Periodic
-from amalthea_uros.timing.multiframe import Cost, Part
+from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.multiframe import Frame, MultiframeDemand
 
 
 def vectors(name, accept=lambda case: True):
@@ -29,7 +29,7 @@ def tasks_of(case):
         Task(
             name=task["name"],
             arrivals=Periodic(task["period"], task.get("jitter", 0)),
-            cost=Cost.constant(task["wcet"]),
+            cost=MultiframeDemand.constant(task["wcet"]),
             priority=-task["priority"],
         )
         for task in case["tasks"]
@@ -59,7 +59,7 @@ def test_liu_and_layland_1973(case):
     costs = [(then - first) for first, then in pairwise([*periods, 2 * periods[0]])]
     assert sum(cost / period for cost, period in zip(costs, periods, strict=True)) == pytest.approx(bound, rel=1e-8)
     tasks = [
-        Task(name=f"t{index}", arrivals=Periodic(period), cost=Cost.constant(cost), priority=-index)
+        Task(name=f"t{index}", arrivals=Periodic(period), cost=MultiframeDemand.constant(cost), priority=-index)
         for index, (period, cost) in enumerate(zip(periods, costs, strict=True))
     ]
     responses = levels.response_times(tasks)
@@ -67,8 +67,8 @@ def test_liu_and_layland_1973(case):
 
 
 def test_lehoczky_1990_has_its_worst_response_at_the_fifth_job():
-    t1 = Task(name="t1", arrivals=Periodic(70), cost=Cost.constant(26), priority=2)
-    t2 = Task(name="t2", arrivals=Periodic(100), cost=Cost.constant(62), priority=1)
+    t1 = Task(name="t1", arrivals=Periodic(70), cost=MultiframeDemand.constant(26), priority=2)
+    t2 = Task(name="t2", arrivals=Periodic(100), cost=MultiframeDemand.constant(62), priority=1)
     _, response = levels.response_times([t1, t2])
     assert (response.worst, response.jobs) == (118, 7)
     assert response.terms["earlier arrival"] == -4 * 100
@@ -77,7 +77,7 @@ def test_lehoczky_1990_has_its_worst_response_at_the_fifth_job():
 def test_davis_2007_a_later_frame_waits_longest():
     # The example by which the older analysis is refuted, in bits of 1/125 of a millisecond: 1, 1, 1 ms every 2.5, 3.5, 3.5 ms.
     frames = [
-        Task(name=name, arrivals=Periodic(period), cost=Cost.constant(1000), priority=priority)
+        Task(name=name, arrivals=Periodic(period), cost=MultiframeDemand.constant(1000), priority=priority)
         for name, period, priority in (("A", 2500, 3), ("B", 3500, 2), ("C", 3500, 1))
     ]
     assert [response.worst for response in non_preemptive.response_times(frames)] == [2000, 3000, 3500]
@@ -86,17 +86,23 @@ def test_davis_2007_a_later_frame_waits_longest():
 @pytest.mark.parametrize("case", vectors("schedules"))
 def test_schedules_job_by_job(case):
     tasks = [
-        Released(name=t["name"], period=t["period"], offset=t["offset"], cost=Cost.constant(t["wcet"]), priority=-t["priority"])
+        PeriodicTask(
+            name=t["name"],
+            period=t["period"],
+            offset=t["offset"],
+            cost=MultiframeDemand.constant(t["wcet"]),
+            priority=-t["priority"],
+        )
         for t in case["tasks"]
     ]
-    found = schedule.schedule(tasks, case["simulated_until"], Cost.worst_of)
+    found = schedule.schedule(tasks, case["simulated_until"], MultiframeDemand.worst_of)
     columns = [zip(jobs.releases.tolist(), jobs.begins.tolist(), jobs.ends.tolist(), strict=True) for jobs in found]
     assert {task.name: [list(job) for job in jobs] for task, jobs in zip(tasks, columns, strict=True)} == case["jobs"]
 
 
 def test_overload_is_a_result_with_a_reason():
-    high = Task(name="high", arrivals=Periodic(10), cost=Cost.constant(6), priority=2)
-    low = Task(name="low", arrivals=Periodic(10), cost=Cost.constant(5), priority=1)
+    high = Task(name="high", arrivals=Periodic(10), cost=MultiframeDemand.constant(6), priority=2)
+    low = Task(name="low", arrivals=Periodic(10), cost=MultiframeDemand.constant(5), priority=1)
     first, second = levels.response_times([high, low])
     assert first.worst == 6
     assert second.worst is None
@@ -105,8 +111,8 @@ def test_overload_is_a_result_with_a_reason():
 
 
 def test_a_processor_that_is_exactly_full():
-    high = Task(name="high", arrivals=Periodic(4), cost=Cost.constant(2), priority=2)
-    low = Task(name="low", arrivals=Periodic(8), cost=Cost.constant(4), priority=1)
+    high = Task(name="high", arrivals=Periodic(4), cost=MultiframeDemand.constant(2), priority=2)
+    low = Task(name="low", arrivals=Periodic(8), cost=MultiframeDemand.constant(4), priority=1)
     assert [response.worst for response in levels.response_times([high, low])] == [2, 8]
 
 
@@ -118,7 +124,7 @@ def drawn(rows, jitter=False):
         Task(
             name=str(index),
             arrivals=Periodic(period, jittered if jitter else 0),
-            cost=Cost.constant(cost, max(1, cost - 1)),
+            cost=MultiframeDemand.constant(cost, max(1, cost - 1)),
             priority=-index,
         )
         for index, (period, cost, jittered) in enumerate(rows)
@@ -133,10 +139,10 @@ def load(tasks):
 def test_the_busy_window_is_the_schedule_of_the_critical_instant(rows):
     tasks = drawn(rows)
     assume(load(tasks) <= 1)
-    released = [Released(name=t.name, period=t.arrivals.period, offset=0, cost=t.cost, priority=t.priority) for t in tasks]
+    released = [PeriodicTask(name=t.name, period=t.arrivals.period, offset=0, cost=t.cost, priority=t.priority) for t in tasks]
     exact = schedule.response_times(released)
     bounds = levels.response_times(tasks)
-    # Released together, the worst moment is the first one (Liu and Layland 1973).
+    # PeriodicTask together, the worst moment is the first one (Liu and Layland 1973).
     assert [response.worst for response in bounds] == [response.worst for response in exact]
 
 
@@ -145,12 +151,12 @@ def test_offsets_never_make_it_worse_than_the_bound(rows, offsets):
     tasks = drawn(rows)
     assume(load(tasks) <= 1)
     released = [
-        Released(name=t.name, period=t.arrivals.period, offset=offset, cost=t.cost, priority=t.priority)
+        PeriodicTask(name=t.name, period=t.arrivals.period, offset=offset, cost=t.cost, priority=t.priority)
         for t, offset in zip(tasks, offsets, strict=False)
     ]
     exact = schedule.response_times(released)
     until = max(offsets) + 2 * schedule.hyperperiod(released)
-    jobs = schedule.schedule(released, until, Cost.best_of)
+    jobs = schedule.schedule(released, until, MultiframeDemand.best_of)
     for one, bound, best in zip(exact, levels.response_times(tasks), jobs, strict=True):
         assert one.worst <= bound.worst
         # Once all tasks have started, and what was released before has ended.
@@ -160,7 +166,10 @@ def test_offsets_never_make_it_worse_than_the_bound(rows, offsets):
 @given(TASKS)
 def test_more_load_never_shortens_a_response_time(rows):
     tasks = drawn(rows, jitter=True)
-    more = [Task(name=t.name, arrivals=t.arrivals, cost=Cost.constant(t.cost.worst + 1), priority=t.priority) for t in tasks]
+    more = [
+        Task(name=t.name, arrivals=t.arrivals, cost=MultiframeDemand.constant(t.cost.worst + 1), priority=t.priority)
+        for t in tasks
+    ]
     for less, greater in zip(
         levels.response_times(tasks),
         levels.response_times(more),
@@ -208,27 +217,27 @@ def test_no_schedule_without_interruption_is_worse_than_its_bound(rows):
 class TestDemandThatIsNotTheSameInEachJob:
     """The executor that takes 12 us, and every 20th time 13 more."""
 
-    EXECUTOR = Cost((Part(worst=12, best=12), Part(worst=13, best=13, prescaler=20)))
+    EXECUTOR = MultiframeDemand((Frame(worst=12, best=12), Frame(worst=13, best=13, prescaler=20)))
 
     def test_consecutive_jobs(self):
-        assert [self.EXECUTOR.most(count) for count in (1, 2, 20, 21)] == [25, 37, 12 * 20 + 13, 12 * 21 + 26]
-        assert [self.EXECUTOR.least(count) for count in (1, 19, 20)] == [12, 12 * 19, 12 * 20 + 13]
+        assert [self.EXECUTOR.max_demand(count) for count in (1, 2, 20, 21)] == [25, 37, 12 * 20 + 13, 12 * 21 + 26]
+        assert [self.EXECUTOR.min_demand(count) for count in (1, 19, 20)] == [12, 12 * 19, 12 * 20 + 13]
 
     def test_the_control_function_of_the_thesis(self):
         # Figures 6.5 and 6.6: 16 us with the simple model; 16 to 29 us with the advanced one.
         def respond(executor):
             tasks = [
-                Released(name="executor", period=1000, offset=0, cost=executor, priority=2),
-                Released(name="control", period=1000, offset=0, cost=Cost.constant(4), priority=1),
+                PeriodicTask(name="executor", period=1000, offset=0, cost=executor, priority=2),
+                PeriodicTask(name="control", period=1000, offset=0, cost=MultiframeDemand.constant(4), priority=1),
             ]
             return schedule.response_times(tasks)[1]
 
-        simple, advanced = respond(Cost.constant(12)), respond(self.EXECUTOR)
+        simple, advanced = respond(MultiframeDemand.constant(12)), respond(self.EXECUTOR)
         assert (simple.best, simple.worst) == (16, 16)
         assert (advanced.best, advanced.worst) == (16, 29)
 
     def test_it_is_not_a_25_us_task(self):
-        low = Task(name="low", arrivals=Periodic(10_000), cost=Cost.constant(1000), priority=1)
+        low = Task(name="low", arrivals=Periodic(10_000), cost=MultiframeDemand.constant(1000), priority=1)
         executor = Task(name="executor", arrivals=Periodic(1000), cost=self.EXECUTOR, priority=2)
         _, response = levels.response_times([executor, low])
         # Two activations in the window of 1,037 us, of which one takes a message.
@@ -236,7 +245,7 @@ class TestDemandThatIsNotTheSameInEachJob:
 
     @given(st.integers(1, 6), st.integers(1, 5), st.integers(1, 60))
     def test_no_sequence_of_jobs_costs_more(self, prescaler, extra, count):
-        cost = Cost((Part(worst=3, best=2), Part(worst=extra, best=extra, prescaler=prescaler)))
+        cost = MultiframeDemand((Frame(worst=3, best=2), Frame(worst=extra, best=extra, prescaler=prescaler)))
         windows = [range(first, first + count) for first in range(1, 2 * prescaler + 1)]
-        assert max(sum(map(cost.worst_of, jobs)) for jobs in windows) == cost.most(count)
-        assert min(sum(map(cost.best_of, jobs)) for jobs in windows) == cost.least(count)
+        assert max(sum(map(cost.worst_of, jobs)) for jobs in windows) == cost.max_demand(count)
+        assert min(sum(map(cost.best_of, jobs)) for jobs in windows) == cost.min_demand(count)

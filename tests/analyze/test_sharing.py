@@ -9,24 +9,24 @@ from hypothesis import strategies as st
 
 from amalthea_uros.analyze.response_times import priority_levels as levels
 from amalthea_uros.analyze.response_times.supply import Budget
-from amalthea_uros.analyze.response_times.task import Sharing, Task
-from amalthea_uros.timing.event_models.base import Periodic
-from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.analyze.response_times.task import EqualPriority, Task
+from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.multiframe import MultiframeDemand
 
 
-def shared(sharing, rows, above=()):
+def shared(equal_priority, rows, above=()):
     """Tasks of (period, cost, deadline or slice) that share a priority, below others of (period, cost)."""
     higher = [
-        Task(name=f"H{index}", arrivals=Periodic(period), cost=Cost.constant(cost), priority=1 + index)
+        Task(name=f"H{index}", arrivals=Periodic(period), cost=MultiframeDemand.constant(cost), priority=1 + index)
         for index, (period, cost) in enumerate(above)
     ]
     lower = [
         Task(
             name=f"T{index}",
             arrivals=Periodic(period),
-            cost=Cost.constant(cost),
-            sharing=sharing,
-            deadline=last if sharing is Sharing.DEADLINE else 0,
+            cost=MultiframeDemand.constant(cost),
+            equal_priority=equal_priority,
+            deadline=last if equal_priority is EqualPriority.EDF else 0,
             slice=last,
         )
         for index, (period, cost, last) in enumerate(rows)
@@ -47,19 +47,19 @@ def play(tasks, offsets, until, serves=lambda _: True, tie=1):
             continue
         top = max(tasks[job[1]].priority for job in waiting)
         level = [job for job in waiting if tasks[job[1]].priority == top]
-        match tasks[level[0][1]].sharing:
-            case Sharing.ARRIVAL:
+        match tasks[level[0][1]].equal_priority:
+            case EqualPriority.FIFO:
                 job = min(level, key=lambda job: (job[0], tie * job[1]))
-            case Sharing.DEADLINE:
+            case EqualPriority.EDF:
                 job = min(level, key=lambda job: (job[0] + tasks[job[1]].deadline, tie * job[1], job[0]))
-            case Sharing.SLICES:
+            case EqualPriority.ROUND_ROBIN:
                 first = next(index for index in turn if any(job[1] == index for job in level))
                 job = min(job for job in level if job[1] == first)
         job[2] -= 1
         if job[2] == 0:
             waiting.remove(job)
             worst[job[1]] = max(worst[job[1]], now + 1 - job[0])
-        if tasks[job[1]].sharing is Sharing.SLICES:
+        if tasks[job[1]].equal_priority is EqualPriority.ROUND_ROBIN:
             used += 1
             is_done = not any(other[1] == job[1] for other in waiting)
             if used == tasks[job[1]].slice or is_done:
@@ -79,20 +79,20 @@ ABOVE = st.lists(st.tuples(st.sampled_from([6, 8]), st.integers(1, 2)), max_size
 OFFSETS = st.lists(st.integers(0, 11), min_size=4, max_size=4)
 
 
-@pytest.mark.parametrize("sharing", Sharing)
+@pytest.mark.parametrize("equal_priority", EqualPriority)
 @given(rows=ROWS, above=ABOVE, offsets=OFFSETS)
-def test_no_schedule_is_worse_than_the_bound(sharing, rows, above, offsets):
-    tasks = shared(sharing, rows, above)
+def test_no_schedule_is_worse_than_the_bound(equal_priority, rows, above, offsets):
+    tasks = shared(equal_priority, rows, above)
     assume(load(tasks) <= 1)
     for seen, response in zip(play(tasks, offsets, 96), levels.response_times(tasks), strict=True):
         assert seen <= response.worst
         assert sum(response.terms.values()) == response.worst
 
 
-@pytest.mark.parametrize("sharing", [Sharing.ARRIVAL, Sharing.DEADLINE])
+@pytest.mark.parametrize("equal_priority", [EqualPriority.FIFO, EqualPriority.EDF])
 @given(rows=st.lists(st.tuples(st.sampled_from([3, 4, 6]), st.integers(1, 3), st.integers(1, 7)), min_size=2, max_size=2))
-def test_some_offsets_reach_the_bound(sharing, rows):
-    tasks = shared(sharing, rows)
+def test_some_offsets_reach_the_bound(equal_priority, rows):
+    tasks = shared(equal_priority, rows)
     assume(load(tasks) <= 1)
     periods = [range(task.arrivals.period) for task in tasks]
     seen = [play(tasks, offsets, 60, tie=tie) for offsets in product(*periods) for tie in (1, -1)]
@@ -103,7 +103,7 @@ def test_some_offsets_reach_the_bound(sharing, rows):
 def test_no_schedule_of_a_server_is_worse_than_the_bound(rows, offsets, budget, idle, phase):
     period = budget + idle
     tasks = [
-        Task(name=f"T{index}", arrivals=Periodic(period * 3), cost=Cost.constant(cost), priority=-index)
+        Task(name=f"T{index}", arrivals=Periodic(period * 3), cost=MultiframeDemand.constant(cost), priority=-index)
         for index, (period, cost, _) in enumerate(rows)
     ]
     assume(load(tasks) < Fraction(budget, period))
@@ -121,26 +121,26 @@ def test_no_schedule_of_a_server_is_worse_than_the_bound(rows, offsets, budget, 
 
 def test_a_server_by_hand():
     # 2 in each 5: in the worst case nothing for 6, then 2, nothing for 3, 1 more: 6 + 2 + 3 + 1.
-    task = Task(name="T", arrivals=Periodic(100), cost=Cost.constant(3))
+    task = Task(name="T", arrivals=Periodic(100), cost=MultiframeDemand.constant(3))
     (response,) = levels.response_times([task], supply=Budget(budget=2, period=5, wait=6))
     assert response.worst == 12
 
 
 def test_spuri_1996_deadlines_decide_and_not_periods():
     # 1 every 4 by 4, 3 every 6 by 5: the first waits for the second one where its deadline is later.
-    tasks = shared(Sharing.DEADLINE, [(4, 1, 4), (6, 3, 5)])
+    tasks = shared(EqualPriority.EDF, [(4, 1, 4), (6, 3, 5)])
     assert [response.worst for response in levels.response_times(tasks)] == [3, 4]
 
 
 def test_slices_keep_one_that_demands_too_much_from_the_others():
-    greedy, modest = levels.response_times(shared(Sharing.SLICES, [(10, 11, 2), (100, 10, 2)]))
+    greedy, modest = levels.response_times(shared(EqualPriority.ROUND_ROBIN, [(10, 11, 2), (100, 10, 2)]))
     assert greedy.worst is None
     # Five slices of its own, and one of the other before each.
     assert modest.worst == 20
 
 
-@pytest.mark.parametrize("sharing", Sharing)
-def test_overload_has_a_reason(sharing):
-    first, _ = levels.response_times(shared(sharing, [(10, 6, 5), (10, 5, 5)]))
+@pytest.mark.parametrize("equal_priority", EqualPriority)
+def test_overload_has_a_reason(equal_priority):
+    first, _ = levels.response_times(shared(equal_priority, [(10, 6, 5), (10, 5, 5)]))
     assert first.worst is None
     assert "110.0%" in first.reason

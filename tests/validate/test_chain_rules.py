@@ -50,7 +50,7 @@ from amalthea_uros.perf.software import (
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import UnresolvedError
-from amalthea_uros.timing.dataflow.links import Carrier, Resolver
+from amalthea_uros.timing.dataflow.links import LinkKind, Resolver
 from amalthea_uros.units import MILLISECOND as MS
 
 RULE = "TIM-CHAIN-CARRIED"
@@ -175,11 +175,11 @@ def test_the_gaps_of_random_chains(system):
     for chain in system.events.chains:
         first, then = (system.events_by_name[name] for name in (chain.stimulus, chain.response))
         try:
-            carriers = {hop.carrier for route in resolver.routes([first, then]) for hop in route.hops}
+            links = {link.kind for route in resolver.routes([first, then]) for link in route.links}
         except UnresolvedError:
             continue
         is_told = (chain.name, first.name, then.name) in found
-        is_gap = carriers <= {Carrier.NOTHING, Carrier.NEXT_JOB}
+        is_gap = links <= {LinkKind.NOTHING, LinkKind.NEXT_JOB}
         assert is_told is is_gap
 
 

@@ -43,7 +43,7 @@ from amalthea_uros.perf.stimuli import (
     Synthetic,
 )
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.event_models.stimuli import arrivals_of
+from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.load import loads, rates
@@ -278,10 +278,10 @@ def test_activations_at_once_are_those_of_the_analysis(stimulus, limit):
         stimuli=Stimuli(stimuli=(stimulus,)),
         software=Software(tasks=(Task(name="T", stimuli=("S0",), activation_limit=limit),)),
     )
-    arrivals = arrivals_of(stimulus, system)
+    arrivals = event_model_of(stimulus, system)
     assume(arrivals is not None)
     told = check(build_model(system), ["TIM-ACTIVATION-LIMIT"])
-    assert bool(told) is (arrivals.most(1) > limit)
+    assert bool(told) is (arrivals.eta_plus(1) > limit)
 
 
 # What is not known

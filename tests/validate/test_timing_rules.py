@@ -1,13 +1,13 @@
 """The rules of the timing profile beyond their examples."""
 
 import pytest
+from amalthea_uros.timing.dataflow.occurrences import occurrences
 from support import corpus, hand_written
 from test_rules import model
 
 from amalthea_uros import check, extract, load
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.software import AccessKind, LabelAccess
-from amalthea_uros.timing.dataflow.occurrences import occurrences
 
 
 def found(rule, excerpt, folder, version="3.3.0"):

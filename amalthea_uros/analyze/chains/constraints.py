@@ -11,12 +11,9 @@ from dataclasses import dataclass, field
 
 from amalthea_uros.analyze.chains.evaluate import Evaluation
 from amalthea_uros.analyze.chains.order import in_order
-from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.read_write_times import UntimedError
-from amalthea_uros.analyze.chains.result import ChainResult
+from amalthea_uros.analyze.chains.read_write_times import UnboundedStageError
 from amalthea_uros.analyze.chains.windows import UnknownError, Windows
-from amalthea_uros.analyze.response_times.core import known_releases
-from amalthea_uros.analyze.results import RequirementResult, Verdict
+from amalthea_uros.analyze.results import ChainResult, Quantity, RequirementResult, Value, Verdict
 from amalthea_uros.perf.constraints import (
     ChainEnd,
     ChainSynchronization,
@@ -33,9 +30,11 @@ from amalthea_uros.perf.events import LabelChange, LabelEvent
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.software import AccessKind, Call, LabelAccess
 from amalthea_uros.timing.dataflow.events import UnresolvedError
-from amalthea_uros.timing.dataflow.links import Carrier
-from amalthea_uros.timing.dataflow.positions import Place
-from amalthea_uros.timing.event_models.base import Arrivals, Periodic
+from amalthea_uros.timing.dataflow.links import LinkKind
+from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.dataflow.routes import routes
+from amalthea_uros.timing.event_models import EventModel, Periodic, is_strictly_periodic
+from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.units import Time
 
 _REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
@@ -43,7 +42,7 @@ _AGE = (Quantity.MIN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE)
 
 
 @dataclass(slots=True)
-class Judge:
+class ConstraintEvaluator:
     """Judges the constraints of a system."""
 
     evaluation: Evaluation
@@ -55,11 +54,11 @@ class Judge:
 
     def all(self) -> Iterator[RequirementResult]:
         """All constraints, those with two limits as two."""
-        constraints = self.evaluation.known.system.constraints
+        constraints = self.evaluation.context.system.constraints
         for constraint in (*constraints.constraints, *constraints.data_ages, *constraints.orders):
             try:
                 yield from self._one(constraint)
-            except (UnknownError, UnresolvedError, UntimedError) as error:
+            except (UnknownError, UnresolvedError, UnboundedStageError) as error:
                 yield RequirementResult(
                     name=constraint.name,
                     object="",
@@ -106,8 +105,8 @@ class Judge:
     def _delay(self, constraint: DelayConstraint) -> Iterator[RequirementResult]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
         if constraint.matching is not Matching.REACTION:
-            hops = {hop.carrier for route in self.evaluation.resolver.routes([source, target]) for hop in route.hops}
-            if not hops <= {Carrier.JOB, Carrier.TRIGGER}:
+            links = {link.kind for route in routes([source, target], self.evaluation.context.dataflow) for link in route.links}
+            if not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
                 raise UnknownError(
                     "where data are overwritten or read again, occurrences do not belong to each other one by one"
                 )
@@ -121,7 +120,7 @@ class Judge:
 
     def _chain_synchronization(self, constraint: ChainSynchronization) -> RequirementResult:
         found = [self.chains.get(name) for name in constraint.chains]
-        system = self.evaluation.known.system
+        system = self.evaluation.context.system
         chains = [system.chains[name] for name in constraint.chains if name in system.chains]
         if None in found or len(chains) < 2:
             raise UnknownError("it needs two chains of the model")
@@ -140,14 +139,14 @@ class Judge:
     def _data_age(self, constraint: DataAgeConstraint) -> Iterator[RequirementResult]:
         """From each write of the runnable to the reads that still see it."""
         written = LabelEvent(name="write", label=constraint.label, change=LabelChange.WRITE, runnable=constraint.runnable)
-        (spot, *_) = self.evaluation.resolver.spots.of(written)
+        (occurrence, *_) = self.evaluation.context.dataflow.events.of(written)
         readers = {
-            place.process.name
-            for process in self.evaluation.known.system.processes
-            for place in self.evaluation.resolver.spots.places(process)
-            if _reads(place, constraint.label) and process != spot.process.name
+            position.process.name
+            for process in self.evaluation.context.system.processes
+            for position in self.evaluation.context.dataflow.events.positions(process)
+            if _reads(position, constraint.label) and process != occurrence.process.name
         }
-        releases = known_releases(spot.process, self.evaluation.known.system)
+        releases = known_releases(occurrence.process, self.evaluation.context.system)
         cycle = releases.period if releases is not None else None
         latest = _cycles(constraint.latest, constraint.latest_cycle, cycle)
         earliest = _cycles(constraint.earliest, constraint.earliest_cycle, cycle)
@@ -163,21 +162,21 @@ class Judge:
     # Events
 
     def _repetition(self, constraint: RepetitionConstraint) -> Iterator[RequirementResult]:
-        spot = self.windows.spot(constraint.event)
-        arrivals = self.evaluation.known.arrivals.get(spot.process.name)
+        occurrence = self.windows.occurrence(constraint.event)
+        arrivals = self.evaluation.solution.event_models.get(occurrence.process.name)
         if arrivals is None:
-            raise UnknownError(f"the arrivals of {spot.process.name!r} are not known")
-        early, late = self.windows.of(spot)
+            raise UnknownError(f"the arrivals of {occurrence.process.name!r} are not known")
+        early, late = self.windows.of(occurrence)
         span = max(1, constraint.span)
         if constraint.upper is not None:
             longest = _longest(arrivals, span)
             value = None if longest is None else longest + late - early
             yield _result(constraint, constraint.event, "repetition", constraint.upper, value)
         if constraint.lower is not None:
-            value = max(0, arrivals.span(span + 1) - (late - early))
+            value = max(0, arrivals.delta_min(span + 1) - (late - early))
             yield _result(constraint, constraint.event, "repetition", constraint.lower, value, is_upper=False)
         if constraint.jitter is not None:
-            own = arrivals.jitter if isinstance(arrivals, Periodic) and not arrivals.sporadic else None
+            own = arrivals.jitter if isinstance(arrivals, Periodic) and is_strictly_periodic(arrivals) else None
             value = None if own is None else own + late - early
             yield _result(constraint, constraint.event, "jitter", constraint.jitter, value)
 
@@ -185,11 +184,11 @@ class Judge:
 
     def _order(self, constraint: OrderConstraint) -> Iterator[RequirementResult]:
         wanted = [name for group in constraint.groups for name in group]
-        for process in constraint.processes or tuple(self.evaluation.known.system.processes):
+        for process in constraint.processes or tuple(self.evaluation.context.system.processes):
             called = [
-                place.activity.runnable
-                for place in self.evaluation.resolver.spots.places(process)
-                if isinstance(place.activity, Call) and len(place.outer) == 1
+                position.activity.runnable
+                for position in self.evaluation.context.dataflow.events.positions(process)
+                if isinstance(position.activity, Call) and len(position.outer) == 1
             ]
             if not any(name in called for name in wanted):
                 continue
@@ -241,13 +240,13 @@ def _cycles(time: Time | None, cycles: int | None, period: Time | None) -> Time 
     return cycles * period
 
 
-def _longest(arrivals: Arrivals, count: int) -> Time | None:
+def _longest(arrivals: EventModel, count: int) -> Time | None:
     """The longest time that so many steps from one arrival to the next can take."""
-    if isinstance(arrivals, Periodic) and not arrivals.sporadic:
+    if isinstance(arrivals, Periodic) and is_strictly_periodic(arrivals):
         return count * arrivals.period + arrivals.jitter
-    return None if arrivals.gap is None else count * arrivals.gap
+    return None if arrivals.max_interarrival is None else count * arrivals.max_interarrival
 
 
-def _reads(place: Place, label: str) -> bool:
-    access = place.activity
+def _reads(position: ActivityPosition, label: str) -> bool:
+    access = position.activity
     return isinstance(access, LabelAccess) and access.label == label and access.kind is AccessKind.READ

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from amalthea_uros.analyze.response_times import schedule
-from amalthea_uros.analyze.response_times.core import released_on
-from amalthea_uros.analyze.response_times.schedule import Jobs, Released
-from amalthea_uros.timing.context import Known
-from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.analyze.response_times.core import periodic_tasks
+from amalthea_uros.analyze.response_times.schedule import Jobs, PeriodicTask
+from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.units import Time
 
 
@@ -22,24 +22,24 @@ class CoreSchedule:
     is_constant : whether both are the same, so that it is what happens
     """
 
-    tasks: Mapping[str, Released]
+    tasks: Mapping[str, PeriodicTask]
     worst: Mapping[str, Jobs]
     best: Mapping[str, Jobs]
-    settled: Time
+    steady_state_start: Time
     cycle: Time
     is_constant: bool
 
     @property
     def until(self) -> Time:
         """The end of the time that is covered; its last cycle repeats."""
-        return self.settled + self.cycle
+        return self.steady_state_start + self.cycle
 
 
 @dataclass(slots=True)
 class CoreSchedules:
     """The schedules of all cores."""
 
-    known: Known
+    solution: Solution
     _found: dict[tuple[str, bool], CoreSchedule | None] = field(default_factory=dict)
 
     def of(self, core: str, with_pieces: bool) -> CoreSchedule | None:
@@ -55,22 +55,22 @@ class CoreSchedules:
         return self._found[key]
 
     def _new(self, core: str, with_pieces: bool) -> CoreSchedule | None:
-        tasks = released_on(core, self.known)
+        tasks = periodic_tasks(core, self.solution)
         if not tasks:
             return None
-        cycle, start = schedule.hyperperiod(tasks), schedule.settled(tasks)
+        cycle, start = schedule.hyperperiod(tasks), schedule.steady_state_start(tasks)
         if not schedule.fits(tasks, start + 2 * cycle):
             return None
         watched = [with_pieces] * len(tasks)
-        worst = schedule.schedule(tasks, start + 2 * cycle, Cost.worst_of, watched)
-        is_constant = all(part.worst == part.best for task in tasks for part in task.cost.parts)
-        best = worst if is_constant else schedule.schedule(tasks, start + 2 * cycle, Cost.best_of, watched)
+        worst = schedule.schedule(tasks, start + 2 * cycle, MultiframeDemand.worst_of, watched)
+        is_constant = all(part.worst == part.best for task in tasks for part in task.cost.frames)
+        best = worst if is_constant else schedule.schedule(tasks, start + 2 * cycle, MultiframeDemand.best_of, watched)
         names = [task.name for task in tasks]
         return CoreSchedule(
             tasks=dict(zip(names, tasks, strict=True)),
             worst=dict(zip(names, worst, strict=True)),
             best=dict(zip(names, best, strict=True)),
-            settled=start + cycle,
+            steady_state_start=start + cycle,
             cycle=cycle,
             is_constant=is_constant,
         )

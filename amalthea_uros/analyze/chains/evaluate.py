@@ -6,58 +6,61 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from amalthea_uros.analyze.chains.methods import Methods
-from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.read_write_times import Timing, UntimedError
-from amalthea_uros.analyze.chains.result import ChainResult
+from amalthea_uros.analyze.chains.read_write_times import StageTiming, UnboundedStageError
 from amalthea_uros.analyze.chains.stages import Stage, communication_of, hop_text, stages
-from amalthea_uros.analyze.chains.timed_stage import Timed
-from amalthea_uros.analyze.response_times.task import Claim, Response
+from amalthea_uros.analyze.chains.timed_stage import TimedStage
+from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, Value
+from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.events import Event, EventChain
-from amalthea_uros.perf.hardware import StructureKind
-from amalthea_uros.perf.system import System
-from amalthea_uros.timing.context import Known
+from amalthea_uros.timing.clocks import controller_of_core
+from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnresolvedError
-from amalthea_uros.timing.dataflow.links import GAPS, Resolver, Route
+from amalthea_uros.timing.dataflow.links import GAPS
+from amalthea_uros.timing.dataflow.routes import Route, routes
 
 
 @dataclass(slots=True)
 class Evaluation:
     """Evaluates the chains of a system."""
 
-    known: Known
-    responses: Mapping[str, Response]
-    resolver: Resolver = field(init=False)
-    timing: Timing = field(init=False)
+    solution: Solution
+    timing: StageTiming = field(init=False)
     controllers: Mapping[str, str] = field(init=False)
 
+    @property
+    def context(self) -> TimingContext:
+        """The system."""
+        return self.solution.context
+
     def __post_init__(self) -> None:
-        self.resolver = Resolver(self.known.system)
-        self.timing = Timing(self.known, self.responses)
-        self.controllers = controllers(self.known.system)
+        self.timing = StageTiming(self.solution)
+        self.controllers = controller_of_core(self.context.system)
 
     def chain(self, chain: EventChain) -> ChainResult:
         """One chain."""
-        known_events = self.known.system.events_by_name
+        known_events = self.context.system.events_by_name
         try:
-            unfolded, left_out = unfold(chain, self.known.system)
-            ways = {events: self.resolver.routes([known_events[name] for name in events]) for events in sequences(unfolded)}
+            unfolded, left_out = unfold(chain, self.context.system)
+            ways = {
+                events: routes([known_events[name] for name in events], self.context.dataflow) for events in sequences(unfolded)
+            }
         except (UnfoldError, UnresolvedError) as error:
-            self.known.notes.warning("CHN001", f"the chain {chain.name!r} is not evaluated: {error}", chain)
+            self.context.notes.warning("CHN001", f"the chain {chain.name!r} is not evaluated: {error}", chain)
             return ChainResult(name=chain.name, communication="", reason=str(error))
-        routes = [route for found in ways.values() for route in found]
-        self._note(chain, left_out, routes)
+        every = [route for found in ways.values() for route in found]
+        self._note(chain, left_out, every)
         found = self._evaluated(ways)
         everything = _combine(unfolded, found.values)
         tightest = _tightest(everything)
         has_bound = any(value.quantity is Quantity.MAX_REACTION_TIME for value in tightest)
         reason = found.reason or ("" if has_bound else found.why_unbounded)
         if reason:
-            self.known.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {reason}", chain)
+            self.context.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {reason}", chain)
         return ChainResult(
             name=chain.name,
-            communication=communication_of(stage for route in routes for stage in self._stages(route)),
-            routes=tuple(map(_route_text, routes)),
+            communication=communication_of(stage for route in every for stage in self._stages(route)),
+            routes=tuple(map(_route_text, every)),
             values=tightest,
             everything=tuple(everything),
             why=found.why,
@@ -67,10 +70,10 @@ class Evaluation:
     def _evaluated(self, ways: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
         """The values of each way through a chain, and why they are what they are."""
         found = _Evaluated()
-        for events, routes in ways.items():
+        for events, found_routes in ways.items():
             try:
-                methods = [self._methods(route) for route in routes]
-            except UntimedError as error:
+                methods = [self._methods(route) for route in found_routes]
+            except UnboundedStageError as error:
                 found.reason = str(error)
                 found.values[events] = []
                 continue
@@ -84,23 +87,23 @@ class Evaluation:
 
         Raises
         ------
-        UnresolvedError, UntimedError : nothing is known of them.
+        UnresolvedError, UnboundedStageError : nothing is known of them.
         """
-        found = self.resolver.routes([first, then])
+        found = routes([first, then], self.context.dataflow)
         return _tightest(_worst_of([list(self._methods(route).values()) for route in found]))
 
-    def _note(self, chain: EventChain, left_out: Iterable[str], routes: Sequence[Route]) -> None:
+    def _note(self, chain: EventChain, left_out: Iterable[str], found: Sequence[Route]) -> None:
         """What had to be assumed of a chain."""
-        notes = self.known.notes
+        notes = self.context.notes
         for event in left_out:
             message = f"the chain {chain.name!r} does not start or end with {event!r}, as a part of it does; that is left out"
             notes.warning("CHN005", message, chain)
-        for event, guess in self.resolver.spots.guesses.items():
+        for event, guess in self.context.dataflow.events.guesses.items():
             message = f"nothing in the model makes the event {event!r} occur; it is taken to do so {guess}"
-            notes.warning("CHN004", message, self.known.system.events_by_name[event])
-        for route in routes:
-            for hop, first, then in zip(route.hops, route.events, route.events[1:], strict=False):
-                if hop.carrier in GAPS:
+            notes.warning("CHN004", message, self.context.system.events_by_name[event])
+        for route in found:
+            for link, first, then in zip(route.links, route.events, route.events[1:], strict=False):
+                if link.kind in GAPS:
                     message = (
                         f"in the chain {chain.name!r} nothing carries the effect from {first!r} to {then!r}; "
                         "it is evaluated as if there were a variable between them"
@@ -108,10 +111,10 @@ class Evaluation:
                     notes.warning("CHN002", message, chain)
 
     def _stages(self, route: Route) -> list[Stage]:
-        return stages(route, self.known.settings.communication)
+        return stages(route, self.context.settings.communication)
 
     def _methods(self, route: Route) -> Methods:
-        parts: list[list[Timed]] = []
+        parts: list[list[TimedStage]] = []
         before = None
         for group, follower in _with_followers(_groups(self._stages(route))):
             controller = self._controller(group[0])
@@ -119,10 +122,10 @@ class Evaluation:
                 parts.append([])
             parts[-1].append(self.timing.group(group, follower))
             before = controller
-        return Methods(parts, self.timing.unit, is_certain=route.gaps == 0)
+        return Methods(parts, self.timing.unit, is_certain=route.is_timed)
 
     def _controller(self, stage: Stage) -> str:
-        placed = self.known.placed.get(stage.process.name)
+        placed = self.context.scheduled.get(stage.process.name)
         return self.controllers.get(placed.core, "") if placed is not None else ""
 
 
@@ -143,16 +146,6 @@ class _Evaluated:
     reason: str = ""
 
 
-def controllers(system: System) -> dict[str, str]:
-    """The controller of each core: cores of different ones do not share a clock."""
-    found: dict[str, str] = {}
-    for structure in system.hardware.walk():
-        if structure.kind is StructureKind.ECU:
-            for inner in structure.walk():
-                found.update(dict.fromkeys((core.name for core in inner.cores), structure.name))
-    return found
-
-
 def _groups(found: Sequence[Stage]) -> list[list[Stage]]:
     """Stages with those that they trigger."""
     groups: list[list[Stage]] = []
@@ -171,8 +164,8 @@ def _with_followers(groups: Sequence[Sequence[Stage]]) -> list[tuple[Sequence[St
 
 def _route_text(route: Route) -> str:
     parts = [route.events[0]]
-    for hop, event in zip(route.hops, route.events[1:], strict=True):
-        parts.append(f"-[{hop_text(hop)}]-> {event}")
+    for link, event in zip(route.links, route.events[1:], strict=True):
+        parts.append(f"-[{hop_text(link)}]-> {event}")
     return " ".join(parts)
 
 

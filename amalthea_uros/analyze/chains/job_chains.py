@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.chains.job_times import Track, reach
+from amalthea_uros.analyze.chains.job_times import ReadWriteTimes, reach
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 SOURCE = "Günzel and others 2021, 2023"
 #: Chains with more jobs are bounded otherwise.
-MOST_JOBS = 10_000_000
+MAX_JOBS = 10_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,7 +54,7 @@ class Inputs:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Followed:
+class JobChains:
     """The job chains that start at the jobs of the first step, and those that end at the jobs of the last one, in one cycle.
 
     Attributes
@@ -103,25 +103,25 @@ class Followed:
         return self.writes - self.starts
 
 
-def follow(tracks: Sequence[Track], settled: Time) -> Followed | None:
+def build_job_chains(tracks: Sequence[ReadWriteTimes], steady_state_start: Time) -> JobChains | None:
     """Follow all jobs of one cycle; None if that is too much work.
 
     Parameters
     ----------
     tracks : of the steps of the chain, in order
-    settled : the time behind which all steps repeat
+    steady_state_start : the time behind which all steps repeat
     """
     cycle, length = lcm(*(track.cycle for track in tracks)), reach(tracks)
-    # A cycle so far behind the settled time that chains which end in it, and those which end a little before, start behind that.
-    start = settled + 2 * length
+    # A cycle so far behind the steady_state_start time that chains which end in it, and those which end a little before, start behind that.
+    start = steady_state_start + 2 * length
     until = start + cycle + 2 * length
-    if sum(len(track.releases) * (until // track.until) for track in tracks) > MOST_JOBS:
+    if sum(len(track.releases) * (until // track.until) for track in tracks) > MAX_JOBS:
         return None
     whole = [track.extended(until) for track in tracks]
     first, last = whole[0], whole[-1]
     begin = _jobs_in(first, start, start + cycle)
     end = _jobs_in(last, start, start + cycle)
-    return Followed(
+    return JobChains(
         reads=first.reads[begin],
         reads_before=first.reads[begin - 1],
         ends=last.writes[forward(whole, begin)],
@@ -132,7 +132,7 @@ def follow(tracks: Sequence[Track], settled: Time) -> Followed | None:
     )
 
 
-def _inputs(tracks: Sequence[Track], start: Time, cycle: Time, length: Time) -> Inputs:
+def _inputs(tracks: Sequence[ReadWriteTimes], start: Time, cycle: Time, length: Time) -> Inputs:
     first, last = tracks[0], tracks[-1]
     outputs = _jobs_in(last, start - length, start + cycle + length)
     jobs, first_of = np.unique(backward(tracks, outputs), return_index=True)
@@ -148,27 +148,27 @@ def _inputs(tracks: Sequence[Track], start: Time, cycle: Time, length: Time) -> 
     )
 
 
-def _jobs_in(track: Track, begin: Time, end: Time) -> Numbers:
+def _jobs_in(track: ReadWriteTimes, begin: Time, end: Time) -> Numbers:
     first, last = np.searchsorted(track.releases, (begin, end))
     return np.arange(first, last, dtype=np.int64)
 
 
-def forward(tracks: Sequence[Track], jobs: Numbers) -> Numbers:
+def forward(tracks: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
     """The jobs of the last step that are the first to use what jobs of the first step wrote."""
     for track, reader in pairwise(tracks):
         # A read sees what has been written at that moment.
         found = np.searchsorted(reader.reads, track.writes[jobs], side="left")
-        if track.hurries:
+        if track.preempts_reader:
             found = np.minimum(found, np.searchsorted(reader.reads, track.releases[jobs], side="left"))
         jobs = found
     return jobs
 
 
-def backward(tracks: Sequence[Track], jobs: Numbers) -> Numbers:
+def backward(tracks: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
     """The jobs of the first step that wrote what jobs of the last one use."""
     for writer, track in zip(tracks[-2::-1], tracks[:0:-1], strict=True):
         found = np.searchsorted(writer.writes, track.reads[jobs], side="right")
-        if writer.hurries:
+        if writer.preempts_reader:
             found = np.maximum(found, np.searchsorted(writer.releases, track.reads[jobs], side="right"))
         jobs = found - 1
     return jobs

@@ -1,6 +1,6 @@
 """When the jobs of one step of a chain read and write.
 
-What happens behind the settled part repeats with the cycle; so a track is extended as far as a chain reaches.
+What happens behind the steady_state_start part repeats with the cycle; so a track is extended as far as a chain reaches.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Track:
+class ReadWriteTimes:
     """The jobs of a step, in order; as many as are released before `until`.
 
     Attributes
@@ -27,7 +27,7 @@ class Track:
     writes : when what it writes can be read, or the latest that it can be
     cycle : time after which the last jobs repeat
     until : the end of the time that is covered
-    hurries : whether jobs come before those of the next step on the same core, so that those cannot read in between
+    preempts_reader : whether jobs come before those of the next step on the same core, so that those cannot read in between
     """
 
     releases: Numbers
@@ -35,20 +35,20 @@ class Track:
     writes: Numbers
     cycle: Time
     until: Time
-    hurries: bool = False
+    preempts_reader: bool = False
 
-    def scaled(self, factor: int) -> Track:
+    def scaled(self, factor: int) -> ReadWriteTimes:
         """The same in a unit of time that is smaller by a factor."""
-        return Track(
+        return ReadWriteTimes(
             releases=self.releases * factor,
             reads=self.reads * factor,
             writes=self.writes * factor,
             cycle=self.cycle * factor,
             until=self.until * factor,
-            hurries=self.hurries,
+            preempts_reader=self.preempts_reader,
         )
 
-    def extended(self, until: Time) -> Track:
+    def extended(self, until: Time) -> ReadWriteTimes:
         """The same for a longer time."""
         rounds = -(-(until - self.until) // self.cycle)
         if rounds <= 0:
@@ -60,21 +60,21 @@ class Track:
             more: Numbers = np.concatenate((times, (times[last:] + shifts).ravel()))
             return more
 
-        return Track(
+        return ReadWriteTimes(
             releases=repeated(self.releases),
             reads=repeated(self.reads),
             writes=repeated(self.writes),
             cycle=self.cycle,
             until=self.until + rounds * self.cycle,
-            hurries=self.hurries,
+            preempts_reader=self.preempts_reader,
         )
 
 
-def reach(tracks: Sequence[Track]) -> Time:
+def reach(tracks: Sequence[ReadWriteTimes]) -> Time:
     """More time than any chain through the tracks takes: at each step a job may be missed, and then another one."""
     return sum(2 * _longest_gap(track) + int((track.writes - track.reads).max()) for track in tracks)
 
 
-def _longest_gap(track: Track) -> Time:
+def _longest_gap(track: ReadWriteTimes) -> Time:
     """The longest time between two reads that follow each other."""
     return int(np.diff(track.reads).max()) if len(track.reads) > 1 else track.cycle

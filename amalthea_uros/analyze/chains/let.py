@@ -11,13 +11,13 @@ from math import lcm
 
 import numpy as np
 
-from amalthea_uros.analyze.chains.job_times import Track
+from amalthea_uros.analyze.chains.job_times import ReadWriteTimes
 from amalthea_uros.units import Time
 
 SOURCE = "Martinez, Sañudo, Bertogna 2018"
 
 
-def track(period: Time, offset: Time, cycle: Time) -> Track:
+def track(period: Time, offset: Time, cycle: Time) -> ReadWriteTimes:
     """The jobs of a periodic task.
 
     Parameters
@@ -27,4 +27,4 @@ def track(period: Time, offset: Time, cycle: Time) -> Track:
     cycle = lcm(cycle, period)
     until = offset + cycle
     releases = offset + period * np.arange(cycle // period, dtype=np.int64)
-    return Track(releases=releases, reads=releases, writes=releases + period, cycle=cycle, until=until)
+    return ReadWriteTimes(releases=releases, reads=releases, writes=releases + period, cycle=cycle, until=until)

@@ -9,17 +9,16 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
-from amalthea_uros.analyze.chains.bounds.chain_task import Step
-from amalthea_uros.analyze.chains.quantities import Quantity, Value
+from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.read_write_times import in_picoseconds
-from amalthea_uros.analyze.chains.timed_stage import Timed
-from amalthea_uros.analyze.response_times.task import Claim
+from amalthea_uros.analyze.chains.timed_stage import TimedStage
+from amalthea_uros.analyze.results import Claim, Quantity, Value
 from amalthea_uros.units import Time
 
 _Make = Callable[[Quantity, "Time | float"], Value]
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.chains.job_chains import Followed
+    from amalthea_uros.analyze.chains.job_chains import JobChains
 
 EXACT = "job chains over the hyperperiod"
 BOUNDED = "job chains with earliest reads and latest writes"
@@ -37,7 +36,7 @@ class Methods:
     is_certain : whether it is known what carries the effect, and when
     """
 
-    parts: Sequence[Sequence[Timed]]
+    parts: Sequence[Sequence[TimedStage]]
     unit: int
     is_certain: bool
 
@@ -77,13 +76,13 @@ class Methods:
     # By jobs
 
     def _followed(self) -> Iterator[Value]:
-        found = [_follow(part, widest=True) for part in self.parts]
+        found = [_follow(part, pessimistic=True) for part in self.parts]
         if len(found) == 1 and found[0] is not None:
             yield from self._of_jobs(found[0])
         elif None not in found:
             yield from self._summed([each for each in found if each is not None])
 
-    def _of_jobs(self, followed: Followed) -> Iterator[Value]:
+    def _of_jobs(self, followed: JobChains) -> Iterator[Value]:
         is_exact = self.is_certain and all(timed.is_exact for timed in self.parts[0])
         claim, method = (Claim.EXACT, EXACT) if is_exact else (Claim.BOUND, BOUNDED)
 
@@ -110,12 +109,12 @@ class Methods:
 
     def _least(self, value: _Make) -> Iterator[Value]:
         """Nothing is faster than the latest reads of the earliest writes."""
-        followed = _follow(self.parts[0], widest=False)
+        followed = _follow(self.parts[0], pessimistic=False)
         if followed is not None:
             yield value(Quantity.MIN_FIRST_TO_FIRST, max(0, int(followed.first_to_first.min())))
             yield value(Quantity.MIN_LAST_TO_LAST, max(0, int(followed.last_to_last.min())))
 
-    def _summed(self, found: Sequence[Followed]) -> Iterator[Value]:
+    def _summed(self, found: Sequence[JobChains]) -> Iterator[Value]:
         """On the way to another clock anything may wait as long as on its own controller (theorem 5.8 of RTAS 2021)."""
         first, *others = found
         *before, last = found
@@ -134,7 +133,7 @@ class Methods:
         whole = in_picoseconds(time, self.unit, quantity.is_upper)
         return Value(quantity=quantity, value=whole, claim=Claim.BOUND, method=method, source=source)
 
-    def _reactions(self, time: Time, first: Step, method: str, source: str) -> Iterator[Value]:
+    def _reactions(self, time: Time, first: ChainTask, method: str, source: str) -> Iterator[Value]:
         """A bound of the reaction time, and what follows from it: the data age is the same, and without the first wait."""
         yield self._bound(Quantity.MAX_REACTION_TIME, time, method, source)
         yield self._bound(
@@ -144,7 +143,7 @@ class Methods:
             Quantity.MAX_REDUCED_REACTION_TIME, time - first.period, f"{method}, without the first period", source
         )
 
-    def _of_periods(self, steps: Sequence[Step]) -> Iterator[Value]:
+    def _of_periods(self, steps: Sequence[ChainTask]) -> Iterator[Value]:
         """Bounds that need no more than how often each step comes at least."""
         first, *others = steps
         method = "sum of periods and response times"
@@ -161,7 +160,7 @@ class Methods:
             time = duerr.reduced_data_age(steps)
             yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, time, "sporadic chains", duerr.SOURCE)
 
-    def _of_releases(self, steps: Sequence[Step]) -> Iterator[Value]:
+    def _of_releases(self, steps: Sequence[ChainTask]) -> Iterator[Value]:
         """Bounds for periodic tasks whose releases are known."""
         if any(step.offset is None or not step.is_regular or step.response > step.period for step in steps):
             return
@@ -176,9 +175,9 @@ class Methods:
             yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, age, "grid of releases", bi.SOURCE)
 
 
-def _follow(part: Sequence[Timed], widest: bool) -> Followed | None:
+def _follow(part: Sequence[TimedStage], pessimistic: bool) -> JobChains | None:
     known = [timed.tracks for timed in part if timed.tracks is not None]
-    tracks = [each.widest if widest else each.narrowest for each in known]
+    tracks = [each.pessimistic if pessimistic else each.optimistic for each in known]
     if len(known) < len(part) or not all(len(track.releases) for track in tracks):
         return None
-    return job_chains.follow(tracks, max(each.settled for each in known))
+    return job_chains.build_job_chains(tracks, max(each.steady_state_start for each in known))

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.chains import completed_work as progress
+from amalthea_uros.analyze.chains import completed_work as completed_work
 from amalthea_uros.analyze.chains.stages import At, Fire, Moment, Read, Stage, Write
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.schedule import Jobs
 from amalthea_uros.perf.software import Communication
-from amalthea_uros.timing.context import Known
-from amalthea_uros.timing.dataflow.events import When
-from amalthea_uros.timing.dataflow.positions import Place
-from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.dataflow.events import JobPhase
+from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -27,38 +27,38 @@ if TYPE_CHECKING:
 class Moments:
     """The moments of the jobs of a stage in a schedule."""
 
-    known: Known
+    context: TimingContext
     stage: Stage
     jobs: Jobs
     period: Time
-    cost_of: Callable[[Cost, int], Time]
+    cost_of: Callable[[MultiframeDemand, int], Time]
 
     def at(self, moment: Moment, is_late: bool) -> Numbers:
         """Of each job; where it is not certain, on the late or the early side."""
         jobs = self.jobs
         match kind(moment):
-            case When.ACTIVATION:
+            case JobPhase.ACTIVATION:
                 return jobs.releases
-            case When.START:
+            case JobPhase.START:
                 return jobs.begins
-            case When.END:
+            case JobPhase.END:
                 return jobs.ends
             case None:
                 return jobs.releases + self.period
-        place = moment.spot.place if isinstance(moment, At) else moment.place
-        assert place is not None
-        if not place.is_certain:
+        position = moment.occurrence.position if isinstance(moment, At) else moment.position
+        assert position is not None
+        if not position.is_certain:
             return jobs.ends if is_late else jobs.begins
-        if kind(moment) is When.BEFORE:
-            return progress.before(jobs, self._executed(place, with_place=False))
-        return progress.behind(jobs, self._executed(place, with_place=True))
+        if kind(moment) is JobPhase.BEFORE:
+            return completed_work.before(jobs, self._executed(position, with_place=False))
+        return completed_work.behind(jobs, self._executed(position, with_place=True))
 
-    def _executed(self, place: Place, with_place: bool) -> Numbers:
-        """How much each job has executed before a place, or behind it."""
-        process, known = self.stage.process, self.known
-        core = known.placed[process.name].core
-        before = (*place.before, place.activity) if with_place else place.before
-        cost = known.demands.piece(process, before, core)
+    def _executed(self, position: ActivityPosition, with_place: bool) -> Numbers:
+        """How much each job has executed before a position, or behind it."""
+        process, context = self.stage.process, self.context
+        core = context.scheduled[process.name].core
+        before = (*position.before, position.activity) if with_place else position.before
+        cost = context.demand_model.of_activities(process, before, core)
         table = schedule.table(cost, self.cost_of)
         lead = len(table) - schedule.cycle(cost)
         index = np.arange(len(self.jobs.releases))
@@ -67,31 +67,31 @@ class Moments:
         return found
 
 
-def kind(moment: Moment) -> When | None:
+def kind(moment: Moment) -> JobPhase | None:
     """At what a moment is; None: at the end of the period."""
     match moment:
         case Read(communication=Communication.LET):
-            return When.ACTIVATION
-        case Read(communication=Communication.EXPLICIT, place=Place()):
-            return When.BEFORE
+            return JobPhase.ACTIVATION
+        case Read(communication=Communication.EXPLICIT, position=ActivityPosition()):
+            return JobPhase.BEFORE
         case Read():
-            return When.START
+            return JobPhase.START
         case Write(communication=Communication.LET):
             return None
-        case Write(communication=Communication.EXPLICIT, place=Place()) | Fire(place=Place()):
-            return When.BEHIND
+        case Write(communication=Communication.EXPLICIT, position=ActivityPosition()) | Fire(position=ActivityPosition()):
+            return JobPhase.AFTER
         case Write() | Fire():
-            return When.END
+            return JobPhase.END
         case At(communication=Communication.LET, is_end=is_end):
-            return None if is_end else When.ACTIVATION
-        case At(spot=spot):
-            return spot.when
-    return When.END
+            return None if is_end else JobPhase.ACTIVATION
+        case At(occurrence=occurrence):
+            return occurrence.when
+    return JobPhase.END
 
 
 def is_inside(moment: Moment) -> bool:
     """Whether a moment lies within a job, where only its pieces tell when that is."""
-    return kind(moment) in (When.BEFORE, When.BEHIND)
+    return kind(moment) in (JobPhase.BEFORE, JobPhase.AFTER)
 
 
 def is_logical(moment: Moment) -> bool:

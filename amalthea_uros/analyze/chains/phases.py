@@ -9,47 +9,46 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from amalthea_uros.analyze.chains.quantities import Quantity, Value
-from amalthea_uros.analyze.chains.result import ChainResult
 from amalthea_uros.analyze.chains.stages import stages
-from amalthea_uros.analyze.response_times.task import Claim
+from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, Value
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Activity, Call, Process, Task
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnresolvedError
-from amalthea_uros.timing.dataflow.links import Resolver
-from amalthea_uros.timing.dataflow.positions import Place
+from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.dataflow.routes import routes
 
 #: More phases are not tried.
 MOST_PHASES = 1000
 
 
-def variants(chain: EventChain, system: System) -> Iterator[System]:
+def variants(chain: EventChain, context: TimingContext) -> Iterator[System]:
     """The system with each phase of the counter at which a chain starts; nothing, if there is no such counter."""
-    place = _counted_start(chain, system)
-    if place is None:
+    position = _counted_start(chain, context)
+    if position is None:
         return
-    call = place.process.activities[place.outer[0][1]]
+    call = position.process.activities[position.outer[0][1]]
     assert isinstance(call, Call)
     assert call.counter is not None
     for offset in range(1, call.counter.prescaler + 1):
         changed = replace(call, counter=replace(call.counter, offset=offset))
-        yield _with(system, place.process, place.outer[0][1], changed)
+        yield _with(context.system, position.process, position.outer[0][1], changed)
 
 
-def _counted_start(chain: EventChain, system: System) -> Place | None:
+def _counted_start(chain: EventChain, context: TimingContext) -> ActivityPosition | None:
     """Where a chain starts in some jobs only."""
     try:
-        events = sequences(unfold(chain, system)[0])[0]
-        routes = Resolver(system).routes([system.events_by_name[name] for name in events])
-        first = stages(routes[0], None)[0]
+        events = sequences(unfold(chain, context.system)[0])[0]
+        route, *_ = routes([context.system.events_by_name[name] for name in events], context.dataflow)
+        first = stages(route, None)[0]
     except (UnfoldError, UnresolvedError):
         return None
-    for place in first.places:
-        call = place.process.activities[place.outer[0][1]]
+    for position in first.positions:
+        call = position.process.activities[position.outer[0][1]]
         if isinstance(call, Call) and call.counter is not None and 1 < call.counter.prescaler <= MOST_PHASES:
-            return place
+            return position
     return None
 
 

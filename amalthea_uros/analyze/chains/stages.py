@@ -7,39 +7,40 @@ from dataclasses import dataclass
 
 from amalthea_uros.perf.software import Communication, LabelAccess, Process
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.timing.dataflow.events import Spot
-from amalthea_uros.timing.dataflow.links import Carrier, Hop, Route
-from amalthea_uros.timing.dataflow.positions import Place
+from amalthea_uros.timing.dataflow.events import EventOccurrence
+from amalthea_uros.timing.dataflow.links import Link, LinkKind
+from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.dataflow.routes import Route
 
 
 @dataclass(frozen=True, slots=True)
 class Read:
-    """Where a job reads: at its start, at the place itself, or at its release."""
+    """Where a job reads: at its start, at the position itself, or at its release."""
 
     communication: Communication
-    place: Place | None
+    position: ActivityPosition | None
 
 
 @dataclass(frozen=True, slots=True)
 class Write:
-    """Where what a job writes can be read: from its end on, from the place itself, or from the end of its period."""
+    """Where what a job writes can be read: from its end on, from the position itself, or from the end of its period."""
 
     communication: Communication
-    place: Place | None
+    position: ActivityPosition | None
 
 
 @dataclass(frozen=True, slots=True)
 class Fire:
     """Where a job triggers another process."""
 
-    place: Place | None
+    position: ActivityPosition | None
 
 
 @dataclass(frozen=True, slots=True)
 class At:
     """An event at which the chain starts or ends; under logical execution times its job's release, and the end of its period."""
 
-    spot: Spot
+    occurrence: EventOccurrence
     communication: Communication
     is_end: bool
 
@@ -62,15 +63,17 @@ class Stage:
     is_triggered: bool = False
 
     @property
-    def places(self) -> list[Place]:
+    def positions(self) -> list[ActivityPosition]:
         """Where the jobs have to come."""
-        found = [moment.spot.place if isinstance(moment, At) else moment.place for moment in (self.enter, self.leave)]
-        return [place for place in found if place is not None]
+        found = [
+            moment.occurrence.position if isinstance(moment, At) else moment.position for moment in (self.enter, self.leave)
+        ]
+        return [position for position in found if position is not None]
 
     @property
     def counters(self) -> set[Counter]:
         """What lets only some jobs take part."""
-        return {counter for place in self.places for counter in place.counters}
+        return {counter for position in self.positions for counter in position.counters}
 
 
 def stages(route: Route, communication: Communication | None) -> list[Stage]:
@@ -82,22 +85,22 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
     """
     how = communication or Communication.IMPLICIT
     found: list[Stage] = []
-    enter: Moment = At(route.spots[0], how, is_end=False)
+    enter: Moment = At(route.occurrences[0], how, is_end=False)
     is_triggered = False
-    for hop, before in zip(route.hops, route.spots, strict=False):
-        if hop.carrier is Carrier.JOB:
+    for link, before in zip(route.links, route.occurrences, strict=False):
+        if link.kind is LinkKind.JOB:
             continue
-        leave = Fire(hop.write) if hop.carrier is Carrier.TRIGGER else Write(_stated(hop.write, communication), hop.write)
+        leave = Fire(link.write) if link.kind is LinkKind.TRIGGER else Write(_stated(link.write, communication), link.write)
         found.append(Stage(before.process, enter, leave, is_triggered))
-        is_triggered = hop.carrier is Carrier.TRIGGER
-        enter = Read(_stated(hop.read, communication), hop.read)
-    last = route.spots[-1]
+        is_triggered = link.kind is LinkKind.TRIGGER
+        enter = Read(_stated(link.read, communication), link.read)
+    last = route.occurrences[-1]
     found.append(Stage(last.process, enter, At(last, how, is_end=True), is_triggered))
     return found
 
 
-def _stated(place: Place | None, communication: Communication | None) -> Communication:
-    access = place.activity if place is not None else None
+def _stated(position: ActivityPosition | None, communication: Communication | None) -> Communication:
+    access = position.activity if position is not None else None
     stated = access.communication if isinstance(access, LabelAccess) else None
     return communication or stated or Communication.IMPLICIT
 
@@ -111,6 +114,6 @@ def communication_of(found: Iterable[Stage]) -> str:
     return str(next(iter(kinds))).lower() if len(kinds) == 1 else "mixed"
 
 
-def hop_text(hop: Hop) -> str:
-    """How a hop is told."""
-    return f"{hop.carrier} {', '.join(hop.names)}".strip()
+def hop_text(link: Link) -> str:
+    """How a link is told."""
+    return f"{link.kind} {', '.join(link.names)}".strip()

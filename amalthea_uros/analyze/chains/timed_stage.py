@@ -4,33 +4,33 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from amalthea_uros.analyze.chains.bounds.chain_task import Step
-from amalthea_uros.analyze.chains.job_times import Track
+from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
+from amalthea_uros.analyze.chains.job_times import ReadWriteTimes
 from amalthea_uros.units import Time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Tracks:
+class ReadWriteBounds:
     """When the jobs of a stage read and write.
 
     Attributes
     ----------
-    widest : earliest reads and latest writes
-    narrowest : latest reads and earliest writes
-    settled : time behind which both repeat
+    pessimistic : earliest reads and latest writes
+    optimistic : latest reads and earliest writes
+    steady_state_start : time behind which both repeat
     is_exact : whether both are what happens
     is_logical : whether only releases and periods decide
     """
 
-    widest: Track
-    narrowest: Track
-    settled: Time
+    pessimistic: ReadWriteTimes
+    optimistic: ReadWriteTimes
+    steady_state_start: Time
     is_exact: bool = False
     is_logical: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Timed:
+class TimedStage:
     """A stage, with those that it triggers, in time.
 
     Attributes
@@ -39,8 +39,8 @@ class Timed:
     reason : why they are not
     """
 
-    step: Step
-    tracks: Tracks | None = None
+    step: ChainTask
+    tracks: ReadWriteBounds | None = None
     reason: str = ""
 
     @property

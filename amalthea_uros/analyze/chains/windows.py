@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.evaluate import Evaluation
-from amalthea_uros.analyze.response_times.core import known_releases
 from amalthea_uros.perf.events import Event, EventSet
-from amalthea_uros.timing.dataflow.events import Spot, When
+from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
+from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.units import Time
 
 
@@ -29,38 +29,37 @@ class Windows:
         ------
         UnknownError : there is none of that name, or it is several.
         """
-        event = self.evaluation.known.system.events_by_name.get(name)
+        event = self.evaluation.context.system.events_by_name.get(name)
         if event is None or isinstance(event, EventSet):
             raise UnknownError(f"there is no single event {name!r} in the model")
         return event
 
-    def spot(self, name: str) -> Spot:
+    def occurrence(self, name: str) -> EventOccurrence:
         """Where an event occurs.
 
         Raises
         ------
-        UnknownError : in several places, or in some jobs only.
+        UnknownError : in several positions, or in some jobs only.
         """
-        spots = self.evaluation.resolver.spots.of(self.event(name))
-        if len(spots) > 1:
-            raise UnknownError(f"the event {name!r} occurs in several places")
-        if any(counter.prescaler > 1 for counter in (spots[0].place.counters if spots[0].place else ())):
+        occurrences = self.evaluation.context.dataflow.events.of(self.event(name))
+        if len(occurrences) > 1:
+            raise UnknownError(f"the event {name!r} occurs in several positions")
+        if any(counter.prescaler > 1 for counter in (occurrences[0].position.counters if occurrences[0].position else ())):
             raise UnknownError(f"the event {name!r} occurs in some jobs only")
-        return spots[0]
+        return occurrences[0]
 
-    def of(self, spot: Spot) -> tuple[Time, Time]:
+    def of(self, occurrence: EventOccurrence) -> tuple[Time, Time]:
         """How long behind the activation an event occurs, at the earliest and at the latest."""
-        response = self.evaluation.responses.get(spot.process.name)
+        response = self.evaluation.solution.responses.get(occurrence.process.name)
         if response is None or response.worst is None:
-            raise UnknownError(f"the response time of {spot.process.name!r} is not known, or has no bound")
-        known = self.evaluation.known
-        least = known.costs[spot.process.name].best // known.demands.grains(known.placed[spot.process.name].core)
-        match spot.when:
-            case When.ACTIVATION:
+            raise UnknownError(f"the response time of {occurrence.process.name!r} is not known, or has no bound")
+        least = self.evaluation.solution.bcet(occurrence.process.name)
+        match occurrence.when:
+            case JobPhase.ACTIVATION:
                 return 0, 0
-            case When.START:
+            case JobPhase.START:
                 return 0, response.worst - least
-            case When.END:
+            case JobPhase.END:
                 return response.best, response.worst
         return 0, response.worst
 
@@ -69,12 +68,12 @@ class Windows:
         windows = []
         periods = set()
         for name in events:
-            spot = self.spot(name)
-            releases = known_releases(spot.process, self.evaluation.known.system)
+            occurrence = self.occurrence(name)
+            releases = known_releases(occurrence.process, self.evaluation.context.system)
             if releases is None:
-                raise UnknownError(f"the releases of {spot.process.name!r} are not known")
+                raise UnknownError(f"the releases of {occurrence.process.name!r} are not known")
             periods.add(releases.period)
-            early, late = self.of(spot)
+            early, late = self.of(occurrence)
             offset = releases.offset % releases.period
             windows.append((offset + early, offset + late))
         if not windows:

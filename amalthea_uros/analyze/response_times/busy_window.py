@@ -1,6 +1,6 @@
 """The busy window: the least fixed point of the demand that arrives in it.
 
-Periodic interference is held as arrays of whole numbers, one row for each part of a task: a part that comes every n-th time is one with
+Periodic interference is held as arrays of whole numbers, one row for each frame of a task: a frame of every n-th job is one with
 n times the period and the distance, because ceil(ceil(x / p) / n) = ceil(x / (p n)). The loops over rows are numpy's.
 """
 
@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.response_times.kernel import LIMIT, MOST_STEPS, demand_in, fixed_point
+from amalthea_uros.analyze.response_times.kernel import MAX_STEPS, demand_in, fixed_point
 from amalthea_uros.analyze.response_times.supply import FULL, Supply
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.timing.event_models.base import Periodic
+from amalthea_uros.timing.event_models import Periodic, is_strictly_periodic
+from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -56,19 +57,23 @@ class Rows:
 
 
 def _rows(task: Task) -> list[tuple[tuple[int, int, int], int, int]]:
-    """Period, jitter and distance, worst and best cost of each part of a periodic task."""
+    """Period, jitter and distance, worst and best cost of each frame of a periodic task."""
     arrivals = task.arrivals
     if not isinstance(arrivals, Periodic):
         return []
-    is_certain = not arrivals.jitter and not arrivals.sporadic
+    is_certain = not arrivals.jitter and is_strictly_periodic(arrivals)
     return [
         (
             # Beyond the limit there are no windows; to take arrivals for closer than they are is safe.
-            (min(arrivals.period * part.prescaler, LIMIT), arrivals.jitter, min(arrivals.distance * part.prescaler, LIMIT)),
-            part.worst,
-            part.best if is_certain else 0,
+            (
+                min(arrivals.period * frame.prescaler, LIMIT),
+                arrivals.jitter,
+                min(arrivals.min_interarrival * frame.prescaler, LIMIT),
+            ),
+            frame.worst,
+            frame.best if is_certain else 0,
         )
-        for part in task.cost.parts
+        for frame in task.cost.frames
     ]
 
 
@@ -110,8 +115,8 @@ class Interference:
         """That of no task, of the first one, of the first two, and so on; they share what they have in common."""
         parts = [_rows(task) for task in tasks]
         numbers: dict[tuple[int, int, int], int] = {}
-        for part in parts:
-            for key, _, _ in part:
+        for rows_of_task in parts:
+            for key, _, _ in rows_of_task:
                 numbers.setdefault(key, len(numbers))
         rows, count, rate, best_rate = Rows.of(numbers), 0, 0.0, 0.0
         others: tuple[Task, ...] = ()
@@ -138,7 +143,7 @@ class Interference:
         return periodic + self._of_others(window)
 
     def _of_others(self, window: Time) -> Time:
-        return sum(task.cost.most(task.arrivals.most(window)) for task in self.others)
+        return sum(task.cost.max_demand(task.arrivals.eta_plus(window)) for task in self.others)
 
     def window(self, fixed: Time, start: Time) -> Time | None:
         """The least window that holds a fixed demand and the interference in it; None if it never ends.
@@ -151,7 +156,7 @@ class Interference:
             return self._supplied_window(fixed, start)
         rows = self.rows
         window = max(1, fixed, start)
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_STEPS):
             others = self._of_others(window)
             window = fixed_point(
                 window, fixed + others, rows.periods, rows.jitters, rows.distances, rows.costs, self.count, rows.limited
@@ -164,7 +169,7 @@ class Interference:
 
     def _supplied_window(self, fixed: Time, start: Time) -> Time | None:
         window = max(1, start)
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_STEPS):
             reached = self.supply.time_for(fixed + self.in_window(window))
             if reached <= window:
                 return window
@@ -189,5 +194,5 @@ def demand_rate(task: Task) -> Fraction:
 def about_rate(task: Task) -> float:
     """The same, fast and not quite exact."""
     if isinstance(task.arrivals, Periodic):
-        return sum([part.worst / part.prescaler for part in task.cost.parts]) / task.arrivals.period
+        return sum([frame.worst / frame.prescaler for frame in task.cost.frames]) / task.arrivals.period
     return float(demand_rate(task))

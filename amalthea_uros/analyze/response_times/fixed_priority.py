@@ -14,16 +14,17 @@ from __future__ import annotations
 
 from amalthea_uros.analyze.response_times.best_case import best_response
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
-from amalthea_uros.analyze.response_times.task import Claim, Response, Task
-from amalthea_uros.timing.event_models.base import Periodic
+from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.results import Claim, Response
+from amalthea_uros.timing.event_models import Periodic
 from amalthea_uros.units import Time
 
 METHOD = "busy window, fixed priorities, preemptive"
 SOURCE = "Lehoczky 1990; Tindell, Burns, Wellings 1994"
 #: Busy windows with more jobs are given up; the load is then so near to 1 that the result would mean nothing.
-MOST_JOBS = 20_000
+MAX_JOBS = 20_000
 #: Where arrivals are irregular each job is more work, and longer windows make what they trigger still more irregular.
-MOST_IRREGULAR_JOBS = 1000
+MAX_IRREGULAR_JOBS = 1000
 
 
 def response_time(
@@ -41,17 +42,17 @@ def response_time(
     worst, worst_window, worst_job = -1, 0, 0
     window = 0
     completions: list[Time] = []
-    most = most_jobs(task)
+    most = max_jobs(task)
     for job in range(1, most):
-        found = higher.window(blocking + task.cost.most(job), window if job > 1 else start)
+        found = higher.window(blocking + task.cost.max_demand(job), window if job > 1 else start)
         if found is None:
             break
         window = found
         completions.append(window)
-        if window - task.arrivals.span(job) > worst:
-            worst, worst_window, worst_job = window - task.arrivals.span(job), window, job
-        if window <= task.arrivals.span(job + 1):
-            own = task.cost.most(worst_job)
+        if window - task.arrivals.delta_min(job) > worst:
+            worst, worst_window, worst_job = window - task.arrivals.delta_min(job), window, job
+        if window <= task.arrivals.delta_min(job + 1):
+            own = task.cost.max_demand(worst_job)
             response = Response(
                 worst=worst,
                 best=best,
@@ -66,7 +67,7 @@ def response_time(
                     "own": own,
                     "interference": worst_window - own - blocking,
                     "blocking": blocking,
-                    "earlier arrival": -task.arrivals.span(worst_job),
+                    "earlier arrival": -task.arrivals.delta_min(worst_job),
                 },
             )
             return response, completions[0]
@@ -74,9 +75,9 @@ def response_time(
     return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason), start
 
 
-def most_jobs(*tasks: Task) -> int:
+def max_jobs(*tasks: Task) -> int:
     """How many jobs of busy windows are looked at."""
-    return MOST_JOBS if all(isinstance(task.arrivals, Periodic) for task in tasks) else MOST_IRREGULAR_JOBS
+    return MAX_JOBS if all(isinstance(task.arrivals, Periodic) for task in tasks) else MAX_IRREGULAR_JOBS
 
 
 def unbounded(best: Time, higher: Interference, task: Task, method: str, source: str) -> Response:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from amalthea_uros.compiled import compiled
+from amalthea_uros.timing.limits import LIMIT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,9 +22,7 @@ if TYPE_CHECKING:
 Whole: TypeAlias = Any
 
 #: A busy window that is still growing after so many steps is taken to have no end.
-MOST_STEPS = 100_000
-#: Windows beyond it are as good as endless: 13 days in picoseconds, and sums of a few of them still fit into 64 bits.
-LIMIT = 2**60
+MAX_STEPS = 100_000
 
 
 @compiled(cost=20)
@@ -50,7 +49,7 @@ def fixed_point(
     limited: bool,
 ) -> int:
     """The least window that holds its own demand, from a lower bound on; more than LIMIT if there is none below it."""
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         arrivals = (window + jitters[:count] + periods[:count] - 1) // periods[:count]
         if limited:
             near = (window + distances[:count] - 1) // np.maximum(distances[:count], 1)

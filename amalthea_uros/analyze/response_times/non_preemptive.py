@@ -16,8 +16,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from amalthea_uros.analyze.response_times.busy_window import Interference
-from amalthea_uros.analyze.response_times.fixed_priority import most_jobs, unbounded
-from amalthea_uros.analyze.response_times.task import Claim, Response, Task
+from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
+from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.results import Claim, Response
 from amalthea_uros.units import Time
 
 METHOD = "busy period, fixed priorities, non-preemptive"
@@ -53,20 +54,20 @@ def response_time(
     others, interrupting = Interference.of(higher), Interference.of(always)
     if others.overloads_with(task):
         return unbounded(task.cost.best, others, task, METHOD, SOURCE)
-    most = most_jobs(task)
+    most = max_jobs(task)
     period = Interference.of([*higher, task]).window(blocking, 0)
-    if period is None or (jobs := task.arrivals.most(period)) > most:
+    if period is None or (jobs := task.arrivals.eta_plus(period)) > most:
         reason = f"its busy period has more than {most:,} jobs: the demand up to this priority fills the capacity"
         return Response(worst=None, best=task.cost.best, method=METHOD, source=SOURCE, reason=reason)
     completions: list[Time] = []
     start = 0
     for job in range(1, jobs + 1):
-        start = _start(others, blocking + task.cost.most(job) - last, start, step)
+        start = _start(others, blocking + task.cost.max_demand(job) - last, start, step)
         completions.append(_end(interrupting, start, last, step))
-    worst_job = max(range(1, jobs + 1), key=lambda job: completions[job - 1] - task.arrivals.span(job))
-    window, own = completions[worst_job - 1], task.cost.most(worst_job)
+    worst_job = max(range(1, jobs + 1), key=lambda job: completions[job - 1] - task.arrivals.delta_min(job))
+    window, own = completions[worst_job - 1], task.cost.max_demand(worst_job)
     return Response(
-        worst=window - task.arrivals.span(worst_job),
+        worst=window - task.arrivals.delta_min(worst_job),
         best=task.cost.best,
         method=METHOD,
         source=SOURCE,
@@ -78,7 +79,7 @@ def response_time(
             "own": own,
             "interference": window - own - blocking,
             "blocking": blocking,
-            "earlier arrival": -task.arrivals.span(worst_job),
+            "earlier arrival": -task.arrivals.delta_min(worst_job),
         },
     )
 

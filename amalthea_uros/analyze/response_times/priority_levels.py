@@ -1,15 +1,40 @@
-"""Response times of all preemptive tasks of a processor or a server: priorities one by one, and who shares one."""
+"""Response times of all preemptive tasks of a processor or a server, one priority level after the other."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
+from typing import Protocol
 
-from amalthea_uros.analyze.response_times import fixed_priority, in_order, round_robin
+from amalthea_uros.analyze.response_times import edf, fifo, fixed_priority, round_robin
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.supply import FULL, Supply
-from amalthea_uros.analyze.response_times.task import Claim, Response, Sharing, Task
+from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.results import Claim, Response
+from amalthea_uros.timing.scheduling import EqualPriority
 from amalthea_uros.units import Time
+
+
+class EqualPriorityMethod(Protocol):
+    """A method for a task that shares its priority."""
+
+    def __call__(self, task: Task, others: Sequence[Task], higher: Interference, blocking: Time = 0) -> Response:
+        """The response time of a task among others of its priority.
+
+        Parameters
+        ----------
+        higher : tasks of higher priority
+        blocking : maximum time that the task waits for one of lower priority
+        """
+        ...
+
+
+#: The method for each way to share a priority.
+METHODS: Mapping[EqualPriority, EqualPriorityMethod] = {
+    EqualPriority.FIFO: fifo.response_time,
+    EqualPriority.EDF: edf.response_time,
+    EqualPriority.ROUND_ROBIN: round_robin.response_time,
+}
 
 
 def response_times(tasks: Sequence[Task], blocking: Sequence[Time] | None = None, supply: Supply = FULL) -> list[Response]:
@@ -17,7 +42,7 @@ def response_times(tasks: Sequence[Task], blocking: Sequence[Time] | None = None
 
     Parameters
     ----------
-    blocking : the longest that each task can wait for one of lower priority; None: not at all
+    blocking : maximum time that each task waits for one of lower priority; None: 0
     """
     blocking = blocking or [0] * len(tasks)
     order = sorted(range(len(tasks)), key=lambda index: -tasks[index].priority)
@@ -34,13 +59,13 @@ def response_times(tasks: Sequence[Task], blocking: Sequence[Time] | None = None
         start = 0
         for index in level:
             others = [tasks[other] for other in level if other != index]
-            method = round_robin if tasks[index].sharing is Sharing.SLICES else in_order
-            found[index] = method.response_time(tasks[index], others, higher, blocking[index])
+            method = METHODS[tasks[index].equal_priority]
+            found[index] = method(tasks[index], others, higher, blocking[index])
     return [found[index] for index in range(len(tasks))]
 
 
 def _levels(tasks: Sequence[Task], order: Sequence[int]) -> Iterator[tuple[int, list[int]]]:
-    """Each priority from the highest one down: how many tasks come before it, and those that have it."""
+    """Each priority from the highest one down: number of tasks of higher priority, and those that have it."""
     before = 0
     for _, group in groupby(order, key=lambda index: tasks[index].priority):
         level = list(group)

@@ -10,9 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
-from amalthea_uros.analyze.response_times.fixed_priority import most_jobs, unbounded
-from amalthea_uros.analyze.response_times.kernel import LIMIT, MOST_STEPS
-from amalthea_uros.analyze.response_times.task import Claim, Response, Task
+from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
+from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
+from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.results import Claim, Response
+from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.units import Time
 
 METHOD = "busy window, round robin"
@@ -29,12 +31,12 @@ def response_time(task: Task, others: Sequence[Task], higher: Interference, bloc
     if _overloads(task, others, higher):
         return unbounded(task.cost.best, Interference.of([*higher.tasks, *others], higher.supply), task, METHOD, SOURCE)
     completions: list[Time] = []
-    for job in range(1, most_jobs(task)):
+    for job in range(1, max_jobs(task)):
         end = _end(task, job, others, higher, blocking)
         if end > LIMIT:
             break
         completions.append(end)
-        if end <= task.arrivals.span(job + 1):
+        if end <= task.arrivals.delta_min(job + 1):
             return _response(task, completions, blocking)
     reason = "its busy window does not end: the demand fills the processor"
     return Response(worst=None, best=task.cost.best, method=METHOD, source=SOURCE, reason=reason)
@@ -48,11 +50,11 @@ def _overloads(task: Task, others: Sequence[Task], higher: Interference) -> bool
 
 
 def _end(task: Task, job: int, others: Sequence[Task], higher: Interference, blocking: Time) -> Time:
-    own = task.cost.most(job)
+    own = task.cost.max_demand(job)
     slices = -(-own // task.slice)
     end = 0
-    for _ in range(MOST_STEPS):
-        between = sum(min(slices * other.slice, other.cost.most(other.arrivals.most(end))) for other in others)
+    for _ in range(MAX_STEPS):
+        between = sum(min(slices * other.slice, other.cost.max_demand(other.arrivals.eta_plus(end))) for other in others)
         reached = higher.window(blocking + own + between, end)
         if reached is None:
             break
@@ -63,8 +65,8 @@ def _end(task: Task, job: int, others: Sequence[Task], higher: Interference, blo
 
 
 def _response(task: Task, completions: Sequence[Time], blocking: Time) -> Response:
-    worst_job = max(range(1, len(completions) + 1), key=lambda job: completions[job - 1] - task.arrivals.span(job))
-    window, own, earlier = completions[worst_job - 1], task.cost.most(worst_job), task.arrivals.span(worst_job)
+    worst_job = max(range(1, len(completions) + 1), key=lambda job: completions[job - 1] - task.arrivals.delta_min(job))
+    window, own, earlier = completions[worst_job - 1], task.cost.max_demand(worst_job), task.arrivals.delta_min(worst_job)
     return Response(
         worst=window - earlier,
         best=task.cost.best,

@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from amalthea_uros.analyze.response_times.kernel import LIMIT, Whole, dispatch
-from amalthea_uros.analyze.response_times.task import Claim, Response
-from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.analyze.response_times.kernel import Whole, dispatch
+from amalthea_uros.analyze.results import Claim, Response
+from amalthea_uros.timing.limits import LIMIT
+from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -27,17 +28,17 @@ if TYPE_CHECKING:
 METHOD = "schedule over the hyperperiod, fixed priorities, preemptive"
 SOURCE = "Leung, Whitehead 1982"
 #: Longer schedules are not worth their time; a bound serves.
-MOST_JOBS = 300_000
+MAX_JOBS = 300_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Released:
+class PeriodicTask:
     """A task whose releases are known: offset + k * period; higher numbers are served first."""
 
     name: str
     period: Time
     offset: Time
-    cost: Cost
+    cost: MultiframeDemand
     priority: int
 
 
@@ -53,11 +54,14 @@ class Jobs:
     releases: Numbers
     begins: Numbers
     ends: Numbers
-    pieces: Numbers
+    execution_slices: Numbers
 
 
 def schedule(
-    tasks: Sequence[Released], until: Time, cost_of: Callable[[Cost, int], Time], watched: Sequence[bool] | None = None
+    tasks: Sequence[PeriodicTask],
+    until: Time,
+    cost_of: Callable[[MultiframeDemand, int], Time],
+    watched: Sequence[bool] | None = None,
 ) -> list[Jobs]:
     """The jobs of each task that are released before a time, all of them served to their ends.
 
@@ -103,49 +107,49 @@ def schedule(
     return result
 
 
-def table(cost: Cost, cost_of: Callable[[Cost, int], Time]) -> list[Time]:
+def table(cost: MultiframeDemand, cost_of: Callable[[MultiframeDemand, int], Time]) -> list[Time]:
     """The costs of the first jobs; the last ones of these repeat, as many as a cycle has."""
     return [cost_of(cost, index + 1) for index in range(_lead(cost) + cycle(cost))]
 
 
-def _lead(cost: Cost) -> int:
+def _lead(cost: MultiframeDemand) -> int:
     """How many jobs come before the costs repeat: counters with offsets may start late."""
-    return max((part.offset for part in cost.parts), default=0)
+    return max((frame.offset for frame in cost.frames), default=0)
 
 
-def cycle(cost: Cost) -> int:
+def cycle(cost: MultiframeDemand) -> int:
     """After how many jobs the costs repeat."""
-    return lcm(*(part.prescaler for part in cost.parts))
+    return lcm(*(frame.prescaler for frame in cost.frames))
 
 
-def hyperperiod(tasks: Sequence[Released]) -> Time:
+def hyperperiod(tasks: Sequence[PeriodicTask]) -> Time:
     """The time after which releases and costs repeat."""
     return lcm(*(task.period * cycle(task.cost) for task in tasks))
 
 
-def settled(tasks: Sequence[Released]) -> Time:
+def steady_state_start(tasks: Sequence[PeriodicTask]) -> Time:
     """The time behind which all tasks have been released, and all counters have started; a hyperperiod later everything repeats."""
     return max((task.offset + _lead(task.cost) * task.period for task in tasks), default=0)
 
 
-def fits(tasks: Sequence[Released], until: Time) -> bool:
+def fits(tasks: Sequence[PeriodicTask], until: Time) -> bool:
     """Whether a schedule up to a time is worth it, and exists: no more is demanded than served."""
-    if until > LIMIT or sum(until // task.period + 1 for task in tasks) > MOST_JOBS:
+    if until > LIMIT or sum(until // task.period + 1 for task in tasks) > MAX_JOBS:
         return False
     return sum(task.cost.mean_worst / task.period for task in tasks) <= 1
 
 
-def response_times(tasks: Sequence[Released]) -> list[Response] | None:
+def response_times(tasks: Sequence[PeriodicTask]) -> list[Response] | None:
     """The exact response times; None if the schedule is too long, or the processor overloaded."""
-    until = settled(tasks) + 2 * hyperperiod(tasks)
+    until = steady_state_start(tasks) + 2 * hyperperiod(tasks)
     if not fits(tasks, until):
         return None
-    worst = schedule(tasks, until, Cost.worst_of)
-    best = schedule(tasks, until, Cost.best_of)
+    worst = schedule(tasks, until, MultiframeDemand.worst_of)
+    best = schedule(tasks, until, MultiframeDemand.best_of)
     return [_response(task, w, b) for task, w, b in zip(tasks, worst, best, strict=True)]
 
 
-def _response(task: Released, worst: Jobs, best: Jobs) -> Response:
+def _response(task: PeriodicTask, worst: Jobs, best: Jobs) -> Response:
     responses = worst.ends - worst.releases
     at = int(responses.argmax())
     longest, own = int(responses[at]), task.cost.worst_of(at + 1)

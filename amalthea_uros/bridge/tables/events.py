@@ -114,6 +114,7 @@ def _extract_item(item: Any, context: Extracting) -> perf.ChainItem | None:
         stimulus=_EVENT.extract(inner.stimulus, context, inner),
         response=_EVENT.extract(inner.response, context, inner),
         items=_items(inner, context),
+        origin=context.location(inner),
     )
 
 

@@ -120,4 +120,5 @@ def _extract_tasks(allocations: Iterable[am.TaskAllocation], context: Extracting
             deadline=given.deadline,
             cores=_CORES.extract(allocation.affinity, context, allocation),
             parameters=given.parameters,
+            origin=context.location(allocation),
         )

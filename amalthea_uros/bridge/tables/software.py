@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, cast
 
 from amalthea_uros.bridge.codecs import PLAIN, SIZE, Codec, enumeration, reference, references, same_names
@@ -96,27 +97,36 @@ class _Activities(Table):
                 )
             case perf.Switch():
                 return _build_switch(item, context)
+            case perf.SenderReceiverAccess():
+                return _build_communication(item, context)
+            case perf.ServerCall():
+                return _build_server_call(item, context)
         return super().build(item, context)
 
     def extract(self, element: Any, context: Extracting) -> Any:
         match element:
             case am.Ticks():
                 demand = _extract_demand(element, context, element)
-                return None if demand is None else perf.Execute(demand=demand)
+                return None if demand is None else perf.Execute(demand=demand, locate=partial(context.location, element))
             case am.ExecutionNeed():
                 needs = tuple(
                     (entry.key or "", need)
                     for entry in element.needs
                     if entry.value is not None and (need := DISCRETE.extract(entry.value, context)) is not None
                 )
-                return perf.ExecutionNeed(needs=needs)
+                return perf.ExecutionNeed(needs=needs, locate=partial(context.location, element))
             case am.ProbabilitySwitch():
                 return perf.ProbabilitySwitch(
                     branches=tuple(
                         perf.Chance(weight=entry.probability or 0.0, activities=ITEMS.extract(entry.items, context, element))
                         for entry in element.entries
-                    )
+                    ),
+                    locate=partial(context.location, element),
                 )
+            case am.SenderReceiverCommunication():
+                return _extract_communication(element, context)
+            case am.ServerCall():
+                return _extract_server_call(element, context)
             case am.Switch() | am.ModeSwitch():
                 return _extract_switch(element, context)
         return super().extract(element, context)
@@ -158,7 +168,69 @@ def _extract_switch(element: Any, context: Extracting) -> perf.Switch:
         for entry in element.entries
     )
     default = element.default_entry
-    return perf.Switch(cases=cases, default=None if default is None else ITEMS.extract(default.items, context, element))
+    activities = None if default is None else ITEMS.extract(default.items, context, element)
+    return perf.Switch(cases=cases, default=activities, locate=partial(context.location, element))
+
+
+def _build_communication(access: perf.SenderReceiverAccess, context: Building) -> Element:
+    label: Any = _LABEL.build(access.label, context)
+    buffered = access.buffered or None
+    if access.kind is perf.AccessKind.READ:
+        return am.SenderReceiverRead(label=label, buffered=buffered)
+    return am.SenderReceiverWrite(label=label, buffered=buffered, notified_runnables=_RUNNABLES.build(access.notifies, context))
+
+
+def _extract_communication(element: Any, context: Extracting) -> perf.SenderReceiverAccess | None:
+    label = _LABEL.extract(element.label, context, element)
+    if label is None:
+        context.note("EXT004", f"a {type(element).__name__} without label is left out", element)
+        return None
+    is_write = isinstance(element, am.SenderReceiverWrite)
+    return perf.SenderReceiverAccess(
+        label=label,
+        kind=perf.AccessKind.WRITE if is_write else perf.AccessKind.READ,
+        buffered=bool(element.buffered),
+        notifies=_RUNNABLES.extract(element.notified_runnables, context, element) if is_write else (),
+        locate=partial(context.location, element),
+    )
+
+
+def _build_server_call(call: perf.ServerCall, context: Building) -> Element:
+    server: Any = _RUNNABLE.build(call.runnable, context)
+    match call.kind:
+        case perf.ServerCallKind.SYNCHRONOUS:
+            return am.SynchronousServerCall(
+                server_runnable=server,
+                waiting_behaviour=None if call.waiting is None else _WAITING_CODEC.build(call.waiting, context),
+            )
+        case perf.ServerCallKind.ASYNCHRONOUS:
+            return am.AsynchronousServerCall(server_runnable=server, result_runnable=_RUNNABLE.build(call.result, context))
+    return am.GetResultServerCall(server_runnable=server)
+
+
+def _extract_server_call(element: Any, context: Extracting) -> perf.ServerCall | None:
+    server = _RUNNABLE.extract(element.server_runnable, context, element)
+    if server is None:
+        context.note("EXT004", f"a {type(element).__name__} without server runnable is left out", element)
+        return None
+    waiting = element.waiting_behaviour if isinstance(element, am.SynchronousServerCall) else None
+    result = element.result_runnable if isinstance(element, am.AsynchronousServerCall) else None
+    return perf.ServerCall(
+        runnable=server,
+        kind=_SERVER_CALLS[type(element)],
+        result=_RUNNABLE.extract(result, context, element),
+        waiting=None if waiting is None else _WAITING_CODEC.extract(waiting, context, element),
+        locate=partial(context.location, element),
+    )
+
+
+_LABEL, _RUNNABLE, _RUNNABLES = reference(Kind.DATA), reference(Kind.RUNNABLE), references(Kind.RUNNABLE)
+_WAITING_CODEC = same_names(perf.Waiting, am.WaitingBehaviour)
+_SERVER_CALLS: dict[type[Element], perf.ServerCallKind] = {
+    am.SynchronousServerCall: perf.ServerCallKind.SYNCHRONOUS,
+    am.AsynchronousServerCall: perf.ServerCallKind.ASYNCHRONOUS,
+    am.GetResultServerCall: perf.ServerCallKind.GET_RESULT,
+}
 
 
 #: The items of a group, a branch or a graph.
@@ -182,7 +254,7 @@ _PROTECTIONS = {
     "CUSTOM": "CUSTOM_PROTECTION",
     "BY_MODEL": "HANDLED_BY_MODEL_ELEMENTS",
 }
-_WAITING = Field("waiting", "waiting_behaviour", same_names(perf.Waiting, am.WaitingBehaviour))
+_WAITING = Field("waiting", "waiting_behaviour", _WAITING_CODEC)
 _COUNTER = Field("counter", "counter", COUNTER)
 _MASK = Field("events", "event_mask", _EVENT_MASK)
 _ITEMS = Field("activities", "items", ITEMS)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -35,147 +35,140 @@ from amalthea_uros.perf.software import (
     SemaphoreAccess,
     SemaphoreOperation,
     Send,
+    SenderReceiverAccess,
 )
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.positions import Place, places
+from amalthea_uros.timing.dataflow.positions import ActivityPosition, positions
 
 
 class UnresolvedError(Exception):
-    """An event of a chain is not found, or there is no analysis for it; the text says why."""
+    """An event is not found, or there is no analysis for it; the text says why."""
 
 
-class When(Enum):
+class JobPhase(Enum):
     """A moment of a job, in the order in which they come."""
 
     ACTIVATION = 0
     START = 1
     BEFORE = 2
-    BEHIND = 3
+    AFTER = 3
     END = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Spot:
+class EventOccurrence:
     """Where an event occurs.
 
     Attributes
     ----------
-    place : an activity before or behind which it is; None: the activation, the start or the end of the job
+    position : the activity before or after which it occurs; None: the activation, the start or the end of the job
     """
 
     process: Process
-    when: When
-    place: Place | None = None
+    when: JobPhase
+    position: ActivityPosition | None = None
 
     @property
     def order(self) -> tuple[int, int, int, int]:
-        """What comes first in a job is less."""
-        if self.place is None:
-            return (self.when.value if self.when is not When.END else 9, 0, 0, 0)
-        if self.when is When.BEFORE:
-            return (2, self.place.number, 0, 0)
-        # The end of a call comes behind everything within it, and of several that end together the inner one first.
-        return (2, self.place.last, 1, -self.place.number)
+        """Sorts by the order in a job."""
+        if self.position is None:
+            return (self.when.value if self.when is not JobPhase.END else 9, 0, 0, 0)
+        if self.when is JobPhase.BEFORE:
+            return (2, self.position.number, 0, 0)
+        # A call ends after everything within it; of several calls that end together, the inner one ends first.
+        return (2, self.position.last, 1, -self.position.number)
 
 
 @dataclass(slots=True)
-class Spots:
+class EventLocator:
     """Finds events in the processes of a system.
 
     Attributes
     ----------
-    guesses : event -> where it is taken to occur, because nothing makes it occur
+    guesses : event -> where it is assumed to occur, because no activity of the model raises it
     """
 
     system: System
     guesses: dict[str, str] = field(default_factory=dict)
-    _places: dict[str, list[Place]] = field(default_factory=dict)
+    _positions: dict[str, list[ActivityPosition]] = field(default_factory=dict)
 
-    def of(self, event: Event) -> list[Spot]:
+    def positions(self, process: str) -> list[ActivityPosition]:
+        """Everything that the jobs of a process do."""
+        if process not in self._positions:
+            self._positions[process] = positions(self.system.processes[process], self.system)
+        return self._positions[process]
+
+    def all_positions(self) -> Iterator[ActivityPosition]:
+        """Everything that the jobs of all processes do."""
+        for process in self.system.processes:
+            yield from self.positions(process)
+
+    def of(self, event: Event) -> list[EventOccurrence]:
         """Where an event occurs.
 
         Raises
         ------
         UnresolvedError : it is not found, or there is no analysis for it.
         """
-        found = list(self._all_spots(event)) or self._guess(event)
+        found = list(self._occurrences(event)) or self._guess(event)
         if not found:
             raise UnresolvedError(f"nothing in the model makes the event {event.name!r} occur")
         return found
 
-    def _guess(self, event: Event) -> list[Spot]:
-        """Where an access should stand of which the model knows no more than the event."""
-        match event:
-            case LabelEvent() | ModeLabelEvent() | ChannelEvent() | SemaphoreEvent():
-                is_read = event.change in (LabelChange.READ, ModeChange.READ, ChannelChange.RECEIVE, SemaphoreChange.LOCK)
-                runs = [
-                    place
-                    for place in self._within(event.process)
-                    if isinstance(place.activity, Call) and place.activity.runnable == event.runnable
-                ]
-                side = "at the start" if is_read else "at the end"
-                if runs:
-                    self.guesses[event.name] = f"{side} of {event.runnable!r}"
-                    return [Spot(place.process, When.BEFORE if is_read else When.BEHIND, place) for place in runs]
-                if event.process is not None and event.runnable is None:
-                    self.guesses[event.name] = f"{side} of {event.process!r}"
-                    return [Spot(p, When.START if is_read else When.END) for p in self._processes(event.process)]
-        return []
-
-    def _all_spots(self, event: Event) -> Iterable[Spot]:
+    def _occurrences(self, event: Event) -> Iterable[EventOccurrence]:
         match event:
             case ProcessEvent():
-                when = _PROCESS_MOMENTS.get(event.change) if event.change else None
+                when = _PROCESS_PHASES.get(event.change) if event.change else None
                 if when is None:
                     raise UnresolvedError(f"{event.name!r}: {event.change or 'any change'} is no moment that each job has once")
-                return [Spot(process, when) for process in self._processes(event.process)]
+                return [EventOccurrence(process, when) for process in self._processes(event.process)]
             case StimulusEvent():
                 activated = [p for p in self.system.processes.values() if event.stimulus in p.stimuli]
-                return [Spot(process, When.ACTIVATION) for process in activated]
+                return [EventOccurrence(process, JobPhase.ACTIVATION) for process in activated]
             case RunnableEvent():
                 if event.change not in (RunnableChange.START, RunnableChange.TERMINATE):
                     raise UnresolvedError(f"{event.name!r}: {event.change or 'any change'} is no moment that each job has once")
-                when = When.BEFORE if event.change is RunnableChange.START else When.BEHIND
-                return [
-                    Spot(place.process, when, place)
-                    for place in self._within(event.process)
-                    if isinstance(place.activity, Call) and event.runnable in (None, place.activity.runnable)
-                ]
-            case CustomEvent():
-                everywhere = self._within(None)
-                return [
-                    Spot(place.process, When.BEHIND, place)
-                    for place in everywhere
-                    if isinstance(place.activity, RaiseEvent) and place.activity.event == event.name
-                ]
-            case LabelEvent() | ModeLabelEvent() | ChannelEvent() | SemaphoreEvent():
-                return [
-                    Spot(place.process, When.BEHIND, place)
-                    for place in self._within(event.process)
-                    if event.runnable in (None, place.runnable) and _is(event, place)
-                ]
+                when = JobPhase.BEFORE if event.change is RunnableChange.START else JobPhase.AFTER
+                return [EventOccurrence(p.process, when, p) for p in self._within(event.process) if raises(p, event)]
+            case CustomEvent() | LabelEvent() | ModeLabelEvent() | ChannelEvent() | SemaphoreEvent():
+                process = None if isinstance(event, CustomEvent) else event.process
+                return [EventOccurrence(p.process, JobPhase.AFTER, p) for p in self._within(process) if raises(p, event)]
         raise UnresolvedError(f"there is no analysis for the event {event.name!r}")
+
+    def _guess(self, event: Event) -> list[EventOccurrence]:
+        """Where an access is assumed of which the model has the event only."""
+        if not isinstance(event, LabelEvent | ModeLabelEvent | ChannelEvent | SemaphoreEvent):
+            return []
+        is_read = event.change in (LabelChange.READ, ModeChange.READ, ChannelChange.RECEIVE, SemaphoreChange.LOCK)
+        side = "at the start" if is_read else "at the end"
+        calls = [
+            p for p in self._within(event.process) if isinstance(p.activity, Call) and p.activity.runnable == event.runnable
+        ]
+        if calls:
+            self.guesses[event.name] = f"{side} of {event.runnable!r}"
+            when = JobPhase.BEFORE if is_read else JobPhase.AFTER
+            return [EventOccurrence(position.process, when, position) for position in calls]
+        if event.process is not None and event.runnable is None:
+            self.guesses[event.name] = f"{side} of {event.process!r}"
+            when = JobPhase.START if is_read else JobPhase.END
+            return [EventOccurrence(process, when) for process in self._processes(event.process)]
+        return []
 
     def _processes(self, name: str | None) -> list[Process]:
         if name is None:
             raise UnresolvedError("an event names no process")
         return [self.system.processes[name]] if name in self.system.processes else []
 
-    def _within(self, name: str | None) -> list[Place]:
-        names = [name] if name in self.system.processes else list(self.system.processes) if name is None else []
-        return [place for each in names for place in self.places(each or "")]
-
-    def places(self, name: str) -> list[Place]:
-        """Everything that the jobs of a process do."""
-        if name not in self._places:
-            self._places[name] = places(self.system.processes[name], self.system)
-        return self._places[name]
+    def _within(self, process: str | None) -> Iterable[ActivityPosition]:
+        if process is None:
+            return self.all_positions()
+        return self.positions(process) if process in self.system.processes else ()
 
 
-_PROCESS_MOMENTS = {
-    ProcessChange.ACTIVATE: When.ACTIVATION,
-    ProcessChange.START: When.START,
-    ProcessChange.TERMINATE: When.END,
+_PROCESS_PHASES = {
+    ProcessChange.ACTIVATE: JobPhase.ACTIVATION,
+    ProcessChange.START: JobPhase.START,
+    ProcessChange.TERMINATE: JobPhase.END,
 }
 _MODES = {
     ModeChange.READ: ModeOperation.READ,
@@ -185,10 +178,24 @@ _MODES = {
 }
 
 
-def _is(event: LabelEvent | ModeLabelEvent | ChannelEvent | SemaphoreEvent, place: Place) -> bool:
-    """Whether an activity makes an event occur."""
-    match event, place.activity:
-        case LabelEvent(label=wanted, change=change), LabelAccess(label=name, kind=kind):
+def raises(position: ActivityPosition, event: Event) -> bool:
+    """Whether an activity makes an event occur; what an event leaves open matches everything."""
+    match event, position.activity:
+        case CustomEvent(name=name), RaiseEvent(event=raised):
+            return name == raised
+        case RunnableEvent(runnable=wanted, process=process), Call(runnable=name):
+            return wanted in (None, name) and process in (None, position.process.name)
+        case ((LabelEvent() | ModeLabelEvent() | ChannelEvent() | SemaphoreEvent()), _):
+            is_here = event.process in (None, position.process.name) and event.runnable in (None, position.runnable)
+            return is_here and _accesses(position, event)
+    return False
+
+
+def _accesses(position: ActivityPosition, event: LabelEvent | ModeLabelEvent | ChannelEvent | SemaphoreEvent) -> bool:
+    match event, position.activity:
+        case LabelEvent(label=wanted, change=change), LabelAccess(label=name, kind=kind) | SenderReceiverAccess(
+            label=name, kind=kind
+        ):
             return wanted in (None, name) and (change is None or (change is LabelChange.READ) is (kind is AccessKind.READ))
         case ModeLabelEvent(label=wanted, change=change), ModeAccess(label=name, operation=operation):
             return wanted in (None, name) and (change is None or _MODES[change] is operation)

@@ -1,15 +1,13 @@
-"""What carries the effect from one event of a chain to the next: the order within a job, a trigger, or data.
+"""What links processes: data that one writes and another reads, triggers, events and server calls.
 
-Each event is looked for in the processes; where several fit, those are taken between which something carries. The names of segments say
-nothing: what counts is which label one process writes and the other one reads.
+The one answer to the question what takes an effect from one process to another: chains, paths and rules ask it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from itertools import pairwise, product
 
 from amalthea_uros.perf.events import Event, RunnableChange, RunnableEvent
 from amalthea_uros.perf.software import (
@@ -20,174 +18,231 @@ from amalthea_uros.perf.software import (
     ModeOperation,
     Receive,
     Send,
+    SenderReceiverAccess,
+    ServerCall,
+    SetEvent,
     Trigger,
+    WaitEvent,
 )
 from amalthea_uros.perf.stimuli import EventTriggered
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.events import Spot, Spots, UnresolvedError, When
-from amalthea_uros.timing.dataflow.occurrences import Occurrence, raises
-from amalthea_uros.timing.dataflow.positions import Place
+from amalthea_uros.timing.dataflow.events import EventLocator, EventOccurrence, JobPhase, raises
+from amalthea_uros.timing.dataflow.positions import ActivityPosition
 
-#: More candidates for the events of one sequence are not tried.
-MOST_CANDIDATES = 10_000
-
-_NameOf = Callable[[Place], "str | None"]
+#: The names of what an activity accesses in one way; mostly none.
+NamesOf = Callable[[ActivityPosition], tuple[str, ...]]
 
 
-class Carrier(StrEnum):
+class LinkKind(StrEnum):
     """What takes the effect from one event to the next."""
 
     JOB = "the same job"
     NEXT_JOB = "the next job"
     TRIGGER = "a trigger"
     DATA = "data"
+    OS_EVENT = "an OS event"
+    SERVER_CALL = "a server call"
     NOTHING = "nothing"
 
 
-#: The effect is taken over as if there were a variable.
-GAPS = (Carrier.NOTHING, Carrier.NEXT_JOB)
+#: Without a link, a chain is evaluated as if there were a variable.
+GAPS = (LinkKind.NOTHING, LinkKind.NEXT_JOB)
+#: It is not known when in the jobs the effect is passed on.
+UNTIMED = (*GAPS, LinkKind.OS_EVENT, LinkKind.SERVER_CALL)
 
 
 @dataclass(frozen=True, slots=True)
-class Hop:
+class Link:
     """From one event to the next.
 
     Attributes
     ----------
-    names : of the labels, the channel or the stimulus
+    names : labels, channels, OS events or server runnables, or the stimulus
     write, read : where the data are written and read, or the trigger is fired
     """
 
-    carrier: Carrier
+    kind: LinkKind
     names: tuple[str, ...] = ()
-    write: Place | None = None
-    read: Place | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Route:
-    """A way through a chain: spots, and the hops between them."""
-
-    events: tuple[str, ...]
-    spots: tuple[Spot, ...]
-    hops: tuple[Hop, ...]
-
-    @property
-    def gaps(self) -> int:
-        """How often nothing carries the effect."""
-        return sum(hop.carrier in GAPS for hop in self.hops)
+    write: ActivityPosition | None = None
+    read: ActivityPosition | None = None
 
 
 @dataclass(slots=True)
-class Resolver:
-    """Finds what carries the effect from event to event."""
+class Dataflow:
+    """Where jobs do what, and what links them; everything is looked up once."""
 
     system: System
-    spots: Spots = field(init=False)
-    _named: dict[tuple[str, _NameOf], dict[str, list[Place]]] = field(default_factory=dict)
+    events: EventLocator = field(init=False)
+    _named: dict[tuple[str, NamesOf], dict[str, list[ActivityPosition]]] = field(default_factory=dict)
+    _fired: dict[str, list[tuple[str, ActivityPosition]]] | None = None
 
     def __post_init__(self) -> None:
-        self.spots = Spots(self.system)
+        self.events = EventLocator(self.system)
 
-    def routes(self, events: Sequence[Event]) -> list[Route]:
-        """The ways that a sequence of events can mean, those with the fewest gaps.
-
-        Raises
-        ------
-        UnresolvedError : an event is not found, or there is no analysis for it.
-        """
-        choices = [self.spots.of(event) for event in events]
-        count = 1
-        for choice in choices:
-            count *= len(choice)
-        if count > MOST_CANDIDATES:
-            raise UnresolvedError("its events fit too many processes; they should name theirs")
-        names = tuple(event.name for event in events)
-        found = [self._route(names, spots) for spots in product(*choices)]
-        fewest = min(route.gaps for route in found)
-        return [route for route in found if route.gaps == fewest]
-
-    def _route(self, events: tuple[str, ...], spots: tuple[Spot, ...]) -> Route:
-        return Route(events, spots, tuple(self._hop(first, then) for first, then in pairwise(spots)))
-
-    def _hop(self, first: Spot, then: Spot) -> Hop:
+    def between(self, first: EventOccurrence, then: EventOccurrence) -> Link:
+        """The link from one event to another."""
         if first.process.name == then.process.name:
             if first.order <= then.order:
-                return Hop(Carrier.JOB)
-            carried = self._data(first, then)
-            return Hop(Carrier.NEXT_JOB) if carried is None else carried
-        trigger = self._trigger(first, then)
-        if trigger is not None:
-            return trigger
-        return self._data(first, then) or Hop(Carrier.NOTHING)
+                return Link(LinkKind.JOB)
+            return self.data(first, then) or Link(LinkKind.NEXT_JOB)
+        is_activation = then.when is JobPhase.ACTIVATION and first.when is JobPhase.ACTIVATION
+        # Of two activations neither causes the other: it takes a job to trigger something.
+        trigger = None if is_activation else self.trigger(first.process.name, then.process.name)
+        return trigger or self.data(first, then) or self._synchronisation(first, then) or Link(LinkKind.NOTHING)
 
-    def _trigger(self, first: Spot, then: Spot) -> Hop | None:
-        if then.when is When.ACTIVATION and then.process.stimuli and first.when is When.ACTIVATION:
-            return None
-        raised = {
-            name: stimulus.events
-            for name in then.process.stimuli
-            if isinstance(stimulus := self.system.stimuli_by_name.get(name), EventTriggered)
-        }
-        for place in self.spots.places(first.process.name):
-            if isinstance(place.activity, Trigger) and place.activity.stimulus in then.process.stimuli:
-                return Hop(Carrier.TRIGGER, (place.activity.stimulus,), place)
-            for name, events in raised.items():
-                if any(self._occurs_at(place, event) for event in events):
-                    return Hop(Carrier.TRIGGER, (name,), place)
-        return None
+    def trigger(self, first: str, then: str) -> Link | None:
+        """How a process activates another one; None if it does not."""
+        found = [(stimulus, position) for stimulus, position in self._triggers(first) if stimulus in self._stimuli(then)]
+        return Link(LinkKind.TRIGGER, (found[0][0],), found[0][1]) if found else None
 
-    def _occurs_at(self, place: Place, name: str) -> bool:
-        """Whether an event occurs behind an activity; before a call is no place from which something is triggered."""
-        event = self.system.events_by_name.get(name)
-        if event is None or (isinstance(event, RunnableEvent) and event.change is not RunnableChange.TERMINATE):
-            return False
-        return raises(Occurrence(place.process, place.runnable, place.activity), event)
-
-    def _accesses(self, spot: Spot, name_of: _NameOf) -> dict[str, list[Place]]:
-        """What is written or read where an event occurs: by the access itself, in its runnable, or anywhere in the process."""
-        key = (spot.process.name, name_of)
-        if key not in self._named:
-            self._named[key] = _by_name(self.spots.places(spot.process.name), name_of)
-        everything = self._named[key]
-        if spot.place is None:
-            return everything
-        if (own := name_of(spot.place)) is not None:
-            return {own: [spot.place]}
-        runnable = spot.place.activity.runnable if isinstance(spot.place.activity, Call) else spot.place.runnable
-        within = [place for place in self.spots.places(spot.process.name) if place.runnable == runnable]
-        return _by_name(within, name_of) or everything
-
-    def _data(self, first: Spot, then: Spot) -> Hop | None:
-        """The labels and channels that one process writes, behind an event if it can be, and the other one reads."""
-        written = self._accesses(first, _written)
-        read = self._accesses(then, _read)
+    def data(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
+        """The data written where one event occurs and read where the other one does; None if there are none."""
+        written, read = self._accesses(first, writes), self._accesses(then, reads)
         names = tuple(name for name in written if name in read)
         if not names:
             return None
-        # The last write counts, and the first read behind which the data are there.
-        return Hop(Carrier.DATA, names, written[names[0]][-1], read[names[0]][0])
+        # The last write counts, and the first read after which the data are there.
+        return Link(LinkKind.DATA, names, written[names[0]][-1], read[names[0]][0])
+
+    def direct(self) -> Iterator[tuple[str, str, str]]:
+        """All links between different processes, as (process, name of what links them, process)."""
+        ways = ((writes, reads), *((source, target) for _, source, target in _SYNCHRONISATION))
+        for source, target in ways:
+            consumers: dict[str, list[str]] = {}
+            for process in self.system.processes:
+                for name in self.by_name(process, target):
+                    consumers.setdefault(name, []).append(process)
+            for process in self.system.processes:
+                for name in self.by_name(process, source):
+                    yield from ((process, name, other) for other in consumers.get(name, ()) if other != process)
+        activated: dict[str, list[str]] = {}
+        for process in self.system.processes:
+            for stimulus in self._stimuli(process):
+                activated.setdefault(stimulus, []).append(process)
+        for process in self.system.processes:
+            for stimulus, _ in self._triggers(process):
+                yield from ((process, stimulus, other) for other in activated.get(stimulus, ()) if other != process)
+
+    def by_name(self, process: str, names_of: NamesOf) -> dict[str, list[ActivityPosition]]:
+        """The accesses of a process, by the names of the data."""
+        key = (process, names_of)
+        if key not in self._named:
+            self._named[key] = _grouped(self.events.positions(process), names_of)
+        return self._named[key]
+
+    def _stimuli(self, process: str) -> tuple[str, ...]:
+        return self.system.processes[process].stimuli
+
+    def _triggers(self, process: str) -> list[tuple[str, ActivityPosition]]:
+        """The stimuli that a process fires, in order, by triggers and by the events that it raises."""
+        if self._fired is None:
+            reactions = self._reactions()
+            self._fired = {name: list(self._find_triggers(name, reactions)) for name in self.system.processes}
+        return self._fired[process]
+
+    def _find_triggers(self, process: str, reactions: Sequence[tuple[str, Event]]) -> Iterator[tuple[str, ActivityPosition]]:
+        for position in self.events.positions(process):
+            if isinstance(position.activity, Trigger):
+                yield position.activity.stimulus, position
+            for stimulus, event in reactions:
+                if raises(position, event):
+                    yield stimulus, position
+
+    def _reactions(self) -> list[tuple[str, Event]]:
+        """The stimuli that react to events after an activity; the start of a call is not a position to trigger from."""
+        events = self.system.events_by_name
+        stimuli = (s for s in self.system.stimuli.stimuli if isinstance(s, EventTriggered))
+        found = ((stimulus.name, events[name]) for stimulus in stimuli for name in stimulus.events if name in events)
+        return [(name, event) for name, event in found if not _is_start(event)]
+
+    def _synchronisation(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
+        """How a process lets another one continue: by OS events, or by calling it as a server and getting its result."""
+        for kind, source, target in _SYNCHRONISATION:
+            written, read = self.by_name(first.process.name, source), self.by_name(then.process.name, target)
+            names = tuple(name for name in written if name in read)
+            if names:
+                return Link(kind, names)
+        return None
+
+    def _accesses(self, occurrence: EventOccurrence, names_of: NamesOf) -> dict[str, list[ActivityPosition]]:
+        """What is written or read where an event occurs: by the access itself, in its runnable, or anywhere in the process."""
+        everything = self.by_name(occurrence.process.name, names_of)
+        position = occurrence.position
+        if position is None:
+            return everything
+        if own := names_of(position):
+            return {name: [position] for name in own}
+        runnable = position.activity.runnable if isinstance(position.activity, Call) else position.runnable
+        within = [p for p in self.events.positions(occurrence.process.name) if p.runnable == runnable]
+        return _grouped(within, names_of) or everything
 
 
-def _written(place: Place) -> str | None:
-    match place.activity:
-        case LabelAccess(label=name, kind=AccessKind.WRITE) | Send(channel=name):
-            return name
+def writes(position: ActivityPosition) -> tuple[str, ...]:
+    """The labels, mode labels and channels that an activity writes."""
+    match position.activity:
+        case LabelAccess(label=name, kind=AccessKind.WRITE) | SenderReceiverAccess(label=name, kind=AccessKind.WRITE):
+            return (name,)
+        case Send(channel=name):
+            return (name,)
         case ModeAccess(label=name, operation=operation) if operation is not ModeOperation.READ:
-            return name
-    return None
+            return (name,)
+    return ()
 
 
-def _read(place: Place) -> str | None:
-    match place.activity:
-        case LabelAccess(label=name, kind=AccessKind.READ) | Receive(channel=name) | ModeAccess(label=name):
-            return name
-    return None
+def reads(position: ActivityPosition) -> tuple[str, ...]:
+    """The labels, mode labels and channels that an activity reads."""
+    match position.activity:
+        case LabelAccess(label=name, kind=AccessKind.READ) | SenderReceiverAccess(label=name, kind=AccessKind.READ):
+            return (name,)
+        case Receive(channel=name) | ModeAccess(label=name):
+            return (name,)
+    return ()
 
 
-def _by_name(within: Iterable[Place], name_of: _NameOf) -> dict[str, list[Place]]:
-    by_name: dict[str, list[Place]] = {}
-    for place in within:
-        if (name := name_of(place)) is not None:
-            by_name.setdefault(name, []).append(place)
-    return by_name
+def _sets(position: ActivityPosition) -> tuple[str, ...]:
+    """OS events, for one process or for all."""
+    match position.activity:
+        case SetEvent(events=events, process=process):
+            return tuple(event if process is None else f"{event} of {process}" for event in events)
+    return ()
+
+
+def _awaits(position: ActivityPosition) -> tuple[str, ...]:
+    match position.activity:
+        case WaitEvent(events=events):
+            return tuple(name for event in events for name in (event, f"{event} of {position.process.name}"))
+    return ()
+
+
+def _requests(position: ActivityPosition) -> tuple[str, ...]:
+    match position.activity:
+        case ServerCall(runnable=name):
+            return (name,)
+    return ()
+
+
+def _serves(position: ActivityPosition) -> tuple[str, ...]:
+    match position.activity:
+        case Call(runnable=name):
+            return (name,)
+    return ()
+
+
+#: How processes wait for each other: what one does, and what the other one does.
+_SYNCHRONISATION: tuple[tuple[LinkKind, NamesOf, NamesOf], ...] = (
+    (LinkKind.OS_EVENT, _sets, _awaits),
+    (LinkKind.SERVER_CALL, _requests, _serves),
+    (LinkKind.SERVER_CALL, _serves, _requests),
+)
+
+
+def _is_start(event: Event) -> bool:
+    return isinstance(event, RunnableEvent) and event.change is not RunnableChange.TERMINATE
+
+
+def _grouped(within: Iterable[ActivityPosition], names_of: NamesOf) -> dict[str, list[ActivityPosition]]:
+    found: dict[str, list[ActivityPosition]] = {}
+    for position in within:
+        for name in names_of(position):
+            found.setdefault(name, []).append(position)
+    return found

@@ -1,4 +1,4 @@
-"""Chains that nobody has modelled: the ways along which data and triggers take an effect through a system."""
+"""Paths through a system along data and triggers, from which event chains can be made."""
 
 from __future__ import annotations
 
@@ -19,14 +19,13 @@ from amalthea_uros.perf.events import (
     Segment,
     Sequence,
 )
-from amalthea_uros.perf.software import AccessKind, Call, LabelAccess, Receive, Send, Trigger
+from amalthea_uros.perf.software import Call
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.links import Resolver
-from amalthea_uros.timing.dataflow.positions import Place
+from amalthea_uros.timing.dataflow.links import Dataflow, NamesOf, reads, writes
 
-#: More ways, or longer ones, are not listed.
-MOST_PATHS = 100
-LONGEST = 12
+#: More paths, or longer ones, are not listed.
+MAX_PATHS = 100
+MAX_PROCESSES = 12
 
 
 class UnknownEndError(Exception):
@@ -39,12 +38,12 @@ class Path:
 
     Attributes
     ----------
-    carriers : what takes the effect from each process to the next
+    links : names of what links each process to the next
     start, end : the runnables with which it starts and ends; None: the processes as a whole
     """
 
     processes: tuple[str, ...]
-    carriers: tuple[tuple[str, ...], ...]
+    links: tuple[tuple[str, ...], ...]
     start: str | None = None
     end: str | None = None
 
@@ -74,74 +73,48 @@ def paths(system: System, start: str, end: str) -> list[Path]:
     ------
     UnknownEndError : there is no process, runnable or label of a name.
     """
-    resolver = Resolver(system)
-    graph = _graph(system, resolver)
+    dataflow = Dataflow(system)
+    graph = _graph(dataflow)
     found = []
-    for first, first_runnable in _ends(start, system, resolver, AccessKind.WRITE):
-        for last, last_runnable in _ends(end, system, resolver, AccessKind.READ):
+    for first, first_runnable in _ends(start, dataflow, writes):
+        for last, last_runnable in _ends(end, dataflow, reads):
             for nodes in _ways(graph, first, last):
-                carriers = tuple(tuple(sorted(graph.edges[edge]["carriers"])) for edge in pairwise(nodes))
-                found.append(Path(tuple(nodes), carriers, first_runnable, last_runnable))
-    return sorted(dict.fromkeys(found), key=lambda path: (len(path.processes), path.processes))[:MOST_PATHS]
+                links = tuple(tuple(sorted(graph.edges[edge]["links"])) for edge in pairwise(nodes))
+                found.append(Path(tuple(nodes), links, first_runnable, last_runnable))
+    return sorted(dict.fromkeys(found), key=lambda path: (len(path.processes), path.processes))[:MAX_PATHS]
 
 
 def _ways(graph: nx.DiGraph, first: str, last: str) -> Iterator[list[str]]:
     if first == last:
         yield [first]
         return
-    for number, nodes in enumerate(nx.all_simple_paths(graph, first, last, cutoff=LONGEST)):
-        if number == MOST_PATHS:
+    for number, nodes in enumerate(nx.all_simple_paths(graph, first, last, cutoff=MAX_PROCESSES)):
+        if number == MAX_PATHS:
             return
         yield nodes
 
 
-def _ends(name: str, system: System, resolver: Resolver, kind: AccessKind) -> list[tuple[str, str | None]]:
+def _ends(name: str, dataflow: Dataflow, accesses: NamesOf) -> list[tuple[str, str | None]]:
     """The processes of a name, those that call a runnable, or those that access a label."""
+    system = dataflow.system
     if name in system.processes:
         return [(name, None)]
-    everything = [place for process in system.processes for place in resolver.spots.places(process)]
+    everywhere = dataflow.events.all_positions()
     if name in system.runnables:
-        return [(p.process.name, name) for p in everything if isinstance(p.activity, Call) and p.activity.runnable == name]
+        return [(p.process.name, name) for p in everywhere if isinstance(p.activity, Call) and p.activity.runnable == name]
     if name in system.labels:
-        return list(dict.fromkeys((p.process.name, None) for p in everything if _accesses(p, kind) == name))
+        return list(dict.fromkeys((p.process.name, None) for p in everywhere if name in accesses(p)))
     raise UnknownEndError(f"there is no process, runnable or label {name!r}")
 
 
-def _accesses(place: Place, kind: AccessKind) -> str | None:
-    match place.activity:
-        case LabelAccess(label=name, kind=found) if found is kind:
-            return name
-        case Send(channel=name) if kind is AccessKind.WRITE:
-            return name
-        case Receive(channel=name) if kind is AccessKind.READ:
-            return name
-    return None
-
-
-def _graph(system: System, resolver: Resolver) -> nx.DiGraph:
-    """Processes, and what takes an effect from one to another."""
+def _graph(dataflow: Dataflow) -> nx.DiGraph:
+    """Processes, and what links them."""
     graph: nx.DiGraph = nx.DiGraph()
-    graph.add_nodes_from(system.processes)
-    readers: dict[str, list[str]] = {}
-    activated: dict[str, list[str]] = {}
-    for name, process in system.processes.items():
-        for stimulus in process.stimuli:
-            activated.setdefault(stimulus, []).append(name)
-        for place in resolver.spots.places(name):
-            if (read := _accesses(place, AccessKind.READ)) is not None:
-                readers.setdefault(read, []).append(name)
-    for name in system.processes:
-        for place in resolver.spots.places(name):
-            written = _accesses(place, AccessKind.WRITE)
-            targets = readers.get(written, []) if written is not None else []
-            carrier = written or ""
-            if isinstance(place.activity, Trigger):
-                carrier, targets = place.activity.stimulus, activated.get(place.activity.stimulus, [])
-            for target in targets:
-                if target != name:
-                    if not graph.has_edge(name, target):
-                        graph.add_edge(name, target, carriers=set())
-                    graph.edges[name, target]["carriers"].add(carrier)
+    graph.add_nodes_from(dataflow.system.processes)
+    for process, name, target in dataflow.direct():
+        if not graph.has_edge(process, target):
+            graph.add_edge(process, target, links=set())
+        graph.edges[process, target]["links"].add(name)
     return graph
 
 

@@ -1,27 +1,32 @@
-"""Where in a process something is done: behind which other activities, and in which jobs."""
+"""The activities of a process in the order in which a job reaches them: the one walk through activity graphs and calls."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
+from math import ceil
+from typing import TypeAlias
 
-from amalthea_uros.perf.software import Activity, Call, Group, Loop, ProbabilitySwitch, Process, Switch
+from amalthea_uros.perf.software import Activity, Call, Count, Group, LabelAccess, Process, Runnable, inner_activities
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 
+#: Lists of activities, from the process inwards, each with an index into it.
+Nesting: TypeAlias = tuple[tuple[tuple[Activity, ...], int], ...]
+
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class ActivityPosition:
     """An activity in the jobs of a process.
 
     Attributes
     ----------
-    number : order in which a job comes to it
+    number : order in which a job reaches it
     last : the number of the last activity within it, its own if there is none
-    runnable : in which it stands; None: directly in the process
-    outer : the lists of activities in which it stands, from the process inwards, each with its position in it
-    counters : those that let only some jobs come here
-    is_certain : whether each job comes here at the same point, but for the counters
+    runnable : that contains it; None: directly in the process
+    outer : the lists of activities that contain it
+    counters : those that let only some jobs reach it
+    is_certain : whether each job reaches it at the same point, apart from the counters
+    times : how often a job executes it at most
     """
 
     process: Process
@@ -29,64 +34,77 @@ class Place:
     last: int
     activity: Activity
     runnable: str | None
-    outer: tuple[tuple[tuple[Activity, ...], int], ...]
+    outer: Nesting
     counters: tuple[Counter, ...]
     is_certain: bool
+    times: int
 
     @property
     def before(self) -> tuple[Activity, ...]:
-        """What a job has done when it comes here."""
+        """What a job has done when it reaches this position."""
         return tuple(activity for activities, index in self.outer for activity in activities[:index])
 
 
-def places(process: Process, system: System) -> list[Place]:
-    """Everything that the jobs of a process do, in order."""
-    found = list(_Walk(process, system).within(process.activities, None, (), (), True))
-    # What is within something stands deeper, and follows it at once.
-    open_places: list[int] = []
-    for index, place in enumerate((*found, None)):
-        while open_places and (place is None or len(found[open_places[-1]].outer) >= len(place.outer)):
-            closed = open_places.pop()
-            found[closed] = replace(found[closed], last=found[index - 1].number)
-        open_places.append(index)
-    return found
+def positions(process: Process, system: System) -> list[ActivityPosition]:
+    """Everything that the jobs of a process may do, in order; calls are followed by what the runnables do."""
+    walk = _Walk(process, system)
+    walk.through(process.activities, _Branch())
+    return [position for position in walk.found if position is not None]
+
+
+@dataclass(frozen=True, slots=True)
+class _Branch:
+    """What holds for all activities of a list."""
+
+    runnable: str | None = None
+    outer: Nesting = ()
+    counters: tuple[Counter, ...] = ()
+    is_certain: bool = True
+    times: int = 1
+    above: tuple[str, ...] = ()
 
 
 @dataclass(slots=True)
 class _Walk:
     process: Process
     system: System
-    number: int = 0
-    above: tuple[str, ...] = ()
+    found: list[ActivityPosition | None] = field(default_factory=list)
 
-    def within(
-        self,
-        activities: tuple[Activity, ...],
-        runnable: str | None,
-        outer: tuple[tuple[tuple[Activity, ...], int], ...],
-        counters: tuple[Counter, ...],
-        is_certain: bool,
-    ) -> Iterator[Place]:
+    def through(self, activities: tuple[Activity, ...], branch: _Branch) -> None:
         for index, activity in enumerate(activities):
-            here = (*outer, (activities, index))
-            counted = counters
+            outer = (*branch.outer, (activities, index))
+            counters, times = branch.counters, branch.times
+            if isinstance(activity, Call | LabelAccess):
+                times *= _most(activity.times)
             if isinstance(activity, Call) and activity.counter is not None:
-                counted = (*counters, activity.counter)
-            self.number += 1
-            yield Place(self.process, self.number, self.number, activity, runnable, here, counted, is_certain)
-            match activity:
-                case Call(runnable=name) if name in self.system.runnables and name not in self.above:
-                    called, self.above = self.system.runnables[name], (*self.above, name)
-                    certain = is_certain and activity.times is None and called.condition is None
-                    yield from self.within(called.activities, name, here, counted, certain)
-                    self.above = self.above[:-1]
-                case Group(activities=inner, ordered=ordered):
-                    yield from self.within(inner, runnable, here, counted, is_certain and ordered)
-                case Loop(activities=inner):
-                    yield from self.within(inner, runnable, here, counted, False)
-                case ProbabilitySwitch(branches=branches):
-                    for branch in branches:
-                        yield from self.within(branch.activities, runnable, here, counted, False)
-                case Switch(cases=cases, default=default):
-                    for inner in (*(case.activities for case in cases), default or ()):
-                        yield from self.within(inner, runnable, here, counted, False)
+                counters = (*counters, activity.counter)
+            place = len(self.found)
+            # Its last number is known after what it contains.
+            self.found.append(None)
+            if isinstance(activity, Call):
+                called = self.system.runnables.get(activity.runnable)
+                if called is not None and called.name not in branch.above:
+                    self.through(called.activities, _of_call(activity, called, branch, outer, counters, times))
+            else:
+                inner = inner_activities(activity)
+                if inner:
+                    is_certain = branch.is_certain and isinstance(activity, Group) and activity.ordered
+                    within = _Branch(branch.runnable, outer, counters, is_certain, times, branch.above)
+                    for each in inner:
+                        self.through(each, within)
+            self.found[place] = ActivityPosition(
+                self.process, place + 1, len(self.found), activity, branch.runnable, outer, counters, branch.is_certain, times
+            )
+
+
+def _of_call(
+    call: Call, called: Runnable, branch: _Branch, outer: Nesting, counters: tuple[Counter, ...], times: int
+) -> _Branch:
+    is_certain = branch.is_certain and call.times is None and called.condition is None
+    return _Branch(called.name, outer, counters, is_certain, times, (*branch.above, called.name))
+
+
+def _most(times: Count | float | None) -> int:
+    if times is None:
+        return 1
+    return times.most if isinstance(times, Count) else ceil(times)

@@ -4,26 +4,29 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from amalthea_uros.analyze.response_times.kernel import LIMIT
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.event_models.base import Arrivals, Curve, Once, Pattern, Periodic
+from amalthea_uros.timing.event_models.base import EventModel
+from amalthea_uros.timing.event_models.burst import Pattern
+from amalthea_uros.timing.event_models.curve import Curve
+from amalthea_uros.timing.event_models.periodic import Periodic, Single, Sporadic
+from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.units import SECOND, Frequency
 
-#: Of longer lists of occurrences nothing is made.
-MOST_OCCURRENCES = 10_000
+#: Longer lists of occurrences are not considered.
+MAX_OCCURRENCES = 10_000
 
 
-def arrivals_of(stimulus: perf.Stimulus, system: System) -> Arrivals | None:
-    """The event model of a stimulus that comes from outside; None if nothing bounds it, or another process fires it.
+def event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | None:
+    """The event model of a stimulus from outside; None if its rate is unbounded, or another process fires it.
 
-    Times beyond what can be counted (13 days) bound nothing either.
+    Times beyond what can be counted (13 days) are not bounds either.
     """
-    found = _arrivals_of(stimulus, system)
+    found = _event_model_of(stimulus, system)
     match found:
         case Periodic():
-            times = [found.period, found.jitter, found.distance]
+            times = [found.period, found.jitter, found.min_interarrival]
         case Pattern():
             times = [found.period]
         case Curve():
@@ -33,7 +36,7 @@ def arrivals_of(stimulus: perf.Stimulus, system: System) -> Arrivals | None:
     return None if any(time > LIMIT for time in times) else found
 
 
-def _arrivals_of(stimulus: perf.Stimulus, system: System) -> Arrivals | None:
+def _event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | None:
     match stimulus:
         case perf.Periodic(period=period, jitter=jitter, min_distance=distance) if period > 0:
             if jitter is None:
@@ -45,28 +48,28 @@ def _arrivals_of(stimulus: perf.Stimulus, system: System) -> Arrivals | None:
             longest = highest(distance)
             if not least:
                 return None
-            return Periodic(least) if least == longest else Periodic(least, sporadic=True, longest=longest)
+            return Periodic(least) if least == longest else Sporadic(least, longest=longest)
         case perf.Synthetic(period=period, times=times) if period > 0 and times:
             # Times beyond the period fall into later ones, where they meet those of the next rounds.
             return Pattern(period, tuple(sorted(time % period for time in times)))
         case perf.Burst(period=period, length=length, distance=distance, count=count) if period > 0:
             happening = min(count, -(-max(length, 1) // distance)) if distance > 0 else count
-            if not 0 < happening <= MOST_OCCURRENCES or (happening - 1) * distance >= period:
+            if not 0 < happening <= MAX_OCCURRENCES or (happening - 1) * distance >= period:
                 return None
             return Pattern(period, tuple(index * distance for index in range(happening)))
         case perf.Single():
-            return Once()
+            return Single()
         case perf.ArrivalCurve(points=points):
-            limits = tuple((p.occurrences, p.lower) for p in points if p.lower and 1 < p.occurrences <= MOST_OCCURRENCES)
+            limits = tuple((p.occurrences, p.lower) for p in points if p.lower and 1 < p.occurrences <= MAX_OCCURRENCES)
             return Curve(limits) if limits else None
         case perf.VariableRate(step=step, rate=rate, scenario=None) if step > 0:
             highest_rate = highest(rate)
-            return Periodic(max(1, int(step / Fraction(highest_rate))), sporadic=True) if highest_rate else None
+            return Sporadic(max(1, int(step / Fraction(highest_rate)))) if highest_rate else None
         case perf.VariableRate(scenario=perf.Scenario(clock=name, recurrence=recurrence)) if recurrence > 0:
             frequency = _greatest(next((clock for clock in system.stimuli.clocks if clock.name == name), None))
             # An occurrence whenever the integral of the frequency has grown by the recurrence.
             least = int(Fraction(recurrence) * SECOND / frequency) if frequency else 0
-            return Periodic(least, sporadic=True) if least else None
+            return Sporadic(least) if least else None
     return None
 
 

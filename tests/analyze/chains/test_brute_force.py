@@ -27,7 +27,7 @@ class Drawn:
 
     @property
     def worst(self):
-        return sum(worst for _, worst in self.parts)
+        return sum(worst for _, worst in self.frames)
 
 
 PART = st.tuples(st.integers(0, 1), st.integers(0, 1)).map(lambda both: (both[0], both[0] + both[1]))
@@ -70,7 +70,7 @@ def built(tasks, chain):
     reads = {then: f"L{first}" for first, then in pairwise(chain)}
     rows = []
     for task in tasks:
-        before, between, behind = (ticks(worst, best) if worst > best else ticks(worst) for best, worst in task.parts)
+        before, between, behind = (ticks(worst, best) if worst > best else ticks(worst) for best, worst in task.frames)
         body = [before, *([read(reads[task.name])] if task.name in reads else []), between, write(f"L{task.name}"), behind]
         if task.triggers:
             body.append(Trigger(stimulus=f"go {task.triggers}"))
@@ -173,29 +173,29 @@ def ages(tracks, triggered):
 
 def triggered_hops(tasks, chain):
     triggers = {(task.name, task.triggers) for task in tasks}
-    return [hop in triggers for hop in pairwise(chain)]
+    return [link in triggers for link in pairwise(chain)]
 
 
 def check(drawn, communication):
     tasks, chain = drawn
     # A task that takes no time in some jobs has no moment of its own in units of time.
-    assume(all(sum(best for best, _ in task.parts) for task in tasks))
+    assume(all(sum(best for best, _ in task.frames) for task in tasks))
     result, values, _, _ = evaluate(built(tasks, chain), communication=communication)
     if result.reason:
         # A job may outlast the logical execution time; what triggers each other at high load may not settle.
         assert communication is Communication.LET or any(task.triggers for task in tasks)
         return
-    settled = 40
+    steady_state_start = 40
     for seed in range(4):
         jobs = run(tasks, 260, Random(seed), communication)
         tracks = [jobs[name] for name in chain]
         for before, start, end in reactions(tracks, triggered_hops(tasks, chain)):
-            if before >= settled:
+            if before >= steady_state_start:
                 assert end - start <= values["max_reduced_reaction_time"]
                 assert end - start >= values.get("min_first_to_first", 0)
                 assert end - before <= values.get("max_reaction_time", end)
         for begin, end, behind in ages(tracks, triggered_hops(tasks, chain)):
-            if begin >= settled:
+            if begin >= steady_state_start:
                 assert end - begin <= values["max_reduced_data_age"]
                 assert end - begin >= values.get("min_last_to_last", 0)
                 assert behind - begin <= values.get("max_data_age", behind)

@@ -5,11 +5,11 @@ from fractions import Fraction
 from itertools import pairwise
 
 import pytest
+from amalthea_uros.analyze.chains.quantities import Quantity
 from support import ROOT, SHARED
 from test_methods import cases
 
 from amalthea_uros import Settings, analyze_system, extract, load, pipeline
-from amalthea_uros.analyze.chains.quantities import Quantity
 from amalthea_uros.perf.distributions import Boundaries, Constant
 from amalthea_uros.perf.events import (
     ChainReference,
@@ -277,10 +277,10 @@ class TestWhatCarries:
         assert values["max_reduced_reaction_time"] == 5
 
     @pytest.mark.parametrize(
-        ("change", "carrier", "value"),
+        ("change", "kind", "value"),
         [(RunnableChange.TERMINATE, "the same job", 4), (RunnableChange.START, "the next job", 8)],
     )
-    def test_what_a_runnable_does_comes_before_its_end(self, change, carrier, value):
+    def test_what_a_runnable_does_comes_before_its_end(self, change, kind, value):
         # The write comes 2 us behind the start of the job, which takes 6 us.
         runnables = [
             Runnable(name="outer", activities=(ticks(1), Call(runnable="inner"), ticks(1))),
@@ -292,10 +292,10 @@ class TestWhatCarries:
         )
         built = system([("T", 10, [Call(runnable="outer")])], events, runnables=runnables)
         chain, values, _, rules = evaluate(built, communication=Communication.EXPLICIT)
-        assert chain.routes == (f"written -[{carrier}]-> reached",)
+        assert chain.routes == (f"written -[{kind}]-> reached",)
         assert values["min_first_to_first"] == value
         assert values["max_reduced_reaction_time"] >= value
-        assert rules == (["CHN002"] if carrier == "the next job" else [])
+        assert rules == (["CHN002"] if kind == "the next job" else [])
 
     def test_the_end_of_a_runnable_comes_behind_that_of_one_that_it_calls(self):
         runnables = [

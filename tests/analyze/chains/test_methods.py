@@ -15,14 +15,14 @@ from support import SHARED
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains import let as logical
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
-from amalthea_uros.analyze.chains.bounds.chain_task import Step
-from amalthea_uros.analyze.chains.job_times import Track
+from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
+from amalthea_uros.analyze.chains.job_times import ReadWriteTimes
 from amalthea_uros.analyze.response_times import priority_levels as levels
 from amalthea_uros.analyze.response_times import schedule
-from amalthea_uros.analyze.response_times.schedule import Released
+from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.timing.event_models.base import Periodic
-from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.multiframe import MultiframeDemand
 
 
 @cache
@@ -38,38 +38,41 @@ def cases(accept=lambda case: True):
 
 def tasks_of(case):
     return [
-        Released(
+        PeriodicTask(
             name=task["name"],
             period=task["period"],
             offset=task["offset"],
-            cost=Cost.constant(task["wcet"], task["bcet"]),
+            cost=MultiframeDemand.constant(task["wcet"], task["bcet"]),
             priority=-task["priority"],
         )
         for task in case["tasks"]
     ]
 
 
-def follow(tasks, chain):
+def build_job_chains(tasks, chain):
     """The job chains through a schedule of all best and all worst cases."""
-    cycle, start = schedule.hyperperiod(tasks), schedule.settled(tasks)
+    cycle, start = schedule.hyperperiod(tasks), schedule.steady_state_start(tasks)
     until = start + 2 * cycle
-    worst, best = schedule.schedule(tasks, until, Cost.worst_of), schedule.schedule(tasks, until, Cost.best_of)
+    worst, best = (
+        schedule.schedule(tasks, until, MultiframeDemand.worst_of),
+        schedule.schedule(tasks, until, MultiframeDemand.best_of),
+    )
     index = {task.name: number for number, task in enumerate(tasks)}
     tracks = []
     for position, name in enumerate(chain):
         task, jobs = tasks[index[name]], worst[index[name]]
         reader = tasks[index[chain[position + 1]]] if position + 1 < len(chain) else None
         tracks.append(
-            Track(
+            ReadWriteTimes(
                 releases=jobs.releases,
                 reads=best[index[name]].begins,
                 writes=jobs.ends,
                 cycle=cycle,
                 until=until,
-                hurries=reader is not None and task.priority > reader.priority,
+                preempts_reader=reader is not None and task.priority > reader.priority,
             )
         )
-    return job_chains.follow(tracks, start + cycle)
+    return job_chains.build_job_chains(tracks, start + cycle)
 
 
 def distribution(latencies):
@@ -83,7 +86,7 @@ def distribution(latencies):
 
 @pytest.mark.parametrize("case", cases())
 def test_job_chains(case):
-    found = follow(tasks_of(case), case["chain"])
+    found = build_job_chains(tasks_of(case), case["chain"])
     values = {
         "mrt": found.reaction_time,
         "mda": found.data_age,
@@ -107,11 +110,11 @@ def steps_of(case):
         tasks[task["name"]], responses[task["name"]] = task, response
     chain = case["chain"]
     return [
-        Step(
+        ChainTask(
             period=tasks[name]["period"],
             response=responses[name],
             offset=tasks[name]["offset"],
-            hurries=then is not None and tasks[name]["priority"] < tasks[then]["priority"],
+            preempts_reader=then is not None and tasks[name]["priority"] < tasks[then]["priority"],
         )
         for name, then in zip(chain, [*chain[1:], None], strict=True)
     ]
@@ -136,7 +139,7 @@ def logically(periods, offsets=None):
     cycle = lcm(*periods)
     offsets = offsets or [0] * len(periods)
     tracks = [logical.track(period, offset, cycle) for period, offset in zip(periods, offsets, strict=True)]
-    return job_chains.follow(tracks, max(offsets))
+    return job_chains.build_job_chains(tracks, max(offsets))
 
 
 @pytest.mark.parametrize("case", cases())
@@ -178,11 +181,11 @@ class TestTheChallengeOf2017:
         for chain in chains.values():
             names = chain["task_sequence_for_analysis"]
             steps = [
-                Step(
+                ChainTask(
                     period=round(tasks[name]["max_interarrival_us"] * 1000),
                     response=round(tasks[name]["wcrt_us"][variant] * 1000),
                     # A task comes before its own next job, and before those of lower priority on its core.
-                    hurries=then is not None
+                    preempts_reader=then is not None
                     and tasks[name]["core"] == tasks[then]["core"]
                     and tasks[name]["priority"] >= tasks[then]["priority"],
                 )
@@ -203,7 +206,13 @@ ROWS = st.lists(
 
 def drawn(rows):
     tasks = [
-        Released(name=str(index), period=period, offset=offset, cost=Cost.constant(cost, max(1, cost - less)), priority=-index)
+        PeriodicTask(
+            name=str(index),
+            period=period,
+            offset=offset,
+            cost=MultiframeDemand.constant(cost, max(1, cost - less)),
+            priority=-index,
+        )
         for index, (period, cost, less, offset) in enumerate(rows)
     ]
     assume(sum(task.cost.mean_worst / task.period for task in tasks) <= 1)
@@ -266,17 +275,17 @@ def test_no_run_is_worse_than_a_bound(rows, data):
     tasks = drawn(rows)
     names = [task.name for task in tasks]
     chain = data.draw(st.permutations(names).map(lambda order: order[: data.draw(st.integers(1, len(names)))]))
-    found = follow(tasks, chain)
+    found = build_job_chains(tasks, chain)
     responses = levels.response_times(
         [Task(name=t.name, arrivals=Periodic(t.period), cost=t.cost, priority=t.priority) for t in tasks]
     )
     by_name = {task.name: (task, response.worst) for task, response in zip(tasks, responses, strict=True)}
     steps = [
-        Step(
+        ChainTask(
             period=by_name[name][0].period,
             response=by_name[name][1],
             offset=by_name[name][0].offset,
-            hurries=then is not None and by_name[name][0].priority > by_name[then][0].priority,
+            preempts_reader=then is not None and by_name[name][0].priority > by_name[then][0].priority,
         )
         for name, then in zip(chain, [*chain[1:], None], strict=True)
     ]
@@ -289,13 +298,13 @@ def test_no_run_is_worse_than_a_bound(rows, data):
             ages.append(bi.reduced_data_age(steps))
     for seed in range(3):
         reacting, ageing = observe(tasks, chain, 150, Random(seed))
-        settled = max(task.offset + task.period for task in tasks)
+        steady_state_start = max(task.offset + task.period for task in tasks)
         for before, read, end in reacting:
-            if before >= settled:
+            if before >= steady_state_start:
                 assert end - before <= min(reactions)
                 assert end - read <= found.first_to_first.max()
         for read, write, behind in ageing:
-            if read >= settled:
+            if read >= steady_state_start:
                 assert behind - read <= found.data_age
                 assert write - read <= min(ages)
 
@@ -305,7 +314,7 @@ def test_constant_execution_times_are_exact(rows, data):
     tasks = drawn([(period, cost, 0, offset) for period, cost, _, offset in rows])
     names = [task.name for task in tasks]
     chain = data.draw(st.permutations(names).map(lambda order: order[: data.draw(st.integers(1, len(names)))]))
-    found = follow(tasks, chain)
+    found = build_job_chains(tasks, chain)
     reacting, ageing = observe(tasks, chain, 400, Random(0))
     reacting = [(before, read, end) for before, read, end in reacting if before >= 100]
     ageing = [(read, write, behind) for read, write, behind in ageing if read >= 100]

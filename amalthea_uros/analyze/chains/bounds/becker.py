@@ -11,13 +11,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from amalthea_uros.analyze.chains.bounds.chain_task import Step, first_releases
+from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask, first_releases
 from amalthea_uros.units import Time
 
 SOURCE = "Becker and others 2017"
 
 
-def reduced_data_age(steps: Sequence[Step]) -> Time | None:
+def reduced_data_age(steps: Sequence[ChainTask]) -> Time | None:
     """A bound of the maximum reduced data age; None if releases are not known, or too many."""
     first = first_releases(steps)
     if first is None:
@@ -29,6 +29,6 @@ def reduced_data_age(steps: Sequence[Step]) -> Time | None:
     return int((release - first).max()) + steps[-1].response
 
 
-def reduced_data_age_without_information(steps: Sequence[Step]) -> Time | None:
+def reduced_data_age_without_information(steps: Sequence[ChainTask]) -> Time | None:
     """The same where no more is known than that each job ends within its period."""
     return reduced_data_age([replace(step, response=step.period) for step in steps])

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.response_times.kernel import LIMIT
+from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
 
 #: Bounds that go through all jobs of a hyperperiod give up beyond.
-MOST_JOBS = 10_000_000
+MAX_JOBS = 10_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Step:
+class ChainTask:
     """A task in a chain.
 
     Attributes
@@ -28,7 +28,7 @@ class Step:
     period : the longest time between two releases, if `is_regular`: there is such a time
     response : worst-case response time
     offset : of the first release; None if releases are not known
-    hurries : whether its jobs come before those of the next step on the same core
+    preempts_reader : whether its jobs come before those of the next step on the same core
     """
 
     name: str = ""
@@ -36,19 +36,19 @@ class Step:
     response: Time
     is_regular: bool = True
     offset: Time | None = 0
-    hurries: bool = False
+    preempts_reader: bool = False
 
 
-def first_releases(steps: Sequence[Step]) -> Numbers | None:
+def first_releases(steps: Sequence[ChainTask]) -> Numbers | None:
     """The releases of the first step in one hyperperiod of the chain; None if they are not known, or too many."""
     if any(step.offset is None for step in steps):
         return None
     cycle = lcm(*(step.period for step in steps))
     count = cycle // steps[0].period
-    settled = max(step.offset or 0 for step in steps)
-    if count * len(steps) > MOST_JOBS or settled + 2 * cycle > LIMIT:
+    steady_state_start = max(step.offset or 0 for step in steps)
+    if count * len(steps) > MAX_JOBS or steady_state_start + 2 * cycle > LIMIT:
         return None
     offset = steps[0].offset or 0
-    lead = -(-(settled - offset) // steps[0].period)
+    lead = -(-(steady_state_start - offset) // steps[0].period)
     releases: Numbers = offset + steps[0].period * (lead + np.arange(count, dtype=np.int64))
     return releases

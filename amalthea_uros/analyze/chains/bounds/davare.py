@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from amalthea_uros.analyze.chains.bounds.chain_task import Step
+from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.units import Time
 
 SOURCE = "Davare and others 2007"
 
 
-def reaction_time(steps: Sequence[Step]) -> Time:
+def reaction_time(steps: Sequence[ChainTask]) -> Time:
     """A bound of the maximum reaction time."""
     return sum(step.period + step.response for step in steps)

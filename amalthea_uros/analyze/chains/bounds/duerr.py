@@ -10,21 +10,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from amalthea_uros.analyze.chains.bounds.chain_task import Step
+from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.units import Time
 
 SOURCE = "Dürr and others 2019"
 
 
-def reaction_time(steps: Sequence[Step]) -> Time:
+def reaction_time(steps: Sequence[ChainTask]) -> Time:
     """A bound of the maximum reaction time."""
     between = sum(
-        max(step.response, reader.period + (0 if step.hurries else step.response)) for step, reader in pairwise(steps)
+        max(step.response, reader.period + (0 if step.preempts_reader else step.response)) for step, reader in pairwise(steps)
     )
     return steps[0].period + between + steps[-1].response
 
 
-def reduced_data_age(steps: Sequence[Step]) -> Time:
+def reduced_data_age(steps: Sequence[ChainTask]) -> Time:
     """A bound of the maximum reduced data age."""
-    between = sum(step.period + (0 if step.hurries else step.response) for step in steps[:-1])
+    between = sum(step.period + (0 if step.preempts_reader else step.response) for step in steps[:-1])
     return between + steps[-1].response

@@ -10,19 +10,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from amalthea_uros.analyze.chains.bounds.chain_task import Step, first_releases
+from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask, first_releases
 from amalthea_uros.units import Time
 
 SOURCE = "Kloda, Bertout, Sorel 2018"
 
 
-def reaction_time(steps: Sequence[Step]) -> Time | None:
+def reaction_time(steps: Sequence[ChainTask]) -> Time | None:
     """A bound of the maximum reaction time; None if releases are not known, or too many."""
     first = first_releases(steps)
     if first is None:
         return None
     release = first
     for step, reader in pairwise(steps):
-        written = release + (0 if step.hurries else step.response) - (reader.offset or 0)
+        written = release + (0 if step.preempts_reader else step.response) - (reader.offset or 0)
         release = (reader.offset or 0) + -(-written // reader.period) * reader.period
     return steps[0].period + int((release - first).max()) + steps[-1].response

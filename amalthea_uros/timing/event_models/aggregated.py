@@ -1,0 +1,121 @@
+"""Event models made of others: several sources, several events for one, every n-th event only, another unit of time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from amalthea_uros.timing.event_models.base import NEVER, EventModel
+from amalthea_uros.timing.event_models.periodic import Periodic, Sporadic
+from amalthea_uros.units import Time
+
+
+@dataclass(frozen=True)
+class AggregatedEventModel(EventModel):
+    """Events of several independent sources."""
+
+    sources: tuple[EventModel, ...]
+
+    def eta_plus(self, window: Time) -> int:
+        """See `EventModel`."""
+        return sum(source.eta_plus(window) for source in self.sources)
+
+    def delta_min(self, count: int) -> Time:
+        """See `EventModel`."""
+        if count not in self._distances:
+            self._distances[count] = self._delta_min(count)
+        return self._distances[count]
+
+    @cached_property
+    def _distances(self) -> dict[int, Time]:
+        """Results so far; busy windows ask for the same ones again and again."""
+        return {}
+
+    def _delta_min(self, count: int) -> Time:
+        if count <= 1 or self.eta_plus(1) >= count:
+            return 0
+        above = 1
+        while self.eta_plus(above + 1) < count:
+            above *= 2
+            if above >= NEVER:
+                return NEVER
+        below = above // 2
+        while above - below > 1:
+            middle = (below + above) // 2
+            below, above = (below, middle) if self.eta_plus(middle + 1) >= count else (middle, above)
+        return above
+
+    @property
+    def rate(self) -> Fraction:
+        """See `EventModel`."""
+        return sum((source.rate for source in self.sources), Fraction(0))
+
+
+def aggregated(sources: tuple[EventModel, ...]) -> EventModel:
+    """The events of all sources; a single source stays as it is."""
+    return sources[0] if len(sources) == 1 else AggregatedEventModel(sources)
+
+
+@dataclass(frozen=True)
+class Multiplied(EventModel):
+    """Several events for each one of another model, at the same moment in the worst case."""
+
+    events: EventModel
+    factor: int
+
+    def delta_min(self, count: int) -> Time:
+        """See `EventModel`."""
+        return self.events.delta_min(-(-count // self.factor))
+
+    @property
+    def rate(self) -> Fraction:
+        """See `EventModel`."""
+        return self.events.rate * self.factor
+
+
+@dataclass(frozen=True)
+class Downsampled(EventModel):
+    """Every n-th event of another model."""
+
+    events: EventModel
+    prescaler: int
+
+    def delta_min(self, count: int) -> Time:
+        """See `EventModel`."""
+        return self.events.delta_min((count - 1) * self.prescaler + 1) if count > 1 else 0
+
+    @property
+    def rate(self) -> Fraction:
+        """See `EventModel`."""
+        return self.events.rate / self.prescaler
+
+
+@dataclass(frozen=True)
+class Rescaled(EventModel):
+    """The same events in a unit of time that is smaller by a factor."""
+
+    events: EventModel
+    factor: int
+
+    def delta_min(self, count: int) -> Time:
+        """See `EventModel`."""
+        return self.events.delta_min(count) * self.factor
+
+    def eta_plus(self, window: Time) -> int:
+        """See `EventModel`."""
+        return self.events.eta_plus(-(-window // self.factor))
+
+    @property
+    def rate(self) -> Fraction:
+        """See `EventModel`."""
+        return self.events.rate / self.factor
+
+
+def rescaled(events: EventModel, factor: int) -> EventModel:
+    """Events in a unit of time that is smaller by a factor."""
+    match events:
+        case Periodic(period, jitter, distance):
+            kind = Sporadic if isinstance(events, Sporadic) else Periodic
+            return kind(period * factor, jitter * factor, distance * factor)
+    return Rescaled(events, factor)

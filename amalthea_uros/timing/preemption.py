@@ -1,0 +1,30 @@
+"""Where a process can be preempted: anywhere, between some of its activities, or nowhere."""
+
+from __future__ import annotations
+
+from amalthea_uros.perf.software import Activity, Preemption, SchedulePoint, Task
+from amalthea_uros.timing.scheduling import ScheduledProcess
+
+
+def preemption(item: ScheduledProcess) -> Preemption:
+    """Which tasks can preempt a process; only interrupts of higher priority preempt an interrupt service routine."""
+    return item.process.preemption if isinstance(item.process, Task) else Preemption.PREEMPTIVE
+
+
+def is_preemptive(item: ScheduledProcess) -> bool:
+    """Whether everything of higher rank can preempt a process at once."""
+    return preemption(item) is Preemption.PREEMPTIVE and item.group is None
+
+
+def regions(item: ScheduledProcess) -> list[tuple[Activity, ...]]:
+    """What a task executes between its preemption points: single activities, or for groups all between schedule points."""
+    activities = item.process.activities
+    if preemption(item) is Preemption.COOPERATIVE and item.group is None:
+        return [(activity,) for activity in activities]
+    found: list[tuple[Activity, ...]] = [()]
+    for activity in activities:
+        if isinstance(activity, SchedulePoint):
+            found.append(())
+        else:
+            found[-1] += (activity,)
+    return found

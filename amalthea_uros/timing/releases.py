@@ -1,0 +1,30 @@
+"""Processes whose releases are known, and the time limits that are their deadlines."""
+
+from __future__ import annotations
+
+from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
+from amalthea_uros.perf.software import Process
+from amalthea_uros.perf.stimuli import Periodic
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.limits import LIMIT
+from amalthea_uros.units import Time
+
+
+def known_releases(process: Process, system: System) -> Periodic | None:
+    """The stimulus of a process that is released at known times; None if it is not."""
+    match [system.stimuli_by_name.get(name) for name in process.stimuli]:
+        case [Periodic(jitter=None, condition=None, period=period, offset=offset) as stimulus] if (
+            0 < period <= LIMIT and 0 <= offset <= LIMIT
+        ):
+            return stimulus
+    return None
+
+
+def response_time_limits(system: System) -> dict[str, Time]:
+    """The shortest upper limit of the response time that requirements state for each process."""
+    found: dict[str, Time] = {}
+    for requirement in system.constraints.requirements:
+        match requirement.limit:
+            case TimeLimit(metric=TimeMetric.RESPONSE_TIME, bound=Bound.UPPER, value=value) if requirement.process:
+                found[requirement.process] = min(value, found.get(requirement.process, value))
+    return found
