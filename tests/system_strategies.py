@@ -82,6 +82,8 @@ REFERENCES = {
     (None, "task"): ["task"],
     (None, "isr"): ["isr"],
     (None, "runnable"): ["runnable"],
+    (software.SenderReceiverAccess, "notifies"): ["runnable"],
+    (software.ServerCall, "result"): ["runnable"],
     (None, "label"): ["label"],
     (software.ModeAccess, "label"): ["mode label"],
     (conditions.ModeValueIs, "label"): ["mode label"],
@@ -151,10 +153,16 @@ class Drawing:
         hints = typing.get_type_hints(cls)
         values = dict(given)
         for field in dataclasses.fields(cls):
-            if field.name not in values and field.name != "origin":
+            if field.name not in values and field.name not in ("origin", "locate"):
                 values[field.name] = self.value(cls, field.name, hints[field.name], depth)
         if cls is software.Demand and values["ticks"] is None and not values["by_core_type"]:
             values["ticks"] = distributions.Constant(1)
+        if cls is software.SenderReceiverAccess and values["kind"] is software.AccessKind.READ:
+            values["notifies"] = ()
+        if cls is software.ServerCall:
+            # Only some kinds of calls have a result runnable, or wait.
+            values["result"] = values["result"] if values["kind"] is software.ServerCallKind.ASYNCHRONOUS else None
+            values["waiting"] = values["waiting"] if values["kind"] is software.ServerCallKind.SYNCHRONOUS else None
         return cls(**values)
 
     def value(self, cls, name, hint, depth):

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from amalthea_uros.analyze.chains.quantities import Quantity
 
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.job_times import Track
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.schedule import Released
+from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.timing.multiframe import Cost
 
 TASKS = (

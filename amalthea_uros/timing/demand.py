@@ -30,6 +30,7 @@ from amalthea_uros.perf.software import (
     ProbabilitySwitch,
     Process,
     Runnable,
+    ServerCall,
     Switch,
     WaitEvent,
 )
@@ -143,6 +144,9 @@ class DemandModel:
                 if holds(condition, self.settings.modes) is False:
                     return []
                 raise UnknownDemandError("there is a loop, and nothing says how often it is repeated at most")
+            case ServerCall(runnable=name):
+                message = f"the time of the call of the server runnable {name!r} is not taken into account"
+                self.notes.warning("ANA006", message, self.system.runnables.get(name))
             case WaitEvent():
                 raise UnknownDemandError("it waits for events, and nothing says how long at most")
             case Migrate():
@@ -169,7 +173,7 @@ class DemandModel:
     def _call(self, call: Call, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
         runnable = self.system.runnables.get(call.runnable)
         if runnable is None:
-            raise UnknownDemandError(f"the runnable {call.runnable!r} is not frame of the model")
+            raise UnknownDemandError(f"the runnable {call.runnable!r} is not part of the model")
         if runnable.name in above:
             raise UnknownDemandError(f"the runnable {runnable.name!r} calls itself")
         frames = self._runnable(runnable, core, above)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support import SHARED
 
-from amalthea_uros.analyze.propagation import behind
+from amalthea_uros.analyze.propagation import completions
 from amalthea_uros.analyze.response_times import non_preemptive
 from amalthea_uros.analyze.response_times import priority_levels as levels
 from amalthea_uros.analyze.response_times.task import Task
@@ -25,12 +25,13 @@ from amalthea_uros.timing.event_models import (
     Pattern,
     Periodic,
     Single,
+    Sporadic,
 )
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.timing.multiframe import MultiframeDemand
 
 PERIODIC = st.builds(Periodic, st.integers(1, 30), st.integers(0, 80), st.integers(0, 5)).filter(
-    lambda p: p.distance <= p.period
+    lambda p: p.min_interarrival <= p.period
 )
 PATTERN = st.lists(st.integers(0, 19), min_size=1, max_size=4).map(lambda times: Pattern(20, tuple(sorted(times))))
 SIMPLE = st.one_of(PERIODIC, PATTERN, st.just(Single()), st.just(Curve(((2, 3), (4, 20)))))
@@ -85,7 +86,7 @@ def test_several_arrivals_for_each_of_others():
     [
         (perf.Periodic(name="s", period=10, offset=3), Periodic(10)),
         (perf.Periodic(name="s", period=10, jitter=Uniform(lower=-1, upper=3), min_distance=2), Periodic(10, 4, 2)),
-        (perf.RelativePeriodic(name="s", distance=Uniform(lower=5, upper=9)), Periodic(5, sporadic=True, longest=9)),
+        (perf.RelativePeriodic(name="s", distance=Uniform(lower=5, upper=9)), Sporadic(5, longest=9)),
         # Offset 5, period 10, length 5, distance 2, count 3: 5, 7, 9, 15, 17, 19 ...
         (perf.Burst(name="s", offset=5, period=10, length=5, distance=2, count=3), Pattern(10, (0, 2, 4))),
         # The third occurrence would lie behind the burst.
@@ -99,15 +100,15 @@ def test_several_arrivals_for_each_of_others():
             Curve(((2, 3),)),
         ),
         # At most 4 in each 10.
-        (perf.VariableRate(name="s", step=10, rate=Uniform(lower=1.0, upper=4.0)), Periodic(2, sporadic=True)),
+        (perf.VariableRate(name="s", step=10, rate=Uniform(lower=1.0, upper=4.0)), Sporadic(2)),
         # At 50 Hz at most, every second revolution: 40 ms.
         (
             perf.VariableRate(name="s", step=1, rate=Constant(1.0), scenario=perf.Scenario(clock="engine", recurrence=2.0)),
-            Periodic(40 * 10**9, sporadic=True),
+            Sporadic(40 * 10**9),
         ),
         (
             perf.VariableRate(name="s", step=1, rate=Constant(1.0), scenario=perf.Scenario(clock="steps")),
-            Periodic(250 * 10**9, sporadic=True),
+            Sporadic(250 * 10**9),
         ),
         # Numbers that no analysis could go through.
         (perf.ArrivalCurve(name="s", points=(perf.ArrivalCurvePoint(occurrences=2**40, lower=3),)), None),
@@ -155,5 +156,5 @@ def test_the_tutorial_of_compositional_analysis():
             for chain in case["precedence"]:
                 if task.name in chain[:-1]:
                     follower = chain[chain.index(task.name) + 1]
-                    arrivals[follower] = behind(task.arrivals, response, task.cost.best)
+                    arrivals[follower] = completions(task.arrivals, response, task.cost.best)
     assert worst == case["expected_wcrt"]

@@ -10,7 +10,7 @@ from support import ROOT
 from test_system import system, ticks
 
 from amalthea_uros import pipeline
-from amalthea_uros.analyze.assignment import assign, propose
+from amalthea_uros.analyze.assignment import assign, propose_priorities
 from amalthea_uros.analyze.response_times import priority_levels as levels
 from amalthea_uros.analyze.response_times.task import Task as AnalysedTask
 from amalthea_uros.analyze.sensitivity import greatest_scale, sensitivity
@@ -59,7 +59,7 @@ def test_deadline_monotonic_order_is_not_best_with_jitter():
 @pytest.mark.parametrize("sample", ["bodas-test-advanced", "drive-and-lift"])
 def test_the_greatest_scale_is_where_a_verdict_changes(sample):
     described = pipeline.describe(ROOT / "samples" / f"{sample}.yaml").system
-    scale = greatest_scale(described)
+    scale = greatest_scale(analyze_system(described))
     assert not analyze_system(described, Settings(scale=scale)).misses
     assert analyze_system(described, Settings(scale=scale * Fraction(1001, 1000) + Fraction(1, 1000))).misses
 
@@ -67,7 +67,7 @@ def test_the_greatest_scale_is_where_a_verdict_changes(sample):
 def test_the_control_function_of_the_thesis_has_room_for_its_deadline():
     # 29 us may become 1 ms; then the executor and the control function take 25 and 4 of every 29 parts.
     described = pipeline.describe(ROOT / "samples" / "bodas-test-advanced.yaml").system
-    assert float(greatest_scale(described)) == pytest.approx(1000 / 29, rel=1e-3)
+    assert float(greatest_scale(analyze_system(described))) == pytest.approx(1000 / 29, rel=1e-3)
 
 
 def tasks_on_a_core(*rows, **more):
@@ -90,7 +90,7 @@ def tasks_on_a_core(*rows, **more):
 
 def test_sensitivity_of_single_processes():
     built = tasks_on_a_core(("low", 100, 20, 100), ("high", 100, 10, 30))
-    found = sensitivity(built)
+    found = sensitivity(analyze_system(built))
     # The higher one has three times what it needs; the lower one has what is left of 100.
     assert float(found.everything) == pytest.approx(3, rel=1e-3)
     assert float(found.processes["low"]) == pytest.approx((100 - 10) / 20, rel=1e-3)
@@ -98,14 +98,14 @@ def test_sensitivity_of_single_processes():
 
 
 def test_what_is_missed_is_met_again_with_less():
-    found = sensitivity(tasks_on_a_core(("low", 100, 20, 15), ("high", 100, 10, 30)))
+    found = sensitivity(analyze_system(tasks_on_a_core(("low", 100, 20, 15), ("high", 100, 10, 30))))
     # The lower one takes 20 alone, whatever the higher one does.
     assert (found.everything, found.processes) == (Fraction(1, 2), {"low": Fraction(1, 4), "high": None})
 
 
 def test_priorities_are_proposed_in_the_order_that_fits():
     built = tasks_on_a_core(("urgent", 100, 10, 12), ("slow", 400, 60, 200), ("middle", 200, 30, 50))
-    (proposal,) = propose(built)
+    (proposal,) = propose_priorities(analyze_system(built))
     assert proposal.current == {"urgent": 0, "slow": 1, "middle": 2}
     assert proposal.priorities == {"urgent": 2, "slow": 0, "middle": 1}
 
@@ -118,5 +118,5 @@ def test_priorities_are_proposed_in_the_order_that_fits():
     ],
 )
 def test_why_nothing_is_proposed(rows, reason):
-    (proposal,) = propose(tasks_on_a_core(*rows))
+    (proposal,) = propose_priorities(analyze_system(tasks_on_a_core(*rows)))
     assert (proposal.priorities, proposal.reason) == (None, reason)

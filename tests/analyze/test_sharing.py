@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 from amalthea_uros.analyze.response_times import priority_levels as levels
 from amalthea_uros.analyze.response_times.supply import Budget
-from amalthea_uros.analyze.response_times.task import EqualPriority, Task
+from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.timing.event_models import Periodic
 from amalthea_uros.timing.multiframe import MultiframeDemand
+from amalthea_uros.timing.scheduling import EqualPriority
 
 
 def shared(equal_priority, rows, above=()):

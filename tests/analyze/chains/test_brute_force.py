@@ -27,7 +27,7 @@ class Drawn:
 
     @property
     def worst(self):
-        return sum(worst for _, worst in self.frames)
+        return sum(worst for _, worst in self.parts)
 
 
 PART = st.tuples(st.integers(0, 1), st.integers(0, 1)).map(lambda both: (both[0], both[0] + both[1]))
@@ -70,7 +70,7 @@ def built(tasks, chain):
     reads = {then: f"L{first}" for first, then in pairwise(chain)}
     rows = []
     for task in tasks:
-        before, between, behind = (ticks(worst, best) if worst > best else ticks(worst) for best, worst in task.frames)
+        before, between, behind = (ticks(worst, best) if worst > best else ticks(worst) for best, worst in task.parts)
         body = [before, *([read(reads[task.name])] if task.name in reads else []), between, write(f"L{task.name}"), behind]
         if task.triggers:
             body.append(Trigger(stimulus=f"go {task.triggers}"))
@@ -179,7 +179,7 @@ def triggered_hops(tasks, chain):
 def check(drawn, communication):
     tasks, chain = drawn
     # A task that takes no time in some jobs has no moment of its own in units of time.
-    assume(all(sum(best for best, _ in task.frames) for task in tasks))
+    assume(all(sum(best for best, _ in task.parts) for task in tasks))
     result, values, _, _ = evaluate(built(tasks, chain), communication=communication)
     if result.reason:
         # A job may outlast the logical execution time; what triggers each other at high load may not settle.

@@ -5,11 +5,11 @@ from fractions import Fraction
 from itertools import pairwise
 
 import pytest
-from amalthea_uros.analyze.chains.quantities import Quantity
 from support import ROOT, SHARED
 from test_methods import cases
 
 from amalthea_uros import Settings, analyze_system, extract, load, pipeline
+from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.perf.distributions import Boundaries, Constant
 from amalthea_uros.perf.events import (
     ChainReference,
