@@ -37,7 +37,8 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Amalthea,
     check=_check,
-    rationale="am2inc does not merge sub-models: the one in a later file silently replaces the one in an earlier file.",
+    rationale="am2inc does not merge sub-models: the one in a later file silently replaces the one in an earlier file. "
+    "It then crashes with a segmentation fault or writes an incomplete model.",
     remedy="Move the content of each sub-model into one file.",
     fails="""
 <!-- beside a file that has an swModel, too -->
