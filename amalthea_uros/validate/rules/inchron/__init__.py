@@ -1,1 +1,1 @@
-"""What INCHRON's importer am2inc refuses, crashes at, drops or changes, as of its version of December 2024."""
+"""Rules about models that INCHRON's importer am2inc (December 2024) refuses, crashes at, loses or changes parts of."""

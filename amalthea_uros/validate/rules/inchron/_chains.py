@@ -16,12 +16,12 @@ from amalthea_uros.validate.rules.inchron._events import is_converted
 
 
 def is_parallel(chain: AbstractEventChain) -> bool:
-    """Whether the items run side by side; a single one is read as a sequence."""
+    """Whether am2inc reads the items as parallel branches; a single item is read as a sequence."""
     return chain.item_type == "parallel" and len(chain.items) > 1
 
 
 def events_read(chain: AbstractEventChain) -> Iterable[Event]:
-    """The events that a chain itself is made of, each once: its ends unless it is a segment, and where its segments start."""
+    """The events that am2inc reads of a chain, each once: its ends unless it is a segment, and the stimuli of its later segments."""
     inner = [] if is_parallel(chain) else [part.stimulus for part in parts(chain)[1:]]
     read = [*ends(chain), *inner] if isinstance(chain, EventChain) else inner
     return dict.fromkeys(event for end in read for event in events(end) if event.unresolved is None)

@@ -1,17 +1,17 @@
-"""Which events am2inc converts."""
+"""The events that am2inc converts."""
 
 from __future__ import annotations
 
 from amalthea_uros.metamodel.classes import Event, EventSet, LabelEvent, ProcessEvent, RunnableEvent, Task
 
-#: The classes of events that it converts.
+#: The classes of events that am2inc converts.
 CONVERTED = (ProcessEvent, RunnableEvent, LabelEvent)
 
 _OF_PROCESSES = frozenset({"activate", "start", "terminate"})
 
 
 def moments(event: Event) -> frozenset[str]:
-    """The types of an event that are converted."""
+    """The types that am2inc converts for an event."""
     match event:
         case RunnableEvent():
             return frozenset({"start", "terminate"})
@@ -25,7 +25,7 @@ def moments(event: Event) -> frozenset[str]:
 
 
 def is_converted(event: Event) -> bool:
-    """Whether a chain can use an event, or all those of a set."""
+    """Whether am2inc converts an event, or all events of a set, as part of a chain."""
     if isinstance(event, EventSet):
         return all(map(is_converted, event.events))
     if not isinstance(event, CONVERTED) or event.entity is None or event.entity.unresolved is not None:

@@ -1,4 +1,4 @@
-"""By which names am2inc finds objects: by their `xmi:id`, else by names of its own making, which leave out namespaces."""
+"""How am2inc resolves references: by `xmi:id`, or else by computed names without namespaces."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from amalthea_uros.validate.context import Context
 
 
 def has_id(element: Element) -> bool:
-    """Whether an object has an `xmi:id` in its file. Those that were not read from one are written with it."""
+    """Whether an object has an `xmi:id` in its file. An object that was not read from a file will be written with one."""
     document = element.document
     source = document.source if document is not None else None
     place = source.index.get(element) if source is not None else None
@@ -20,6 +20,6 @@ def has_id(element: Element) -> bool:
 
 
 def without_namespace(context: Context) -> dict[Element, str]:
-    """The members of namespaces that have no `xmi:id`, with the names by which they are found: those without the namespace."""
+    """The members of namespaces that have no `xmi:id`, with the names by which am2inc finds them."""
     members = (member for member in context.all(INamespaceMember) if member.namespace is not None and not has_id(member))
     return {member: f"{encode(name_of(member))}{TYPE_MARK}{type(member).__name__}" for member in members}

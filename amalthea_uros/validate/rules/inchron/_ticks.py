@@ -1,4 +1,4 @@
-"""Which execution times am2inc reads."""
+"""The execution times that am2inc reads."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from amalthea_uros.metamodel.element import Element
 
 
 def is_read(value: Element) -> bool:
-    """Whether a value is the default of Ticks or, for want of one, the first extended entry."""
+    """Whether a value is the default of Ticks or, if there is none, the first extended entry."""
     holder = value.container
     if isinstance(holder, TicksEntry):
         ticks = holder.container

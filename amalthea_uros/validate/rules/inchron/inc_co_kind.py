@@ -1,4 +1,4 @@
-"""Constraint or requirement that is dropped."""
+"""Unsupported constraint or requirement."""
 
 from __future__ import annotations
 
@@ -35,17 +35,18 @@ _DROPPED = (
 
 def _check(element: IAnnotatable, context: Context) -> Iterator[str]:
     if not isinstance(element, EventChainLatencyConstraint):
-        yield f"the {type(element).__name__} {name_of(element)!r} is dropped"
+        yield f"the {type(element).__name__} {name_of(element)!r} is dropped by am2inc"
 
 
 RULE = ModelRule(
     id="INC-CO-KIND",
-    title="constraint or requirement that is dropped",
+    title="unsupported constraint or requirement",
     severity=Severity.WARNING,
     target=_DROPPED,
     check=_check,
-    rationale="am2inc drops all but latency constraints, with one warning for each class and no names.",
-    remedy="Do not rely on them after the import; amuros analyze judges them.",
+    rationale="am2inc converts only latency constraints of event chains. It drops all other constraints and all requirements, "
+    "and prints one warning per class without the names of the objects.",
+    remedy="Check timing requirements with amuros analyze, or enter them by hand after the import.",
     fails="""
 <constraintsModel>
   <requirements xsi:type="am:ProcessRequirement" name="R"/>

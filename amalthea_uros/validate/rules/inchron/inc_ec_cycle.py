@@ -1,4 +1,4 @@
-"""Chain that is part of itself."""
+"""Cyclic event chain."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: EventChain, context: Context) -> Iterator[str]:
     if element in context.once(_endless):
-        yield f"the chain {element.name!r} refers to itself, or leads to one that does"
+        yield f"the event chain {element.name!r} is part of a reference cycle or leads into one"
 
 
 def _endless(context: Context) -> set[EventChain]:
-    """The chains that are left when those are taken away, again and again, that refer to no other one that is left."""
+    """The chains that remain after repeatedly removing those without references to a remaining chain."""
     holders: dict[EventChain, list[EventChain]] = {}
     left: dict[EventChain, int] = dict.fromkeys(context.all(EventChain), 0)
     for reference in context.all(EventChainReference):
@@ -37,12 +37,12 @@ def _endless(context: Context) -> set[EventChain]:
 
 RULE = ModelRule(
     id="INC-EC-CYCLE",
-    title="chain that is part of itself",
+    title="cyclic event chain",
     severity=Severity.ERROR,
     target=EventChain,
     check=_check,
-    rationale="am2inc ends with a segmentation fault.",
-    remedy="Break the circle of references.",
+    rationale="am2inc follows the references without end and crashes with a segmentation fault.",
+    remedy="Remove the reference that closes the cycle.",
     fails="""
 <eventModel>
   <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>

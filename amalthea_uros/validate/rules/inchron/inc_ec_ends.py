@@ -1,4 +1,4 @@
-"""Chain without an end."""
+"""Event chain without a stimulus or response."""
 
 from __future__ import annotations
 
@@ -8,21 +8,23 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._missing import missing
 
 
 def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
-    if element.stimulus is None or element.response is None:
-        yield f"the chain {element.name or ''!r} lacks its stimulus or its response"
+    absent = missing({"stimulus": element.stimulus, "response": element.response})
+    if absent:
+        yield f"the event chain {element.name or ''!r} has no {absent}"
 
 
 RULE = ModelRule(
     id="INC-EC-ENDS",
-    title="chain without an end",
+    title="event chain without a stimulus or response",
     severity=Severity.WARNING,
     target=AbstractEventChain,
     check=_check,
-    rationale="The chain is dropped, with a warning.",
-    remedy="Name its stimulus and its response.",
+    rationale="am2inc drops the event chain and prints a warning.",
+    remedy="Set the stimulus and the response of the event chain.",
     fails="""
 <eventModel>
   <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>

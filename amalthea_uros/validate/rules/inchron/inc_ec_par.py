@@ -1,4 +1,4 @@
-"""Branch with other ends than its chain."""
+"""Parallel branch with a different stimulus or response."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
     branches = parts(element)
     for branch in branches:
         if ends(branch) != ends(element):
-            yield f"the branch {branch.name or ''!r} has other ends than its chain {element.name or ''!r}"
+            yield f"the branch {branch.name or ''!r} and its event chain {element.name or ''!r} differ in stimulus or response"
     if len(branches) < len(element.items):
-        yield f"a branch of {element.name or ''!r} names no chain, and is passed over"
+        yield f"the event chain {element.name or ''!r} has an item without a chain, which am2inc skips"
 
 
 RULE = ModelRule(
     id="INC-EC-PAR",
-    title="branch with other ends than its chain",
+    title="parallel branch with a different stimulus or response",
     severity=Severity.WARNING,
     target=AbstractEventChain,
     check=_check,
-    rationale="The chain is dropped, with a warning.",
-    remedy="Give each branch the stimulus and the response of the chain.",
+    rationale="am2inc drops the event chain and prints a warning. It silently skips items without a chain.",
+    remedy="Give every branch the stimulus and the response of the event chain, and remove items without a chain.",
     fails="""
 <eventModel>
   <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>

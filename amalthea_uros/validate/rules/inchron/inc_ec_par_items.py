@@ -1,4 +1,4 @@
-"""Branch without items."""
+"""Parallel branch without items."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from amalthea_uros.validate.rules.inchron._chains import is_parallel
 def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
     for branch in parts(element) if is_parallel(element) else []:
         if not branch.items:
-            yield f"the branch {branch.name or ''!r} of the chain {element.name or ''!r} has no items"
+            yield f"the branch {branch.name or ''!r} of the event chain {element.name or ''!r} has no items"
 
 
 RULE = ModelRule(
     id="INC-EC-PAR-ITEMS",
-    title="branch without items",
+    title="parallel branch without items",
     severity=Severity.ERROR,
     target=AbstractEventChain,
     check=_check,
-    rationale="am2inc writes a broken graph without a word.",
-    remedy="Give each branch segments of its own.",
+    rationale="am2inc silently writes a broken event graph.",
+    remedy="Add at least one segment to every branch.",
     fails="""
 <eventModel>
   <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>

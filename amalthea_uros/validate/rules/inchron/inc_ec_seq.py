@@ -1,4 +1,4 @@
-"""Segments that do not fit together."""
+"""Event chain with mismatched segments."""
 
 from __future__ import annotations
 
@@ -17,20 +17,22 @@ def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
         return
     name, segments = element.name or "", parts(element)
     if len(segments) < len(element.items):
-        yield f"an item of the chain {name!r} names no chain, and is passed over"
+        yield f"the event chain {name!r} has an item without a chain, which am2inc skips"
     expected = [element.stimulus, *(segment.response for segment in segments)]
     if segments and ([segment.stimulus for segment in segments] != expected[:-1] or expected[-1] is not element.response):
-        yield f"the segments of the chain {name!r} do not fit together"
+        yield f"the segments of the event chain {name!r} do not connect its stimulus to its response"
 
 
 RULE = ModelRule(
     id="INC-EC-SEQ",
-    title="segments that do not fit together",
+    title="event chain with mismatched segments",
     severity=Severity.WARNING,
     target=AbstractEventChain,
     check=_check,
-    rationale="am2inc changes the chain without a word: responses of segments are never read.",
-    remedy="Start each segment with the response of the one before it, and keep to the ends of the chain.",
+    rationale="am2inc silently changes the event chain: it skips items without a chain, and reads only the stimulus and "
+    "response of the chain and the stimuli of the second and later segments.",
+    remedy="Remove items without a chain, and let the segments lead without gaps from the stimulus of the chain to its "
+    "response.",
     fails="""
 <eventModel>
   <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>

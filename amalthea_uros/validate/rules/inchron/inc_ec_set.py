@@ -1,4 +1,4 @@
-"""Chain that starts or ends with several events."""
+"""Event set as stimulus or response."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: EventChain, context: Context) -> Iterator[str]:
-    for event in (element.stimulus, element.response):
+    for end, event in (("stimulus", element.stimulus), ("response", element.response)):
         if isinstance(event, EventSet) and len(event.events) > 1:
-            yield f"the chain {element.name!r} starts or ends with the {len(event.events)} events of {event.name!r}"
+            yield f"the {end} of the event chain {element.name!r} is {event.name!r}, a set of {len(event.events)} events"
 
 
 RULE = ModelRule(
     id="INC-EC-SET",
-    title="chain that starts or ends with several events",
+    title="event set as stimulus or response",
     severity=Severity.WARNING,
     target=EventChain,
     check=_check,
-    rationale="The chain is dropped, with a warning.",
-    remedy="Start and end it with one event.",
+    rationale="am2inc drops event chains that start or end with more than one event and prints a warning.",
+    remedy="Use a single event as stimulus and as response.",
     fails="""
 <eventModel>
   <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>

@@ -1,4 +1,4 @@
-"""Event that is not converted, or chain with one."""
+"""Unsupported class of event."""
 
 from __future__ import annotations
 
@@ -14,21 +14,22 @@ from amalthea_uros.validate.rules.inchron._events import CONVERTED
 
 def _check(element: Event | AbstractEventChain, context: Context) -> Iterator[str]:
     if isinstance(element, Event) and not isinstance(element, CONVERTED):
-        alone = " by itself, only in chains" if isinstance(element, EventSet) else ""
-        yield f"the {type(element).__name__} {element.name!r} is not converted{alone}"
+        how = "converted only as part of an event chain" if isinstance(element, EventSet) else "not converted by am2inc"
+        yield f"the {type(element).__name__} {element.name!r} is {how}"
     for event in events_read(element) if isinstance(element, AbstractEventChain) else ():
         if not isinstance(event, CONVERTED):
-            yield f"the chain {element.name or ''!r} is dropped because of the {type(event).__name__} {event.name!r}"
+            yield f"the event chain {element.name or ''!r} is dropped by am2inc because of the {type(event).__name__} {event.name!r}"
 
 
 RULE = ModelRule(
     id="INC-EV-KIND",
-    title="event that is not converted, or chain with one",
+    title="unsupported class of event",
     severity=Severity.WARNING,
     target=(Event, AbstractEventChain),
     check=_check,
-    rationale="Only events of processes, runnables and labels are converted; a chain with another one is dropped, with a warning.",
-    remedy="Use events of processes, runnables or labels.",
+    rationale="am2inc converts only events of processes, runnables and labels. It drops every event chain that uses another "
+    "event, and prints a warning.",
+    remedy="Use process, runnable or label events.",
     fails="""
 <eventModel>
   <events xsi:type="am:CustomEvent" name="c"/>

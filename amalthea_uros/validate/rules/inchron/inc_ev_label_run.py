@@ -1,4 +1,4 @@
-"""Event of one runnable or core alone."""
+"""Event restricted to a runnable or core."""
 
 from __future__ import annotations
 
@@ -12,19 +12,20 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: LabelEvent | ProcessEvent | RunnableEvent, context: Context) -> Iterator[str]:
     if isinstance(element, LabelEvent) and element.runnable is not None:
-        yield f"the event {element.name!r} holds for all runnables, not for {element.runnable.name!r} alone"
+        yield f"the restriction of the event {element.name!r} to the runnable {element.runnable.name!r} is dropped by am2inc"
     if isinstance(element, ProcessEvent | RunnableEvent) and element.processing_unit is not None:
-        yield f"the event {element.name!r} holds on all cores, not on {element.processing_unit.name!r} alone"
+        yield f"the restriction of the event {element.name!r} to the core {element.processing_unit.name!r} is dropped by am2inc"
 
 
 RULE = ModelRule(
     id="INC-EV-LABEL-RUN",
-    title="event of one runnable or core alone",
+    title="event restricted to a runnable or core",
     severity=Severity.WARNING,
     target=(LabelEvent, ProcessEvent, RunnableEvent),
     check=_check,
-    rationale="am2inc drops this restriction without a word; that of an event to a process it keeps.",
-    remedy="Let the event hold for all, or restrict it to a process.",
+    rationale="am2inc silently drops the restriction, so the event applies to all runnables and all cores. It keeps only a "
+    "restriction to a process.",
+    remedy="Remove the restriction, or restrict the event to a process instead.",
     fails="""
 <swModel>
   <runnables name="R"/>

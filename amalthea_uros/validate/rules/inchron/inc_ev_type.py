@@ -1,4 +1,4 @@
-"""Event that is no moment, or chain with one."""
+"""Unsupported event type."""
 
 from __future__ import annotations
 
@@ -15,22 +15,23 @@ from amalthea_uros.validate.rules.inchron._events import CONVERTED, is_converted
 def _check(element: Event | AbstractEventChain, context: Context) -> Iterator[str]:
     if isinstance(element, CONVERTED):
         if element.entity is None:
-            yield f"the event {element.name!r} names no object"
+            yield f"the event {element.name!r} has no entity"
         elif element.event_type not in moments(element):
-            yield f"the event {element.name!r} is none of {', '.join(sorted(moments(element)))}"
+            yield f"the type of the event {element.name!r} is not one of {', '.join(sorted(moments(element)))}"
     for event in events_read(element) if isinstance(element, AbstractEventChain) else ():
         if isinstance(event, CONVERTED) and not is_converted(event):
-            yield f"the chain {element.name or ''!r} is dropped because of the event {event.name!r}"
+            yield f"the event chain {element.name or ''!r} is dropped by am2inc because of the event {event.name!r}"
 
 
 RULE = ModelRule(
     id="INC-EV-TYPE",
-    title="event that is no moment, or chain with one",
+    title="unsupported event type",
     severity=Severity.WARNING,
     target=(*CONVERTED, AbstractEventChain),
     check=_check,
-    rationale="A chain with it is dropped, with a warning.",
-    remedy="Name the object, and one of activate, start, terminate; start, terminate of runnables; read, write of labels.",
+    rationale="am2inc does not convert the event. It drops every event chain that uses it and prints a warning.",
+    remedy="Set the entity and a supported type: activate, start or terminate for processes (for tasks also resume, wait or "
+    "release), start or terminate for runnables, read or write for labels.",
     fails="""
 <eventModel>
   <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="preempt"/>

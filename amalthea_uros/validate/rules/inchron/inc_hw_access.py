@@ -1,4 +1,4 @@
-"""Access that carries timing."""
+"""Memory access timing."""
 
 from __future__ import annotations
 
@@ -9,25 +9,26 @@ from amalthea_uros.metamodel.classes import HwAccessElement, HwConnection, HwDef
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
-#: The features by which connections, and the types of modules, say what an access costs.
+#: The features of connections and module definitions that specify the cost of an access.
 _COSTS = frozenset({"access_latency", "read_latency", "write_latency", "data_rate"})
 
 
 def _check(element: HwAccessElement | HwConnection | HwDefinition, context: Context) -> Iterator[str]:
     if isinstance(element, HwAccessElement):
-        yield f"what accesses to {element.destination.name if element.destination else 'a memory'!r} cost is ignored"
+        yield f"the cost of accesses to {element.destination.name if element.destination else ''!r} is ignored by am2inc"
     elif any(element.__dict__.get(name) is not None for name in _COSTS & element.__dict__.keys()):
-        yield f"what accesses by way of {element.name!r} cost is ignored"
+        yield f"the access cost of {element.name!r} is ignored by am2inc"
 
 
 RULE = ModelRule(
     id="INC-HW-ACCESS",
-    title="access that carries timing",
+    title="memory access timing",
     severity=Severity.WARNING,
     target=(HwAccessElement, HwConnection, HwDefinition),
     check=_check,
-    rationale="am2inc ignores access elements, paths, latencies and data rates without a word.",
-    remedy="Do not rely on the timing of memory accesses after the import.",
+    rationale="am2inc silently ignores access elements, access paths, latencies and data rates, so the time of memory "
+    "accesses is lost.",
+    remedy="Include the access times in the Ticks of the runnables, or do not rely on them after the import.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock">

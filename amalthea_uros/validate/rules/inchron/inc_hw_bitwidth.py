@@ -1,4 +1,4 @@
-"""Port without a width."""
+"""Port without a bit width."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: HwPort, context: Context) -> Iterator[str]:
     if isinstance(element.container, HwModule) and not (element.bit_width or 0) > 0:
-        yield f"the port {element.name!r} of {element.container.name!r} has no bit width above zero"
+        yield f"the port {element.name!r} of {element.container.name!r} has no positive bit width"
 
 
 RULE = ModelRule(
     id="INC-HW-BITWIDTH",
-    title="port without a width",
+    title="port without a bit width",
     severity=Severity.WARNING,
     target=HwPort,
     check=_check,
-    rationale="It becomes the width of the core, the memory or the interconnect.",
-    remedy="State a bit width above zero.",
+    rationale="am2inc takes the width of the core, memory or interconnect from its ports.",
+    remedy="Set a bit width greater than 0.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock">

@@ -1,4 +1,4 @@
-"""Cache away from any processing unit."""
+"""Cache without a processing unit."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ def _check(element: Cache, context: Context) -> Iterator[str]:
     holder = element.container
     modules = holder.modules if isinstance(holder, HwStructure) else []
     if not isinstance(holder, ProcessingUnit) and not any(isinstance(module, ProcessingUnit) for module in modules):
-        yield f"the cache {element.name!r} is neither in a processing unit nor in a structure that has one"
+        yield f"the cache {element.name!r} is neither inside a processing unit nor in the same structure as one"
 
 
 RULE = ModelRule(
     id="INC-HW-CACHE-PLACE",
-    title="cache away from any processing unit",
+    title="cache without a processing unit",
     severity=Severity.ERROR,
     target=Cache,
     check=_check,
-    rationale="am2inc ends with a segmentation fault.",
-    remedy="Put the cache into a processing unit, or into a structure that has one.",
+    rationale="am2inc crashes with a segmentation fault.",
+    remedy="Move the cache into a processing unit or into the structure of one.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock">

@@ -1,4 +1,4 @@
-"""Interconnect without a known interface."""
+"""Interconnect without a supported interface."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: ConnectionHandler, context: Context) -> Iterator[str]:
     if not element.ports or element.ports[0].port_interface not in ("AXI", "AHB", "APB", "custom"):
-        yield f"the first port of {element.name!r} has no interface among AXI, AHB, APB and custom"
+        yield f"the connection handler {element.name!r} has no first port with the interface AXI, AHB, APB or custom"
 
 
 RULE = ModelRule(
     id="INC-HW-CONN-IFACE",
-    title="interconnect without a known interface",
+    title="interconnect without a supported interface",
     severity=Severity.WARNING,
     target=ConnectionHandler,
     check=_check,
-    rationale="am2inc drops it without a word.",
-    remedy="Give its first port the interface AXI, AHB, APB or custom.",
+    rationale="am2inc silently drops the connection handler.",
+    remedy="Give the connection handler a port, and set the interface of its first port to AXI, AHB, APB or custom.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock">

@@ -1,4 +1,4 @@
-"""Connection or port that is dropped."""
+"""Incomplete port or connection."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ def _check(element: HwConnection | HwPort, context: Context) -> Iterator[str]:
     if isinstance(element, HwConnection):
         types = {port.port_type for port in (element.port1, element.port2) if port is not None}
         if types != {"initiator", "responder"}:
-            yield f"the connection {element.name!r} does not join an initiator and a responder"
+            yield f"the connection {element.name!r} does not join an initiator and a responder port"
     if isinstance(element, HwPort) and isinstance(element.container, HwModule) and element.port_type in (None, "_undefined_"):
-        yield f"the port {element.name!r} of {element.container.name!r} is neither an initiator nor a responder"
+        yield f"the port {element.name!r} of {element.container.name!r} has no port type"
 
 
 RULE = ModelRule(
     id="INC-HW-CONN-PORTS",
-    title="connection or port that is dropped",
+    title="incomplete port or connection",
     severity=Severity.WARNING,
     target=(HwConnection, HwPort),
     check=_check,
-    rationale="am2inc drops ports without a type, and connections that join no initiator and responder, without a word.",
-    remedy="State the types of ports, and join one initiator and one responder.",
+    rationale="am2inc silently drops ports without a type, and connections that do not join one initiator and one responder.",
+    remedy="Set the type of every port, and connect one initiator to one responder.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock">

@@ -1,4 +1,4 @@
-"""Hardware feature on which execution times depend."""
+"""Hardware feature used by execution needs."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: HwFeature, context: Context) -> Iterator[str]:
     category = element.container
     if isinstance(category, HwFeatureCategory) and category.name in context.once(_needed):
-        yield f"the feature {element.name!r}, on which execution needs of {category.name!r} depend, is ignored"
+        yield f"the feature {element.name!r} is ignored by am2inc, although execution needs for {category.name!r} depend on it"
 
 
 def _needed(context: Context) -> set[str | None]:
-    """The categories of features that execution needs name."""
+    """The names of the feature categories that execution needs use."""
     return {entry.key for entry in context.all(NeedEntry)}
 
 
 RULE = ModelRule(
     id="INC-HW-FEATURE",
-    title="hardware feature on which execution times depend",
+    title="hardware feature used by execution needs",
     severity=Severity.WARNING,
     target=HwFeature,
     check=_check,
-    rationale="am2inc ignores features, also those from which execution times follow, without a word.",
-    remedy="State execution times as Ticks.",
+    rationale="am2inc silently ignores hardware features, so execution times that depend on them are lost.",
+    remedy="Specify execution times as Ticks.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -15,7 +15,7 @@ def _check(element: FrequencyDomain, context: Context) -> Iterator[str | Milder]
     cores = context.once(_cores).get(element, [])
     if not cores or amount(element.default_value) > 0:
         return
-    message = f"the frequency domain {element.name!r} of a processing unit has no frequency above zero with a unit"
+    message = f"the frequency domain {element.name!r} has no positive frequency with a unit"
     is_compared = any(_has_others(core) for core in cores)
     yield message if element.default_value is None and is_compared else Milder(message)
 
@@ -29,7 +29,7 @@ def _cores(context: Context) -> dict[FrequencyDomain, list[ProcessingUnit]]:
 
 
 def _has_others(core: ProcessingUnit) -> bool:
-    """Whether there are other processing units in the same structure, with the clocks of which its own is compared."""
+    """Whether the same structure has other processing units, whose clocks am2inc compares with this one."""
     holder = core.container
     modules = holder.modules if isinstance(holder, HwStructure) else []
     return sum(isinstance(module, ProcessingUnit) for module in modules) > 1
@@ -41,9 +41,9 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=FrequencyDomain,
     check=_check,
-    rationale="With several processing units in a structure am2inc ends with a segmentation fault; "
-    "else it takes 1000 MHz or 0 MHz without a word.",
-    remedy="State a default value above zero, with its unit.",
+    rationale="If the default value is missing and a structure has several processing units, am2inc crashes with a "
+    "segmentation fault. Otherwise it silently uses 1000 MHz, or 0 MHz if the value is 0.",
+    remedy="Set a default value greater than 0 with a unit, e.g. 300 MHz.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock"/>

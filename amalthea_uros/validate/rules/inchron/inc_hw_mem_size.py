@@ -14,7 +14,7 @@ from amalthea_uros.validate.rules.inchron._importer import has_unit
 def _check(element: Memory | Cache, context: Context) -> Iterator[str]:
     size = element.definition.size if element.definition is not None else None
     if size is None or not has_unit(size):
-        yield f"the memory {element.name!r} has no definition with a size"
+        yield f"the memory {element.name!r} has no definition with a size and a unit"
 
 
 RULE = ModelRule(
@@ -23,8 +23,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=(Memory, Cache),
     check=_check,
-    rationale="am2inc takes 1 KiB without a word.",
-    remedy="Give the memory a definition with a size and its unit.",
+    rationale="am2inc silently uses 1 KiB.",
+    remedy="Assign a definition with a size and a unit, e.g. 512 KiB.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock">

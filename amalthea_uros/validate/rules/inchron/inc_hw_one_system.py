@@ -1,4 +1,4 @@
-"""Several systems."""
+"""Several structures of type System."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: HwStructure, context: Context) -> Iterator[str]:
     last = context.once(_systems)[-1:]
     if element.structure_type == "System" and element not in last:
-        yield f"the last system, {last[0].name!r}, names the project, not {element.name!r}"
+        yield f"the imported project is named after {last[0].name!r}, not after {element.name!r}"
 
 
 def _systems(context: Context) -> list[HwStructure]:
@@ -22,12 +22,12 @@ def _systems(context: Context) -> list[HwStructure]:
 
 RULE = ModelRule(
     id="INC-HW-ONE-SYSTEM",
-    title="system that does not name the project",
+    title="several structures of type System",
     severity=Severity.INFO,
     target=HwStructure,
     check=_check,
-    rationale="Of several structures of the type System the last one names the project.",
-    remedy="Give only one structure the type System.",
+    rationale="am2inc names the project after the last structure of type System.",
+    remedy="Set the type System for one structure only.",
     fails="""
 <hwModel>
   <structures name="A" structureType="System"/>

@@ -21,7 +21,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=ProcessingUnit,
     check=_check,
-    rationale="am2inc ends with a segmentation fault.",
+    rationale="am2inc crashes with a segmentation fault.",
     remedy="Give the processing unit a frequency domain.",
     fails="""
 <hwModel>

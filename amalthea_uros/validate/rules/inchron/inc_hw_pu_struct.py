@@ -1,4 +1,4 @@
-"""Nesting of CPUs that is lost."""
+"""Nested CPUs."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: HwStructure, context: Context) -> Iterator[str]:
     cpus = context.once(_cpus)
     inner = context.once(_cpus_within)[element]
-    # Around all CPUs there is always something: it says nothing.
+    # A structure around all CPUs groups nothing.
     if inner > 1 and (element in cpus or inner < len(cpus)):
-        yield f"that the {inner} CPUs in {element.name!r} belong together is lost"
+        yield f"the grouping of {inner} CPUs in the structure {element.name!r} is dropped by am2inc"
 
 
 def _cpus(context: Context) -> set[Element]:
-    """The structures that become CPUs: those that hold processing units themselves."""
+    """The structures that become CPUs: those that directly contain processing units."""
     return {core.container for core in context.all(ProcessingUnit) if core.container is not None}
 
 
 def _cpus_within(context: Context) -> Counter[Element]:
-    """How many CPUs there are in each structure, itself included."""
+    """The number of CPUs in each structure, including itself."""
     found: Counter[Element] = Counter()
     for cpu in context.once(_cpus):
         holder: Element | None = cpu
@@ -38,12 +38,13 @@ def _cpus_within(context: Context) -> Counter[Element]:
 
 RULE = ModelRule(
     id="INC-HW-PU-STRUCT",
-    title="nesting of CPUs that is lost",
+    title="nested CPUs",
     severity=Severity.WARNING,
     target=HwStructure,
     check=_check,
-    rationale="Each structure that holds processing units becomes a CPU of one flat list, without a word about those around it.",
-    remedy="Do not rely on the structures above the CPUs after the import.",
+    rationale="am2inc turns every structure that directly contains processing units into a CPU, and lists all CPUs on one "
+    "level. It silently drops the structures around them.",
+    remedy="Move all CPUs to one level, or do not rely on the grouping after the import.",
     fails="""
 <hwModel>
   <structures name="ECU">

@@ -1,4 +1,4 @@
-"""What the metamodel does not know."""
+"""Unknown element, attribute or value."""
 
 from __future__ import annotations
 
@@ -32,22 +32,22 @@ def _check(element: Element, context: Context) -> Iterator[str]:
         if declared is None:
             return
         if _xsi_type(element) is not None:
-            yield f"AMALTHEA {known.version} has no {class_name}"
+            yield f"the class {class_name} does not exist in AMALTHEA {known.version}"
             return
         class_name = declared
     yield from _not_read(element, class_name, known)
     held = _features(class_name, known.version)
     for name in [name for name, value in element.__dict__.items() if name not in held and value not in (None, [])]:
-        yield f"{class_name} has no {features_of(type(element))[name].xml_name!r} in AMALTHEA {known.version}"
+        yield f"{class_name} has no feature {features_of(type(element))[name].xml_name!r} in AMALTHEA {known.version}"
     for name, literals in _literals(class_name, known.version):
         value = element.__dict__.get(name)
         if value is not None and value not in literals:
-            yield f"{str(value)!r} is no {name.replace('_', ' ')} of {class_name} in AMALTHEA {known.version}"
+            yield f"{str(value)!r} is not a valid {name.replace('_', ' ')} of {class_name} in AMALTHEA {known.version}"
 
 
 @cache
 def _is_same(class_name: str, version: str, other: str) -> bool:
-    """Whether a class is the same in two versions, for all that is asked here."""
+    """Whether another version has the class with at least the same features and literals."""
     if class_name not in facts(other).classes:
         return False
     return _features(class_name, version) <= _features(class_name, other) and all(
@@ -56,7 +56,7 @@ def _is_same(class_name: str, version: str, other: str) -> bool:
 
 
 def _declared(element: Element, known: Facts) -> str | None:
-    """The class of which an object should be where it stands, None if nothing may stand there, which its holder is told for."""
+    """The declared class of the feature that holds an object; None if there is no such feature, which is reported for its holder."""
     holder = element.container
     if holder is None or type(holder).__name__ not in known.classes:
         return None
@@ -70,7 +70,7 @@ def _holds(value: object, element: Element) -> bool:
 
 
 def _xsi_type(element: Element) -> str | None:
-    """The class that an object has in its file, with its prefix; None if it is the declared one."""
+    """The `xsi:type` of an object in its file, with its prefix; None if it has none."""
     document = element.document
     source = document.source if document is not None else None
     place = source.index.get(element) if source is not None else None
@@ -85,7 +85,7 @@ def _attributes(text: str, start: int = 0) -> dict[str, str]:
 
 
 def _not_read(element: Element, class_name: str, known: Facts) -> Iterator[str]:
-    """What was kept as it stands in the file, because it has no place in the metamodel."""
+    """Messages about attributes and elements that were preserved although the metamodel has no place for them."""
     extras, document = extras_if_any(element), element.document
     if extras is None or document is None:
         return
@@ -95,7 +95,7 @@ def _not_read(element: Element, class_name: str, known: Facts) -> Iterator[str]:
         if feature is None and not name.startswith("xmlns"):
             yield f"{class_name} has no attribute {name!r} in AMALTHEA {known.version}"
         elif feature is not None and own.feature(class_name, name) and not _is_literal(text, feature.type, known):
-            yield f"{text!r} is no value of {name!r} of {class_name}"
+            yield f"{text!r} is not a valid value of the attribute {name!r} of {class_name}"
     prefixes = document.source.prefixes if document.source is not None else Prefixes()
     for _, raw in extras.content:
         tag = _TAG(raw)
@@ -110,23 +110,23 @@ def _is_literal(text: str, type_name: str, known: Facts) -> bool:
 
 
 def _misplaced(class_name: str, name: str, given: str, known: Facts) -> Iterator[str]:
-    """Why an element may not stand where it does. A second one where only one is allowed is another matter."""
+    """Why an element is not allowed in its place. A second element where only one is allowed is not reported here."""
     feature = known.feature(class_name, name)
     if feature is None:
-        yield f"{class_name} has no <{name}> in AMALTHEA {known.version}"
+        yield f"{class_name} has no element <{name}> in AMALTHEA {known.version}"
     elif feature.kind is Kind.CONTAINMENT and (given or feature.type) not in _parts(feature.type, known.version):
-        yield f"<{name}> of {class_name} cannot be a {given or feature.type} in AMALTHEA {known.version}"
+        yield f"the element <{name}> of {class_name} cannot be of the class {given or feature.type} in AMALTHEA {known.version}"
 
 
 @cache
 def _parts(class_name: str, version: str) -> frozenset[str]:
-    """The classes of the objects that may stand where a class is declared."""
+    """The classes of the objects that are allowed where a class is declared."""
     return frozenset(facts(version).concrete_subtypes(class_name))
 
 
 @cache
 def _features(class_name: str, version: str) -> frozenset[str]:
-    """The features of a class in a version, by their Python names, and what else an object holds."""
+    """The Python names of the features of a class in a version, and the attribute for preserved content."""
     known = {feature.name for feature in facts(version).features(class_name)}
     held = features_of(getattr(classes, class_name)).items()
     return frozenset({"_extras", *(name for name, feature in held if feature.xml_name in known)})
@@ -134,7 +134,7 @@ def _features(class_name: str, version: str) -> frozenset[str]:
 
 @cache
 def _literals(class_name: str, version: str) -> tuple[tuple[str, frozenset[str]], ...]:
-    """The attributes of a class that take literals, with those of a version."""
+    """The attributes of a class that take literals, with the literals of a version."""
     known = facts(version)
     types = {feature.name: feature.type for feature in known.features(class_name)}
     held = features_of(getattr(classes, class_name)).items()
@@ -144,12 +144,13 @@ def _literals(class_name: str, version: str) -> tuple[tuple[str, frozenset[str]]
 
 RULE = ModelRule(
     id="INC-IO-FEATURE",
-    title="element, attribute or value that the metamodel does not know",
+    title="unknown element, attribute or value",
     severity=Severity.ERROR,
     target=Element,
     check=_check,
-    rationale="am2inc refuses files with unknown elements, classes or literals; unknown attributes it skips, with a message.",
-    remedy="Remove or correct it; what is meant for other tools belongs into custom properties.",
+    rationale="am2inc refuses files with unknown elements, classes or literals. It skips unknown attributes and prints a "
+    "message.",
+    remedy="Remove or correct the element, attribute or value; store data of other tools in custom properties.",
     fails="""
 <swModel>
   <threads name="T"/>

@@ -1,4 +1,4 @@
-"""Local labels."""
+"""Local mode label."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: IExecutable, context: Context) -> Iterator[str]:
     if element.local_labels:
-        yield f"the local labels of {name_of(element)!r} are dropped"
+        yield f"the local mode labels of {name_of(element)!r} are dropped by am2inc"
 
 
 RULE = ModelRule(
     id="INC-IO-LOCALLABEL",
-    title="local labels",
+    title="local mode label",
     severity=Severity.WARNING,
     target=IExecutable,
     check=_check,
-    rationale="am2inc drops them, with a warning.",
-    remedy="Use mode labels of the model.",
+    rationale="am2inc drops local mode labels and prints a warning.",
+    remedy="Replace them with mode labels of the software model.",
     fails="""
 <swModel>
   <tasks name="T">

@@ -1,4 +1,4 @@
-"""Name that is not unique."""
+"""Duplicate name."""
 
 from __future__ import annotations
 
@@ -16,26 +16,27 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: IReferable, context: Context) -> Iterator[str]:
     same = context.namesakes.get(element)
     if same is not None:
-        yield f"there are {len(same)} objects {unique_name(element)!r}"
+        yield f"the name {unique_name(element)!r} is used by {len(same)} objects"
     elif isinstance(element, INamespaceMember) and element.namespace is not None:
         count = context.once(_plain_names)[type(element), element.name]
         if count > 1:
-            yield f"there are {count} objects {element.name!r} of the class {type(element).__name__} in different namespaces"
+            yield f"the name {element.name!r} is used by {count} objects of the class {type(element).__name__} in different namespaces"
 
 
 def _plain_names(context: Context) -> Counter[tuple[type[Element], str | None]]:
-    """How often a name occurs in a class, whatever the namespace."""
+    """How often a class uses a name, regardless of the namespace."""
     return Counter((type(member), member.name) for member in context.all(INamespaceMember) if isinstance(member, IReferable))
 
 
 RULE = ModelRule(
     id="INC-IO-NAME",
-    title="name that is not unique",
+    title="duplicate name",
     severity=Severity.WARNING,
     target=IReferable,
     check=_check,
-    rationale="A reference picks one of the objects; am2inc keeps all of them under the same name.",
-    remedy="Give each object of a class a name of its own.",
+    rationale="A reference with this name resolves to only one of the objects, and am2inc writes all of them with the same "
+    "name.",
+    remedy="Give every object of a class a unique name.",
     fails="""
 <swModel>
   <tasks name="T"/>

@@ -1,4 +1,4 @@
-"""Reference to what is not there."""
+"""Unresolved reference."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from amalthea_uros.validate.rules.inchron._ids import without_namespace
 def _check(element: Element, context: Context) -> Iterator[str]:
     for name, text in context.dangling.get(element, ()):
         if text not in context.once(_plain_names):
-            yield f"{name!r} refers to {text!r}, which is not there"
+            yield f"the reference {name!r} to {text!r} cannot be resolved"
 
 
 def _plain_names(context: Context) -> frozenset[str]:
@@ -23,13 +23,13 @@ def _plain_names(context: Context) -> frozenset[str]:
 
 RULE = ModelRule(
     id="INC-IO-REF",
-    title="reference to what is not there",
+    title="unresolved reference",
     severity=Severity.ERROR,
     target=Element,
     check=_check,
     among=lambda context: context.dangling,
-    rationale="am2inc writes a line to stderr and goes on without the object, mostly into a segmentation fault.",
-    remedy="Correct the reference, or give am2inc all files of the model.",
+    rationale="am2inc prints a message and continues without the object, which usually ends in a segmentation fault.",
+    remedy="Correct the reference, or pass all files of the model to am2inc.",
     fails="""
 <swModel>
   <tasks name="T">

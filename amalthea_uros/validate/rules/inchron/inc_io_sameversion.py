@@ -1,4 +1,4 @@
-"""Files of different versions."""
+"""Files of different AMALTHEA versions."""
 
 from __future__ import annotations
 
@@ -15,17 +15,18 @@ def _check(element: Amalthea, context: Context) -> Iterator[str]:
     first, *others = context.model.documents
     document = element.document
     if document in others and metamodel_of(document) != metamodel_of(first):
-        other = first.path.name if first.path else "the first file"
-        yield f"the file is one of AMALTHEA {document.version}, but {other} is one of {first.version}"
+        other = repr(first.path.name) if first.path else "the first file"
+        yield f"the file uses AMALTHEA {document.version}, but {other} uses {first.version}"
 
 
 RULE = ModelRule(
     id="INC-IO-SAMEVERSION",
-    title="files of different versions",
+    title="files of different AMALTHEA versions",
     severity=Severity.ERROR,
     target=Amalthea,
     check=_check,
-    rationale="am2inc aborts the conversion of files of which each needs another metamodel; that of 3.2.0 serves for all of 3.x.",
+    rationale="am2inc aborts the conversion if the files need different metamodels. It reads all 3.x versions with the "
+    "metamodel of 3.2.0.",
     remedy="Migrate all files of the model to the same version.",
     fails="""
 <!-- a file of AMALTHEA 2.2.0 beside one of 3.3.0 -->

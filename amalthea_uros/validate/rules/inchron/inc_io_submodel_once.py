@@ -17,12 +17,12 @@ def _check(element: Amalthea, context: Context) -> Iterator[str]:
         first = holders.get(type(part), element)
         if first is not element:
             document = first.document
-            other = document.path.name if document is not None and document.path else "another file"
-            yield f"the {type(part).__name__} replaces that of {other}"
+            other = repr(document.path.name) if document is not None and document.path else "another file"
+            yield f"the {type(part).__name__} replaces the one in {other}"
 
 
 def _holders(context: Context) -> dict[type[Element], Element]:
-    """By class of sub-model, the root of the first file that has one."""
+    """The root of the first file that has a sub-model, by class of sub-model."""
     found: dict[type[Element], Element] = {}
     for document in context.model.documents:
         for part in document.root.contents():
@@ -37,8 +37,9 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Amalthea,
     check=_check,
-    rationale="am2inc does not merge them: that of the later file replaces the other one without a word.",
-    remedy="Keep each sub-model in one file.",
+    rationale="am2inc does not merge sub-models: the one in a later file silently replaces the one in an earlier file. "
+    "It then crashes with a segmentation fault or writes an incomplete model.",
+    remedy="Move the content of each sub-model into one file.",
     fails="""
 <!-- beside a file that has an swModel, too -->
 <swModel>

@@ -1,4 +1,4 @@
-"""Version that the importer does not know."""
+"""Unsupported AMALTHEA version."""
 
 from __future__ import annotations
 
@@ -9,24 +9,25 @@ from amalthea_uros.metamodel.classes import Amalthea
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
-#: Those for which am2inc has a metamodel.
+#: The versions that am2inc supports.
 VERSIONS = ("1.2.0", "2.0.0", "2.1.0", "2.2.0", "3.0.0", "3.1.0", "3.2.0", "3.3.0")
 
 
 def _check(element: Amalthea, context: Context) -> Iterator[str]:
     document = element.document
     if document is not None and document.version not in VERSIONS:
-        yield f"am2inc does not know AMALTHEA {document.version}"
+        yield f"AMALTHEA {document.version} is not supported by am2inc"
 
 
 RULE = ModelRule(
     id="INC-IO-VERSION",
-    title="version that the importer does not know",
+    title="unsupported AMALTHEA version",
     severity=Severity.ERROR,
     target=Amalthea,
     check=_check,
-    rationale="Other versions are not refused, but read as if they were 3.2.0.",
-    remedy="Write the model in one of the versions 1.2.0, 2.0.0 to 2.2.0, 3.0.0 to 3.3.0.",
+    rationale="am2inc does not refuse other versions. It reads them with the metamodel of 3.2.0 and fails only at elements "
+    "that 3.2.0 does not have.",
+    remedy="Migrate the model to 1.2.0, 2.0.0, 2.1.0, 2.2.0, 3.0.0, 3.1.0, 3.2.0 or 3.3.0.",
     fails="",
     passes="<swModel/>",
     example_version="1.0.0",

@@ -18,14 +18,14 @@ def _check(element: Amalthea, context: Context) -> Iterator[str]:
     without = context.once(_without_id).get(element.document, [])
     label = next((label for label in context.all(LocalModeLabel) if label.document is element.document), None)
     if without and label is not None:
-        yield f"the file has local labels, such as {label.name or ''!r}, but objects without an xmi:id"
+        yield f"the file has local mode labels, e.g. {label.name or ''!r}, and objects without an xmi:id"
     member = next((found for found in without if isinstance(found, INamespaceMember) and found.namespace is not None), None)
     if member is not None:
-        yield f"{unique_name(member)!r} has no xmi:id, so that references with its namespace do not find it"
+        yield f"{unique_name(member)!r} has no xmi:id, so references with its namespace cannot be resolved"
 
 
 def _without_id(context: Context) -> dict[Document | None, list[Element]]:
-    """The objects without an `xmi:id` for which it is asked, by file: those that are referred to, and local labels."""
+    """The objects that need an `xmi:id` and have none, by file: targets of references, and local mode labels."""
     found: dict[Document | None, list[Element]] = {}
     labels, members = context.all(LocalModeLabel), context.once(without_namespace)
     if labels or members:
@@ -47,8 +47,9 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Amalthea,
     check=_check,
-    rationale="Without it am2inc computes names, refuses files with local labels, and finds nothing that is in a namespace.",
-    remedy="Let APP4MC or amuros fmt write the file, which give every object an xmi:id.",
+    rationale="Without an xmi:id am2inc resolves references by name. It then refuses files with local mode labels and does "
+    "not find objects in a namespace.",
+    remedy="Save the file with APP4MC or amuros fmt, which write an xmi:id for every object.",
     fails="""
 <swModel>
   <tasks name="T">

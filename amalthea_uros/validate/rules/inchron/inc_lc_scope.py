@@ -1,4 +1,4 @@
-"""Latency constraint without a chain that is converted."""
+"""Latency constraint without a converted event chain."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from amalthea_uros.validate.rules.inchron._chains import dropped
 
 def _check(element: EventChainLatencyConstraint, context: Context) -> Iterator[str]:
     if element.scope is None:
-        yield f"the constraint {element.name!r} names no chain"
+        yield f"the latency constraint {element.name!r} has no scope"
     elif element.scope in context.once(dropped):
-        yield f"the constraint {element.name!r} is dropped together with its chain {element.scope.name!r}"
+        yield f"the latency constraint {element.name!r} is dropped by am2inc together with its event chain {element.scope.name!r}"
 
 
 RULE = ModelRule(
     id="INC-LC-SCOPE",
-    title="latency constraint without a chain that is converted",
+    title="latency constraint without a converted event chain",
     severity=Severity.WARNING,
     target=EventChainLatencyConstraint,
     check=_check,
-    rationale="am2inc drops it, with a warning.",
-    remedy="Name the chain, and mend it if it is dropped.",
+    rationale="am2inc drops the constraint if it has no scope or its event chain is dropped, and prints a warning.",
+    remedy="Set the scope of the constraint, and correct its event chain if am2inc drops it.",
     fails="""
 <constraintsModel>
   <timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L"/>

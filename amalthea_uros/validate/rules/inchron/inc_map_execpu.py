@@ -1,4 +1,4 @@
-"""Core that executes the scheduler of others."""
+"""Scheduler executed by another core."""
 
 from __future__ import annotations
 
@@ -14,17 +14,18 @@ def _check(element: SchedulerAllocation, context: Context) -> Iterator[str]:
     core = element.executing_pu
     if core is not None and core not in element.responsibility:
         name = element.scheduler.name if element.scheduler is not None else None
-        yield f"that {core.name!r} executes the scheduler {name or ''!r}, without belonging to it, is ignored"
+        yield f"the executing processing unit {core.name!r} of the scheduler {name or ''!r} is ignored by am2inc"
 
 
 RULE = ModelRule(
     id="INC-MAP-EXECPU",
-    title="core that executes the scheduler of others",
+    title="scheduler executed by another core",
     severity=Severity.INFO,
     target=SchedulerAllocation,
     check=_check,
-    rationale="am2inc ignores which core executes a scheduler; only its responsibility counts.",
-    remedy="Do not rely on it after the import.",
+    rationale="am2inc ignores the core that executes a scheduler. It reads only the cores for which the scheduler is "
+    "responsible.",
+    remedy="Remove the executing processing unit, or do not rely on it after the import.",
     fails="""
 <hwModel>
   <structures name="ECU">

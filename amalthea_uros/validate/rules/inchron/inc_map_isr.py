@@ -8,11 +8,13 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ISRAllocation
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._missing import missing
 
 
 def _check(element: ISRAllocation, context: Context) -> Iterator[str]:
-    if element.isr is None or element.controller is None:
-        yield "the ISR allocation lacks its ISR or its controller"
+    absent = missing({"ISR": element.isr, "interrupt controller": element.controller})
+    if absent:
+        yield f"the ISR allocation has no {absent}"
 
 
 RULE = ModelRule(
@@ -21,8 +23,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=ISRAllocation,
     check=_check,
-    rationale="am2inc skips it without a word.",
-    remedy="Name the ISR and its controller.",
+    rationale="am2inc silently skips the allocation.",
+    remedy="Set the ISR and the interrupt controller.",
     fails="""
 <swModel>
   <isrs name="I"/>

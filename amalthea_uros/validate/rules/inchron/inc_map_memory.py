@@ -1,4 +1,4 @@
-"""Memory mapping of something else than a label."""
+"""Unsupported memory mapping."""
 
 from __future__ import annotations
 
@@ -14,21 +14,22 @@ from amalthea_uros.validate.rule import Milder, ModelRule
 def _check(element: MemoryMapping, context: Context) -> Iterator[str | Milder]:
     mapped = element.abstract_element
     if mapped is None:
-        yield "the memory mapping lacks its label"
+        yield "the memory mapping has no element"
     elif element.memory is None:
-        yield Milder(f"the mapping of {name_of(mapped)!r} names no memory")
+        yield Milder(f"the memory mapping of {name_of(mapped)!r} has no memory")
     elif not isinstance(mapped, Label):
-        yield Milder(f"the mapping of the {type(mapped).__name__} {name_of(mapped)!r} is dropped")
+        yield Milder(f"the memory mapping of the {type(mapped).__name__} {name_of(mapped)!r} is dropped by am2inc")
 
 
 RULE = ModelRule(
     id="INC-MAP-MEMORY",
-    title="memory mapping of something else than a label",
+    title="unsupported memory mapping",
     severity=Severity.ERROR,
     target=MemoryMapping,
     check=_check,
-    rationale="Without an element am2inc ends with a segmentation fault; what is no label is dropped without a word.",
-    remedy="Map labels to memories only, and name both.",
+    rationale="am2inc crashes with a segmentation fault if the mapped element is missing. It silently drops mappings of "
+    "anything but labels.",
+    remedy="Map only labels, and set both the label and the memory.",
     fails="""
 <hwModel>
   <structures name="ECU">

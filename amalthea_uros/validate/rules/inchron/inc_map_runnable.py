@@ -11,7 +11,8 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: RunnableAllocation, context: Context) -> Iterator[str]:
-    yield "the allocation of a runnable is dropped"
+    name = element.entity.name if element.entity is not None else None
+    yield f"the allocation of the runnable {name or ''!r} is dropped by am2inc"
 
 
 RULE = ModelRule(
@@ -20,7 +21,7 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=RunnableAllocation,
     check=_check,
-    rationale="am2inc drops it, with a warning.",
+    rationale="am2inc drops runnable allocations and prints a warning.",
     remedy="Allocate the tasks that call the runnable.",
     fails="""
 <swModel>

@@ -12,9 +12,9 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Scheduler | SchedulerAllocation, context: Context) -> Iterator[str]:
     if isinstance(element, Scheduler) and element not in context.once(_responsible):
-        yield f"no scheduler allocation makes {element.name!r} responsible for a processing unit"
+        yield f"the scheduler {element.name!r} is not responsible for any processing unit"
     if isinstance(element, SchedulerAllocation) and element.scheduler is None:
-        yield "the scheduler allocation names no scheduler"
+        yield "the scheduler allocation has no scheduler"
 
 
 def _responsible(context: Context) -> set[Scheduler | None]:
@@ -27,8 +27,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=(Scheduler, SchedulerAllocation),
     check=_check,
-    rationale="am2inc makes a scheduler without a core, without a word.",
-    remedy="Give it a scheduler allocation with a responsibility.",
+    rationale="am2inc silently creates a scheduler without a core.",
+    remedy="Add a scheduler allocation with the scheduler and the processing units for which it is responsible.",
     fails="""
 <osModel>
   <operatingSystems name="OS">

@@ -1,4 +1,4 @@
-"""Section mapping."""
+"""Physical section mapping."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: PhysicalSectionMapping, context: Context) -> Iterator[str]:
-    yield f"the section mapping {element.name!r} is dropped"
+    yield f"the physical section mapping {element.name!r} is dropped by am2inc"
 
 
 RULE = ModelRule(
     id="INC-MAP-SECTION",
-    title="section mapping",
+    title="physical section mapping",
     severity=Severity.WARNING,
     target=PhysicalSectionMapping,
     check=_check,
-    rationale="am2inc drops it, with a warning.",
-    remedy="Map the labels themselves.",
+    rationale="am2inc drops physical section mappings and prints a warning.",
+    remedy="Map the labels to memories directly.",
     fails="""
 <mappingModel>
   <physicalSectionMapping name="M"/>

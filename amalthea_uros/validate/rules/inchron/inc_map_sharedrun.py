@@ -1,4 +1,4 @@
-"""Runnable of several operating systems."""
+"""Runnable shared by several operating systems."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: Runnable, context: Context) -> Iterator[str]:
     systems = context.once(_systems).get(element, [])
     if len(systems) > 1:
-        yield f"{element.name!r} is used by {systems[0].name!r} and by {systems[1].name!r}"
+        yield f"the runnable {element.name!r} is used by the operating systems {systems[0].name!r} and {systems[1].name!r}"
 
 
 def _systems(context: Context) -> dict[Runnable, list[OperatingSystem]]:
-    """The operating systems, two at most, whose processes call a runnable."""
+    """The operating systems whose processes call a runnable, at most two."""
     calls: dict[IExecutable, list[Runnable]] = {}
     for call in context.all(RunnableCall):
         caller = call.enclosing(IExecutable)
@@ -46,12 +46,12 @@ def _processes(context: Context) -> Iterator[tuple[OperatingSystem, IExecutable]
 
 RULE = ModelRule(
     id="INC-MAP-SHAREDRUN",
-    title="runnable of several operating systems",
+    title="runnable shared by several operating systems",
     severity=Severity.INFO,
     target=Runnable,
     check=_check,
-    rationale="It becomes part of the first operating system only.",
-    remedy="Give each operating system runnables of its own, or expect all of them in the first one.",
+    rationale="am2inc assigns the runnable to the first operating system only.",
+    remedy="Use a separate runnable for each operating system, or expect the shared one in the first operating system.",
     fails="""
 <swModel>
   <tasks name="T">

@@ -8,11 +8,13 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import TaskAllocation
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._missing import missing
 
 
 def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
-    if element.task is None or element.scheduler is None:
-        yield "the task allocation lacks its task or its scheduler"
+    absent = missing({"task": element.task, "scheduler": element.scheduler})
+    if absent:
+        yield f"the task allocation has no {absent}"
 
 
 RULE = ModelRule(
@@ -21,8 +23,9 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=TaskAllocation,
     check=_check,
-    rationale="am2inc ends with a segmentation fault, or the task vanishes.",
-    remedy="Name the task and its scheduler.",
+    rationale="am2inc crashes with a segmentation fault if the task is missing. The task disappears if the scheduler is "
+    "missing.",
+    remedy="Set the task and the scheduler.",
     fails="""
 <osModel>
   <operatingSystems name="OS">

@@ -1,4 +1,4 @@
-"""Process that is not allocated exactly once."""
+"""Process without exactly one allocation."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: Task | ISR, context: Context) -> Iterator[str]:
     times = context.uses(TaskAllocation, "task")[element] + context.uses(ISRAllocation, "isr")[element]
     if times != 1:
-        yield f"{element.name!r} is allocated {times} times"
+        yield f"{element.name!r} is allocated {times} times" if times else f"{element.name!r} is not allocated"
 
 
 RULE = ModelRule(
     id="INC-MAP-TASK-ONCE",
-    title="process that is not allocated exactly once",
+    title="process without exactly one allocation",
     severity=Severity.ERROR,
     target=(Task, ISR),
     check=_check,
-    rationale="Without an allocation it has no core or disappears, with several it is listed twice, both without a word.",
-    remedy="Allocate each task and each ISR once.",
+    rationale="A process without an allocation silently gets no core or disappears. A process with several allocations is "
+    "silently listed several times.",
+    remedy="Allocate every task and every ISR exactly once.",
     fails="""
 <osModel>
   <operatingSystems name="OS">

@@ -1,4 +1,4 @@
-"""Scheduling parameter that is ignored."""
+"""Ignored scheduling parameter."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from amalthea_uros.metamodel.classes import SchedulingParameter, TaskAllocation,
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
-#: The parameters that are read, by the class of what holds them.
+#: The parameters that am2inc reads, by the class of their holder.
 _READ = {TaskAllocation: ("priority", "deadline"), TaskScheduler: ("priority",)}
 
 
@@ -17,17 +17,18 @@ def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
     holder = type(element.container)
     name = element.key.name if element.key is not None else ""
     if name not in _READ.get(holder, ()) and (name or holder is not TaskScheduler):
-        yield f"the scheduling parameter {name!r} of a {holder.__name__} is ignored"
+        yield f"the scheduling parameter {name!r} of the {holder.__name__} is ignored by am2inc"
 
 
 RULE = ModelRule(
     id="INC-OS-ALGOPARAM",
-    title="scheduling parameter that is ignored",
+    title="ignored scheduling parameter",
     severity=Severity.WARNING,
     target=SchedulingParameter,
     check=_check,
-    rationale="am2inc reads only priority and deadline of task allocations, and priority of schedulers; names are compared exactly.",
-    remedy="Rely on these parameters only.",
+    rationale="am2inc reads priority and deadline of task allocations and priority of task schedulers. It silently ignores "
+    "all other parameters, also those with a different spelling.",
+    remedy="Use only priority, and deadline for task allocations, in lower case.",
     fails="""
 <osModel>
   <schedulingParameterDefinitions name="taskGroup"/>

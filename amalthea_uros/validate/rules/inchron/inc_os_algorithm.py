@@ -1,4 +1,4 @@
-"""Scheduler without fixed priorities."""
+"""Unsupported scheduling policy."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ def _check(element: TaskScheduler, context: Context) -> Iterator[str]:
         element.definition.name if element.definition is not None else type(before).__name__ if before is not None else None
     )
     if policy not in (None, "FixedPriorityPreemptive"):
-        yield f"the policy {policy} of {element.name!r} becomes fixed priorities with preemption"
+        yield f"the policy {policy} of the scheduler {element.name!r} is changed to FixedPriorityPreemptive by am2inc"
 
 
 RULE = ModelRule(
     id="INC-OS-ALGORITHM",
-    title="scheduler without fixed priorities",
+    title="unsupported scheduling policy",
     severity=Severity.WARNING,
     target=TaskScheduler,
     check=_check,
-    rationale="Every scheduler becomes one of fixed priorities with preemption, without a word.",
-    remedy="Use FixedPriorityPreemptive, or expect other results than the model says.",
+    rationale="am2inc silently turns every scheduler into a fixed-priority preemptive one.",
+    remedy="Use FixedPriorityPreemptive, or expect different results after the import.",
     fails="""
 <osModel>
   <schedulerDefinitions name="EarliestDeadlineFirst"/>

@@ -1,4 +1,4 @@
-"""Deadline that is no time."""
+"""Deadline with a value of the wrong type."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
     is_deadline = element.key is not None and element.key.name == "deadline"
     if is_deadline and isinstance(element.container, TaskAllocation) and not isinstance(element.value, Time):
-        yield "the value of the deadline is no Time"
+        yield "the value of the parameter 'deadline' is not a Time"
 
 
 RULE = ModelRule(
     id="INC-OS-DEADLINE-TYPE",
-    title="deadline that is no time",
+    title="deadline with a value of the wrong type",
     severity=Severity.WARNING,
     target=SchedulingParameter,
     check=_check,
-    rationale="am2inc takes 0 without a word.",
-    remedy="Make the value a Time.",
+    rationale="am2inc silently uses a deadline of 0.",
+    remedy="Change the value to a Time, e.g. 10 ms.",
     fails="""
 <osModel>
   <schedulingParameterDefinitions name="deadline"/>

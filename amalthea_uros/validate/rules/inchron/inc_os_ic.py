@@ -13,7 +13,7 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: OperatingSystem, context: Context) -> Iterator[str]:
     count = len(element.interrupt_controllers)
     if count > 1:
-        yield f"the {count} interrupt controllers of {element.name!r} become one"
+        yield f"the {count} interrupt controllers of {element.name!r} are merged by am2inc"
 
 
 RULE = ModelRule(
@@ -22,8 +22,9 @@ RULE = ModelRule(
     severity=Severity.INFO,
     target=OperatingSystem,
     check=_check,
-    rationale="am2inc merges the interrupt controllers of an operating system; its ISRs keep the cores of their own.",
-    remedy="Use one interrupt controller for each operating system, or expect that ISRs are scheduled together.",
+    rationale="am2inc merges all interrupt controllers of an operating system. The ISRs keep the cores of their own "
+    "controllers.",
+    remedy="Use one interrupt controller per operating system, or expect all its ISRs to be scheduled together.",
     fails="""
 <osModel>
   <operatingSystems name="OS">

@@ -1,4 +1,4 @@
-"""Overhead of the operating system."""
+"""Operating system overhead."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: OsOverhead | Scheduler, context: Context) -> Iterator[str]:
     if isinstance(element, OsOverhead) and any(isinstance(part, Ticks) for part in element.walk()):
-        yield f"the overhead {element.name!r} has Ticks"
+        yield f"the overhead {element.name!r} contains Ticks"
     if isinstance(element, Scheduler) and element.computation_items:
         yield f"the scheduler {element.name!r} has computation items"
 
 
 RULE = ModelRule(
     id="INC-OS-OVERHEAD",
-    title="overhead of the operating system",
+    title="operating system overhead",
     severity=Severity.ERROR,
     target=(OsOverhead, Scheduler),
     check=_check,
-    rationale="am2inc ends with a segmentation fault.",
-    remedy="Remove overheads with Ticks and the computation items of schedulers before the import.",
+    rationale="am2inc crashes with a segmentation fault.",
+    remedy="Remove Ticks from overheads and computation items from schedulers before the import.",
     fails="""
 <osModel>
   <operatingSystems name="OS">

@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
     if element.key is None and isinstance(element.container, TaskScheduler):
-        yield f"a scheduling parameter of {element.container.name!r} has no key"
+        yield f"a scheduling parameter of the scheduler {element.container.name!r} has no key"
 
 
 RULE = ModelRule(
@@ -21,8 +21,8 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=SchedulingParameter,
     check=_check,
-    rationale="am2inc ends with a segmentation fault.",
-    remedy="Let the parameter refer to its definition.",
+    rationale="am2inc crashes with a segmentation fault.",
+    remedy="Set the key to the definition of the parameter.",
     fails="""
 <osModel>
   <operatingSystems name="OS">

@@ -1,4 +1,4 @@
-"""Priority that is no integer."""
+"""Priority with a value of the wrong type."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
     is_priority = element.key is not None and element.key.name == "priority"
     is_read = isinstance(element.container, TaskAllocation | TaskScheduler)
     if is_priority and is_read and not isinstance(element.value, IntegerObject):
-        yield "the value of the priority is no IntegerObject"
+        yield "the value of the parameter 'priority' is not an IntegerObject"
 
 
 RULE = ModelRule(
     id="INC-OS-PRIO-TYPE",
-    title="priority that is no integer",
+    title="priority with a value of the wrong type",
     severity=Severity.ERROR,
     target=SchedulingParameter,
     check=_check,
-    rationale="am2inc ends with a segmentation fault.",
-    remedy="Make the value an IntegerObject.",
+    rationale="am2inc crashes with a segmentation fault.",
+    remedy="Change the value to an IntegerObject.",
     fails="""
 <osModel>
   <schedulingParameterDefinitions name="priority"/>

@@ -1,4 +1,4 @@
-"""Semaphore that is more than a counter."""
+"""Semaphore other than a counting semaphore."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: Semaphore, context: Context) -> Iterator[str]:
     is_plain = element.semaphore_type in (None, "_undefined_", "CountingSemaphore")
     if not is_plain or element.priority_ceiling_protocol or element.ownership:
-        yield f"the semaphore {element.name!r} loses its type, its priority ceiling, or its ownership"
+        yield f"the semaphore {element.name!r} is changed to a plain counting semaphore by am2inc"
 
 
 RULE = ModelRule(
     id="INC-OS-SEMA-TYPE",
-    title="semaphore that is more than a counter",
+    title="semaphore other than a counting semaphore",
     severity=Severity.WARNING,
     target=Semaphore,
     check=_check,
-    rationale="am2inc drops the type and the ceiling protocol without a word.",
-    remedy="Use plain counting semaphores, or expect other blocking.",
+    rationale="am2inc silently drops the type, the priority ceiling protocol and the ownership of semaphores.",
+    remedy="Use counting semaphores without ownership and priority ceiling, or expect different blocking times after the "
+    "import.",
     fails="""
 <osModel>
   <semaphores name="S" semaphoreType="Mutex"/>

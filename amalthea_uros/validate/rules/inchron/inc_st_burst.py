@@ -1,4 +1,4 @@
-"""Burst that cannot be counted."""
+"""Burst without a count or distance."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from amalthea_uros.validate.rules.inchron._importer import amount
 def _check(element: PeriodicBurstStimulus, context: Context) -> Iterator[str]:
     count = 1 if element.occurrence_count is None else element.occurrence_count
     if count < 1 and not amount(element.occurrence_min_distance) > 0:
-        yield f"the burst {element.name!r} has neither a count nor a distance above zero"
+        yield f"the burst stimulus {element.name!r} has neither a positive occurrence count nor a positive minimum distance"
 
 
 RULE = ModelRule(
     id="INC-ST-BURST",
-    title="burst that cannot be counted",
+    title="burst without a count or distance",
     severity=Severity.WARNING,
     target=PeriodicBurstStimulus,
     check=_check,
-    rationale="am2inc divides by zero.",
-    remedy="State how many occurrences a burst has, or their distance.",
+    rationale="am2inc divides by zero and writes a meaningless number of activations.",
+    remedy="Set the occurrence count or the minimum distance of occurrences to a value greater than 0.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicBurstStimulus" name="S" occurrenceCount="0"/>

@@ -1,4 +1,4 @@
-"""Jitter that is not converted."""
+"""Unsupported jitter."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ def _check(element: PeriodicStimulus, context: Context) -> Iterator[str]:
     jitter = element.jitter
     if isinstance(jitter, TimeGaussDistribution):
         if jitter.lower_bound is None or jitter.upper_bound is None or (jitter.mean is not None and jitter.mean.value):
-            yield f"the Gauss jitter of {element.name!r} lacks a bound, or has a mean other than 0"
+            yield f"the Gaussian jitter of the stimulus {element.name!r} has a missing bound or a mean other than 0"
     elif jitter is not None and not isinstance(jitter, TimeConstant | TimeUniformDistribution):
-        yield f"the jitter of {element.name!r} is dropped"
+        yield f"the jitter of the stimulus {element.name!r} is dropped by am2inc"
 
 
 RULE = ModelRule(
     id="INC-ST-JITTER",
-    title="jitter that is not converted",
+    title="unsupported jitter",
     severity=Severity.WARNING,
     target=PeriodicStimulus,
     check=_check,
-    rationale="Other distributions are dropped; the mean of Gauss is ignored, and its missing bounds become 0.",
-    remedy="Use a constant, a uniform distribution, or Gauss with bounds and the mean 0.",
+    rationale="am2inc drops jitter that is not constant, uniform or Gaussian, and prints a warning. For Gaussian jitter it "
+    "silently ignores the mean and uses 0 for missing bounds.",
+    remedy="Use a constant, a uniform distribution, or a Gaussian distribution with both bounds and a mean of 0.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicStimulus" name="S">

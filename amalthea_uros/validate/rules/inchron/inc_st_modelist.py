@@ -1,4 +1,4 @@
-"""Stimulus that sets modes."""
+"""Mode values set by a stimulus."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Stimulus, context: Context) -> Iterator[str]:
     if element.set_mode_value_list is not None:
-        yield f"the modes that {element.name!r} sets are ignored"
+        yield f"the mode values set by the stimulus {element.name!r} are ignored by am2inc"
 
 
 RULE = ModelRule(
     id="INC-ST-MODELIST",
-    title="stimulus that sets modes",
+    title="mode values set by a stimulus",
     severity=Severity.WARNING,
     target=Stimulus,
     check=_check,
-    rationale="am2inc ignores it without a word.",
-    remedy="Set the modes in the software.",
+    rationale="am2inc silently ignores mode values that are set by stimuli.",
+    remedy="Set the mode labels in a runnable instead.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicStimulus" name="S">

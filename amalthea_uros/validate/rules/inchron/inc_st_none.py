@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Task | ISR, context: Context) -> Iterator[str]:
     if not element.stimuli:
-        yield f"nothing activates {element.name!r}"
+        yield f"{element.name!r} has no stimulus"
 
 
 RULE = ModelRule(
@@ -21,8 +21,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=(Task, ISR),
     check=_check,
-    rationale="It is never activated, without a word.",
-    remedy="Give it a stimulus.",
+    rationale="am2inc converts the process without a warning, but it is never activated.",
+    remedy="Assign a stimulus to the process.",
     fails="""
 <swModel>
   <tasks name="T"/>

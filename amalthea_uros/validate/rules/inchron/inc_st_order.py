@@ -1,4 +1,4 @@
-"""Stimulus behind one that is not converted."""
+"""Stimulus listed after an unsupported one."""
 
 from __future__ import annotations
 
@@ -13,27 +13,28 @@ from amalthea_uros.validate.rules.inchron._stimuli import NOT_CONVERTED
 
 
 def _check(element: Process, context: Context) -> Iterator[str]:
-    behind = list(dropwhile(lambda stimulus: not isinstance(stimulus, NOT_CONVERTED), element.stimuli))
-    for stimulus in behind:
+    dropped = list(dropwhile(lambda stimulus: not isinstance(stimulus, NOT_CONVERTED), element.stimuli))
+    for stimulus in dropped:
         if not isinstance(stimulus, NOT_CONVERTED):
-            yield f"{stimulus.name!r} does not activate {element.name!r}, because it stands behind {behind[0].name!r}"
+            cause = f"it follows the unsupported {dropped[0].name!r}"
+            yield f"the stimulus {stimulus.name!r} of {element.name!r} is dropped by am2inc because {cause}"
 
 
 def _fix(element: Process, context: Context) -> bool:
-    # In which order the stimuli stand means nothing: each of them activates the process.
+    # The order of the stimuli has no meaning: each of them activates the process.
     element.stimuli = sorted(element.stimuli, key=lambda stimulus: isinstance(stimulus, NOT_CONVERTED))
     return True
 
 
 RULE = ModelRule(
     id="INC-ST-ORDER",
-    title="stimulus behind one that is not converted",
+    title="stimulus listed after an unsupported one",
     severity=Severity.WARNING,
     target=Process,
     check=_check,
     fix=_fix,
-    rationale="At the first stimulus of a process that is not converted, all further ones are dropped without a word.",
-    remedy="Remove the stimulus that is not converted, or list it last.",
+    rationale="am2inc stops at the first unsupported stimulus of a process and silently drops all stimuli after it.",
+    remedy="Remove the unsupported stimulus, or list it last.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:CustomStimulus" name="C"/>

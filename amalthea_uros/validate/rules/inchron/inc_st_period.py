@@ -13,7 +13,7 @@ from amalthea_uros.validate.rules.inchron._importer import amount
 
 def _check(element: Stimulus, context: Context) -> Iterator[str]:
     if isinstance(element, FixedPeriodic) and not amount(element.recurrence) > 0:
-        yield f"the stimulus {element.name!r} has no recurrence above zero with a unit"
+        yield f"the stimulus {element.name!r} has no positive recurrence with a unit"
 
 
 RULE = ModelRule(
@@ -22,8 +22,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=Stimulus,
     check=_check,
-    rationale="am2inc takes a period of 0 without a word.",
-    remedy="State a recurrence above zero, with its unit.",
+    rationale="am2inc silently uses a period of 0.",
+    remedy="Set a recurrence greater than 0 with a unit, e.g. 10 ms.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicStimulus" name="S"/>

@@ -1,4 +1,4 @@
-"""Relative periodic stimulus that is not converted."""
+"""Unsupported relative periodic stimulus."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: RelativePeriodicStimulus, context: Context) -> Iterator[str]:
     if not isinstance(element.next_occurrence, TimeGaussDistribution | TimeUniformDistribution):
-        yield f"the next occurrence of {element.name!r} is neither uniform nor Gauss"
+        yield f"the next occurrence of the stimulus {element.name!r} is not a uniform or Gaussian distribution"
 
 
 RULE = ModelRule(
     id="INC-ST-RELPER",
-    title="relative periodic stimulus that is not converted",
+    title="unsupported relative periodic stimulus",
     severity=Severity.ERROR,
     target=RelativePeriodicStimulus,
     check=_check,
-    rationale="The conversion is aborted; without any distance it takes a period of 0 without a word.",
-    remedy="State the next occurrence as a uniform or Gauss distribution.",
+    rationale="am2inc aborts the conversion. If the next occurrence is missing, it silently uses a period of 0.",
+    remedy="Specify the next occurrence as a uniform or Gaussian distribution.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:RelativePeriodicStimulus" name="S"/>

@@ -1,4 +1,4 @@
-"""Bounds in different units."""
+"""Bounds with different units."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: RelativePeriodicStimulus, context: Context) -> Iterator[str]:
     if len({bound.unit for bound in _bounds(element)}) > 1:
-        yield f"the bounds of the next occurrence of {element.name!r} have different units"
+        yield f"the bounds of the next occurrence of the stimulus {element.name!r} have different units"
 
 
 def _bounds(stimulus: RelativePeriodicStimulus) -> list[Time]:
@@ -35,13 +35,13 @@ def _fix(element: RelativePeriodicStimulus, context: Context) -> bool:
 
 RULE = ModelRule(
     id="INC-ST-RELPER-UNIT",
-    title="bounds in different units",
+    title="bounds with different units",
     severity=Severity.WARNING,
     target=RelativePeriodicStimulus,
     check=_check,
     fix=_fix,
-    rationale="The value is wrong by powers of 1000, without a word.",
-    remedy="State both bounds in the same unit.",
+    rationale="am2inc silently computes a distance that is wrong by a power of 1000.",
+    remedy="Use the same unit for both bounds.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:RelativePeriodicStimulus" name="S">

@@ -1,4 +1,4 @@
-"""Stimulus that is not converted, or process with one."""
+"""Unsupported stimulus."""
 
 from __future__ import annotations
 
@@ -14,21 +14,22 @@ from amalthea_uros.validate.rules.inchron._stimuli import NOT_CONVERTED
 
 def _check(element: Stimulus | Process, context: Context) -> Iterator[str]:
     if isinstance(element, NOT_CONVERTED):
-        yield f"the {type(element).__name__} {name_of(element)!r} is not converted"
+        yield f"the {type(element).__name__} {name_of(element)!r} is not converted by am2inc"
     if isinstance(element, Process):
         for stimulus in element.stimuli:
             if isinstance(stimulus, NOT_CONVERTED):
-                yield f"{element.name!r} is not activated by {stimulus.name!r}"
+                yield f"{element.name!r} is not activated by its stimulus {stimulus.name!r}, which am2inc does not convert"
 
 
 RULE = ModelRule(
     id="INC-ST-TYPE",
-    title="stimulus that is not converted, or process with one",
+    title="unsupported stimulus",
     severity=Severity.WARNING,
     target=(Process, *NOT_CONVERTED),
     check=_check,
-    rationale="Event, custom, arrival-curve and variable-rate stimuli are not converted, with a warning, and activate nothing.",
-    remedy="Use periodic, relative periodic, single or inter-process stimuli.",
+    rationale="am2inc does not convert event, custom, arrival curve or variable rate stimuli. It prints a warning, and the "
+    "stimuli activate nothing.",
+    remedy="Use a periodic (also synthetic or burst), relative periodic, single or inter-process stimulus.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:VariableRateStimulus" name="S"/>

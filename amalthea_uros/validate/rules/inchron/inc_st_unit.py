@@ -13,7 +13,7 @@ from amalthea_uros.validate.rules.inchron._importer import has_unit
 
 def _check(element: Time | Frequency | DataSize, context: Context) -> Iterator[str]:
     if not has_unit(element):
-        yield f"the value {element.value} has no unit"
+        yield f"the {type(element).__name__} value {element.value} has no unit"
 
 
 RULE = ModelRule(
@@ -22,8 +22,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=(Time, Frequency, DataSize),
     check=_check,
-    rationale="am2inc takes 0 ps, 1000 MHz or 1 KiB without a word.",
-    remedy="State the unit; a value without one means nothing.",
+    rationale="am2inc silently uses 0 ps for a time, 1000 MHz for a frequency and 1 KiB for a data size.",
+    remedy="Set the unit, e.g. ms, MHz or KiB.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicStimulus" name="S">

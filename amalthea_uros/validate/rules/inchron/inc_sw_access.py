@@ -1,4 +1,4 @@
-"""Access that is not taken over as it is."""
+"""Incomplete or unsupported access."""
 
 from __future__ import annotations
 
@@ -19,23 +19,24 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: LabelAccess | ModeLabelAccess | SemaphoreAccess, context: Context) -> Iterator[str]:
     match element:
         case LabelAccess() if element.access not in ("read", "write"):
-            yield "the label access neither reads nor writes"
+            yield "the label access is neither a read nor a write"
         case ModeLabelAccess(data=ModeLabel(mode=EnumMode()) as label) if element.access not in ("read", "set"):
-            yield f"the access to {label.name!r} neither reads nor sets a literal, and is dropped"
+            yield f"the access to the mode label {label.name!r} neither reads nor sets a literal and is dropped by am2inc"
         case ModeLabelAccess(data=ModeLabel() as label, access=None | "_undefined_"):
-            yield f"the access to {label.name!r} says not what it does, and is dropped"
+            yield f"the access to the mode label {label.name!r} has no access type and is dropped by am2inc"
         case SemaphoreAccess(semaphore=None):
-            yield "the semaphore access names no semaphore"
+            yield "the semaphore access has no semaphore"
 
 
 RULE = ModelRule(
     id="INC-SW-ACCESS",
-    title="access that is not taken over as it is",
+    title="incomplete or unsupported access",
     severity=Severity.WARNING,
     target=(LabelAccess, ModeLabelAccess, SemaphoreAccess),
     check=_check,
-    rationale="am2inc takes a label access for a read unless it writes, and drops such accesses to modes, without a word.",
-    remedy="State what is accessed and how; set modes instead of incrementing them.",
+    rationale="am2inc silently treats every label access other than a write as a read, drops mode label accesses of an "
+    "unsupported kind, and keeps semaphore accesses without a semaphore.",
+    remedy="Set the accessed object and the access type; set enum modes instead of incrementing or decrementing them.",
     fails="""
 <swModel>
   <runnables name="R">

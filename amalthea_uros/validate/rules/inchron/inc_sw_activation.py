@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Runnable, context: Context) -> Iterator[str]:
     if element.activations:
-        yield f"the activations of {element.name!r} are ignored"
+        yield f"the activations of the runnable {element.name!r} are ignored by am2inc"
 
 
 RULE = ModelRule(
@@ -21,8 +21,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=Runnable,
     check=_check,
-    rationale="am2inc ignores them without a word; they do not activate anything anyway.",
-    remedy="Let a task with a stimulus call the runnable.",
+    rationale="am2inc silently ignores activations of runnables, which do not activate anything in AMALTHEA either.",
+    remedy="Call the runnable from a task that has a stimulus.",
     fails="""
 <swModel>
   <activations xsi:type="am:PeriodicActivation" name="A"/>

@@ -1,4 +1,4 @@
-"""Item that is dropped."""
+"""Unsupported activity item."""
 
 from __future__ import annotations
 
@@ -18,17 +18,18 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: ActivityGraphItem, context: Context) -> Iterator[str]:
-    yield f"the {type(element).__name__} is dropped"
+    yield f"the {type(element).__name__} is dropped by am2inc"
 
 
 RULE = ModelRule(
     id="INC-SW-CHANNEL",
-    title="item that is dropped",
+    title="unsupported activity item",
     severity=Severity.WARNING,
     target=(ChannelSend, ChannelReceive, EnforcedMigration, CustomEventTrigger, TerminateProcess),
     check=_check,
-    rationale="am2inc drops channel accesses, migrations, custom event triggers and terminations, with one warning each.",
-    remedy="Do not rely on them after the import.",
+    rationale="am2inc drops channel accesses, enforced migrations, custom event triggers and process terminations, and prints "
+    "one warning per class.",
+    remedy="Replace the item, e.g. a channel access with label accesses, or do not rely on it after the import.",
     fails="""
 <swModel>
   <runnables name="R">

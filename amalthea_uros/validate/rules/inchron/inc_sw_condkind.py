@@ -1,4 +1,4 @@
-"""Condition that is not converted."""
+"""Unsupported condition."""
 
 from __future__ import annotations
 
@@ -21,31 +21,33 @@ from amalthea_uros.validate.rule import Milder, ModelRule
 def _check(element: Condition, context: Context) -> Iterator[str | Milder]:
     if isinstance(element, ModeValueCondition):
         if element.label is None:
-            yield "the condition compares no mode label"
+            yield "the condition has no mode label"
     elif isinstance(element, ModeLabelCondition):
         first, second = element.label1, element.label2
         if first is None or second is None:
-            yield "the condition does not compare two mode labels"
+            yield "the condition has fewer than two mode labels"
         elif first.unresolved is None and second.unresolved is None and not _is_of_same_kind(first, second):
-            yield Milder(f"{first.name!r} and {second.name!r} cannot be compared, because their modes are of different kinds")
+            yield Milder(f"the mode labels {first.name!r} and {second.name!r} have modes of different kinds")
     else:
-        message = f"the {type(element).__name__} compares something else than modes"
+        message = f"the {type(element).__name__} does not compare modes"
         yield message if isinstance(element.container, ConditionConjunction) else Milder(message)
 
 
 def _is_of_same_kind(first: ModeLabel, second: ModeLabel) -> bool:
-    """Whether both have an enum mode or both a numeric one; a first label without a mode is read as one of a numeric mode."""
+    """Whether both have an enum mode or both a numeric one; am2inc reads a first label without a mode as numeric."""
     return isinstance(second.mode, EnumMode if isinstance(first.mode, EnumMode) else NumericMode)
 
 
 RULE = ModelRule(
     id="INC-SW-CONDKIND",
-    title="condition that is not converted",
+    title="unsupported condition",
     severity=Severity.ERROR,
     target=Condition,
     check=_check,
-    rationale="am2inc crashes without a mode label and at other conditions in a conjunction; elsewhere it drops these.",
-    remedy="Compare mode labels with values, or with labels whose modes are of the same kind.",
+    rationale="am2inc crashes with a segmentation fault if a mode label is missing, or if a conjunction contains a condition "
+    "that does not compare modes. Elsewhere it silently drops such a condition. If two modes are of different kinds, it drops "
+    "the second label and prints a warning.",
+    remedy="Compare a mode label with a value, or with a label whose mode is of the same kind (enum or numeric).",
     fails="""
 <swModel>
   <runnables name="R">

@@ -13,9 +13,9 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: WhileLoop | SwitchEntry | ModeSwitchEntry, context: Context) -> Iterator[str]:
     if not (element.condition and element.condition.entries):
         yield (
-            "the loop has no condition"
+            "the while loop has no condition"
             if isinstance(element, WhileLoop)
-            else f"the entry {element.name or ''!r} has no condition"
+            else f"the switch entry {element.name or ''!r} has no condition"
         )
 
 
@@ -25,8 +25,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=(WhileLoop, SwitchEntry, ModeSwitchEntry),
     check=_check,
-    rationale="It gets an empty condition, and am2inc warns of an object without a container.",
-    remedy="State the condition; what is left over belongs into the default entry.",
+    rationale="am2inc writes an empty condition and prints a warning about an object without a container.",
+    remedy="Set the condition; use the default entry for all remaining cases.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Mask of several events."""
+"""Event mask without exactly one event."""
 
 from __future__ import annotations
 
@@ -11,18 +11,21 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: EventMask, context: Context) -> Iterator[str]:
-    if len(element.events) != 1:
-        yield f"of {len(element.events)} events in the mask at most one is used"
+    match len(element.events):
+        case 0:
+            yield "the event mask is empty, so the access has no effect"
+        case count if count > 1:
+            yield f"only the first of the {count} events in the mask is used by am2inc"
 
 
 RULE = ModelRule(
     id="INC-SW-EVENTMASK",
-    title="mask of several events",
+    title="event mask without exactly one event",
     severity=Severity.WARNING,
     target=EventMask,
     check=_check,
-    rationale="Only the first event is used, without a word.",
-    remedy="Use one event in each mask.",
+    rationale="am2inc silently uses only the first event of a mask.",
+    remedy="Use exactly one event per mask.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Runnable with a condition."""
+"""Runnable with an execution condition."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Runnable, context: Context) -> Iterator[str]:
     if element.execution_condition is not None:
-        yield f"the condition of {element.name!r} is ignored"
+        yield f"the execution condition of the runnable {element.name!r} is ignored by am2inc"
 
 
 RULE = ModelRule(
     id="INC-SW-EXECCOND",
-    title="runnable with a condition",
+    title="runnable with an execution condition",
     severity=Severity.WARNING,
     target=Runnable,
     check=_check,
-    rationale="am2inc does not attach the condition, without a word; the runnable is always executed.",
-    remedy="Put a switch around the call.",
+    rationale="am2inc silently leaves the condition unattached, so the runnable is always executed.",
+    remedy="Put the call of the runnable into a switch with this condition.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -22,8 +22,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=Runnable,
     check=_check,
-    rationale="It becomes an empty function, with a warning for each.",
-    remedy="Say what the runnable does, or give it an empty activity graph.",
+    rationale="am2inc converts the runnable to an empty function and prints a warning.",
+    remedy="Add an activity graph, even if it is empty.",
     fails="""
 <swModel>
   <runnables name="R"/>

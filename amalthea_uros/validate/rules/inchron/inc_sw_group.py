@@ -1,4 +1,4 @@
-"""Group without an order."""
+"""Unordered group."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Group, context: Context) -> Iterator[str]:
     if element.ordered is False:
-        yield "the order of the group becomes fixed"
+        yield "the unordered group is changed to an ordered one by am2inc"
 
 
 RULE = ModelRule(
     id="INC-SW-GROUP",
-    title="group without an order",
+    title="unordered group",
     severity=Severity.WARNING,
     target=Group,
     check=_check,
-    rationale="Its order becomes fixed, with a warning.",
-    remedy="Order the group, or expect this order always.",
+    rationale="am2inc executes the items of every group in the listed order. It prints a warning for unordered groups.",
+    remedy="Make the group ordered, or expect its items to be executed always in the listed order.",
     fails="""
 <swModel>
   <runnables name="R">

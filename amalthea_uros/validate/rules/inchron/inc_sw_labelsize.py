@@ -21,8 +21,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=Label,
     check=_check,
-    rationale="am2inc takes 1 KiB without a word.",
-    remedy="State the size.",
+    rationale="am2inc silently uses 1 KiB.",
+    remedy="Set the size of the label, e.g. 32 bit.",
     fails="""
 <swModel>
   <labels name="L"/>

@@ -21,8 +21,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=ModeLabel,
     check=_check,
-    rationale="am2inc ignores it, with a warning.",
-    remedy="Name the mode.",
+    rationale="am2inc ignores the mode label and prints a warning.",
+    remedy="Assign a mode to the mode label.",
     fails="""
 <swModel>
   <modeLabels name="L"/>

@@ -1,4 +1,4 @@
-"""Number that a mode label is set to."""
+"""Mode label set to a number."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: ModeLabelAccess, context: Context) -> Iterator[str]:
     match element:
         case ModeLabelAccess(data=ModeLabel(mode=NumericMode()) as label, access="set"):
-            yield f"{label.name!r} is set to the step, {element.effective('step')}, instead of {element.value or ''!r}"
+            yield f"the mode label {label.name!r} is set to the step {element.effective('step')} instead of {element.value or ''!r}"
 
 
 RULE = ModelRule(
     id="INC-SW-MODE-NUMSET",
-    title="number that a mode label is set to",
+    title="mode label set to a number",
     severity=Severity.WARNING,
     target=ModeLabelAccess,
     check=_check,
-    rationale="am2inc takes the step for the value without a word.",
-    remedy="Increment or decrement the label instead.",
+    rationale="am2inc silently uses the step of the access instead of its value.",
+    remedy="Increment or decrement the mode label instead.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Value that the mode does not have."""
+"""Invalid mode value."""
 
 from __future__ import annotations
 
@@ -24,17 +24,18 @@ def _check(element: ModeLabel | ModeValueCondition | ModeLabelAccess, context: C
 def _faults(label: ModeLabel, value: str | None, use: str) -> Iterator[str]:
     found = fault(value, label.mode)
     if found is not None:
-        yield f"{label.name!r} {use} {found}"
+        yield f"the mode label {label.name!r} {use} {found}"
 
 
 RULE = ModelRule(
     id="INC-SW-MODE-VALUE",
-    title="value that the mode does not have",
+    title="invalid mode value",
     severity=Severity.WARNING,
     target=(ModeLabel, ModeValueCondition, ModeLabelAccess),
     check=_check,
-    rationale="The label gets no initial mode or 0, the condition no value or 0, and the access is dropped, in part without a word.",
-    remedy="Use a literal of the mode, or an integer if the mode is numeric.",
+    rationale="am2inc gives a mode label no initial mode or 0, gives a condition no value or 0, and drops an access. It "
+    "prints a warning only for numeric modes.",
+    remedy="Use a literal of the mode, or a 32-bit integer if the mode is numeric.",
     fails="""
 <swModel>
   <modes xsi:type="am:EnumMode" name="M">

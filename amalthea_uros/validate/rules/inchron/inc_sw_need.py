@@ -11,7 +11,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: ExecutionNeed, context: Context) -> Iterator[str]:
-    yield "the execution need is dropped"
+    yield "the execution need is dropped by am2inc"
 
 
 RULE = ModelRule(
@@ -20,8 +20,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=ExecutionNeed,
     check=_check,
-    rationale="am2inc drops it; the runnable takes no time.",
-    remedy="State the execution time as Ticks.",
+    rationale="am2inc drops execution needs and prints a warning, so the runnable takes no time.",
+    remedy="Specify the execution time as Ticks.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Task, context: Context) -> Iterator[str]:
     if element.preemption == "cooperative":
-        yield f"the cooperative task {element.name!r} becomes non-preemptive"
+        yield f"the cooperative task {element.name!r} is changed to non-preemptive by am2inc"
 
 
 RULE = ModelRule(
@@ -21,8 +21,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=Task,
     check=_check,
-    rationale="It becomes non-preemptive, without a word.",
-    remedy="Expect longer blocking after the import, or make it preemptive.",
+    rationale="am2inc silently makes cooperative tasks non-preemptive, which can increase the blocking of other tasks.",
+    remedy="Make the task preemptive, or expect longer blocking times after the import.",
     fails="""
 <swModel>
   <tasks name="T" preemption="cooperative"/>

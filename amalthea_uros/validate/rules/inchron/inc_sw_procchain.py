@@ -1,4 +1,4 @@
-"""Object that is ignored."""
+"""Unsupported object."""
 
 from __future__ import annotations
 
@@ -37,17 +37,18 @@ _IGNORED = (
 
 
 def _check(element: IAnnotatable, context: Context) -> Iterator[str]:
-    yield f"the {type(element).__name__} {name_of(element)!r} is ignored"
+    yield f"the {type(element).__name__} {name_of(element)!r} is ignored by am2inc"
 
 
 RULE = ModelRule(
     id="INC-SW-PROCCHAIN",
-    title="object that is ignored",
+    title="unsupported object",
     severity=Severity.WARNING,
     target=_IGNORED,
     check=_check,
-    rationale="am2inc passes over process chains, sections, components and the like without a word.",
-    remedy="Do not rely on it after the import.",
+    rationale="am2inc silently ignores process chains, process prototypes, sections, custom entities, channels, scenarios, "
+    "components, component systems and property constraints.",
+    remedy="Remove the object, or do not rely on it after the import.",
     fails="""
 <swModel>
   <processChains name="C"/>

@@ -1,4 +1,4 @@
-"""Item that refers to nothing."""
+"""Activity item without a target."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from amalthea_uros.metamodel.classes import (
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
-#: What each of these has to refer to.
+#: The reference that each of these items needs.
 _REFERENCES: dict[type[ActivityGraphItem], str] = {
     RunnableCall: "runnable",
     LabelAccess: "data",
@@ -33,19 +33,19 @@ _REFERENCES: dict[type[ActivityGraphItem], str] = {
 
 def _check(element: ActivityGraphItem, context: Context) -> Iterator[str]:
     feature = _REFERENCES[type(element)]
-    # The calls of prototypes are never looked at.
+    # am2inc does not read the calls of prototypes.
     if getattr(element, feature) is None and not isinstance(element.container, ProcessPrototype):
-        yield f"the {type(element).__name__} names no {feature.replace('_', ' ')}"
+        yield f"the {feature.replace('_', ' ')} of the {type(element).__name__} is not set"
 
 
 RULE = ModelRule(
     id="INC-SW-REF",
-    title="item that refers to nothing",
+    title="activity item without a target",
     severity=Severity.ERROR,
     target=tuple(_REFERENCES),
     check=_check,
-    rationale="am2inc ends with a segmentation fault.",
-    remedy="Name what is called, accessed, triggered or waited for.",
+    rationale="am2inc crashes with a segmentation fault.",
+    remedy="Set the runnable, label, stimulus or event mask that the item uses.",
     fails="""
 <swModel>
   <runnables name="R">

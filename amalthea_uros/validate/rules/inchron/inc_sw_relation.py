@@ -1,4 +1,4 @@
-"""Comparison for something else than equality."""
+"""Relation other than EQUAL."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from amalthea_uros.validate.rules.inchron._importer import metamodel
 
 def _check(element: ModeCondition, context: Context) -> Iterator[str]:
     if element.relation != "EQUAL" and metamodel(element) != "1.2.0":
-        yield "the comparison becomes one for equality"
+        yield "the relation of the condition is changed to EQUAL by am2inc"
 
 
 RULE = ModelRule(
     id="INC-SW-RELATION",
-    title="comparison for something else than equality",
+    title="relation other than EQUAL",
     severity=Severity.WARNING,
     target=ModeCondition,
     check=_check,
-    rationale='Every relation becomes "equal", without a word.',
-    remedy="Compare for equality only.",
+    rationale="am2inc silently changes every relation to EQUAL in models of AMALTHEA 2.0 and newer.",
+    remedy="Rewrite the condition with EQUAL only.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Incomplete or early server call."""
+"""Unsupported server call or sender-receiver access."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ from amalthea_uros.validate.rules.inchron._importer import metamodel
 def _check(element: ServerCall | SenderReceiverCommunication, context: Context) -> Iterator[str | Milder]:
     wanted = "server runnable" if isinstance(element, ServerCall) else "label"
     if metamodel(element) < "3":
-        yield Milder(f"the {type(element).__name__} is dropped, because the model is of a version before 3.0")
+        yield Milder(f"the {type(element).__name__} is dropped by am2inc, because the model is older than AMALTHEA 3.0")
     elif (element.server_runnable if isinstance(element, ServerCall) else element.label) is None:
-        yield f"the {type(element).__name__} names no {wanted}"
+        yield f"the {type(element).__name__} has no {wanted}"
 
 
 RULE = ModelRule(
     id="INC-SW-SERVER",
-    title="server call or data access that cannot be converted",
+    title="unsupported server call or sender-receiver access",
     severity=Severity.ERROR,
     target=(ServerCall, SenderReceiverCommunication),
     check=_check,
-    rationale="Without a server runnable, or a label, the conversion is aborted; models before 3.0 lose these items, with a warning.",
-    remedy="Name the server runnable or the label, in a model of AMALTHEA 3.0 or newer.",
+    rationale="am2inc aborts the conversion if the server runnable or the label is missing. In models before AMALTHEA 3.0 it "
+    "drops these items and prints a warning.",
+    remedy="Set the server runnable or the label, and use AMALTHEA 3.0 or newer.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Beta distribution."""
+"""Beta distribution of ticks."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from amalthea_uros.validate.rules.inchron._ticks import is_read
 
 def _check(element: DiscreteValueBetaDistribution, context: Context) -> Iterator[str]:
     if is_read(element):
-        yield "the beta distribution becomes its upper bound"
+        yield "the beta distribution is changed to its upper bound by am2inc"
 
 
 RULE = ModelRule(
     id="INC-SW-TICKS-BETA",
-    title="beta distribution",
+    title="beta distribution of ticks",
     severity=Severity.WARNING,
     target=DiscreteValueBetaDistribution,
     check=_check,
-    rationale="It becomes its upper bound, without a word.",
-    remedy="Use another distribution.",
+    rationale="am2inc silently converts a beta distribution to its constant upper bound.",
+    remedy="Use another distribution, e.g. a uniform or Gaussian one.",
     fails="""
 <swModel>
   <runnables name="R">

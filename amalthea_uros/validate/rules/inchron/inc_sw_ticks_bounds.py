@@ -1,4 +1,4 @@
-"""Boundaries without a sampling type."""
+"""Boundaries with the default sampling type."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from amalthea_uros.validate.rules.inchron._ticks import is_read
 
 def _check(element: DiscreteValueBoundaries, context: Context) -> Iterator[str]:
     if element.sampling_type in (None, "default") and is_read(element):
-        yield "the boundaries have no sampling type"
+        yield "the boundaries use the default sampling type"
 
 
 RULE = ModelRule(
     id="INC-SW-TICKS-BOUNDS",
-    title="boundaries without a sampling type",
+    title="boundaries with the default sampling type",
     severity=Severity.WARNING,
     target=DiscreteValueBoundaries,
     check=_check,
-    rationale="am2inc computes a wrong mean without a word.",
-    remedy="State a sampling type other than default.",
+    rationale="am2inc silently computes a wrong mean, which can be less than the lower bound.",
+    remedy="Set the sampling type to BestCase, WorstCase, AverageCase, CornerCase or Uniform.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Ticks that depend on the core, or have no value."""
+"""Ticks without exactly one value."""
 
 from __future__ import annotations
 
@@ -13,21 +13,22 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: Ticks, context: Context) -> Iterator[str]:
     match element.default, len(element.extended):
         case None, 0:
-            yield "the ticks have no value"
-        case None, count:
-            yield f"the first of {count} extended values is used for all processing units"
+            yield "the Ticks have no value"
+        case None, _:
+            yield "the Ticks have no default value; am2inc uses the first extended one for all processing units"
         case _, count if count:
-            yield f"of a default and {count} extended values only the default is used"
+            yield "the Ticks have extended values; am2inc uses the default one for all processing units"
 
 
 RULE = ModelRule(
     id="INC-SW-TICKS-DEFAULT",
-    title="ticks that depend on the core, or have no value",
+    title="ticks without exactly one value",
     severity=Severity.WARNING,
     target=Ticks,
     check=_check,
-    rationale="am2inc takes the default, else the first extended value, else 0, for all processing units and without a word.",
-    remedy="State default ticks and nothing else.",
+    rationale="am2inc uses one value for all processing units: silently the default, or else the first extended value. "
+    "Without a value it uses 0 and prints a warning.",
+    remedy="Set a default value and remove the extended ones.",
     fails="""
 <swModel>
   <runnables name="R">

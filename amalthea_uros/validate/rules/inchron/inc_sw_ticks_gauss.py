@@ -1,4 +1,4 @@
-"""Missing bound of a Gauss distribution."""
+"""Unbounded Gaussian distribution."""
 
 from __future__ import annotations
 
@@ -8,22 +8,24 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import DiscreteValueGaussDistribution
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._missing import missing
 from amalthea_uros.validate.rules.inchron._ticks import is_read
 
 
 def _check(element: DiscreteValueGaussDistribution, context: Context) -> Iterator[str]:
-    if (element.lower_bound is None or element.upper_bound is None) and is_read(element):
-        yield "the Gauss distribution lacks a bound"
+    absent = missing({"lower bound": element.lower_bound, "upper bound": element.upper_bound})
+    if absent and is_read(element):
+        yield f"the Gaussian distribution has no {absent}"
 
 
 RULE = ModelRule(
     id="INC-SW-TICKS-GAUSS",
-    title="missing bound of a Gauss distribution",
+    title="unbounded Gaussian distribution",
     severity=Severity.WARNING,
     target=DiscreteValueGaussDistribution,
     check=_check,
-    rationale="am2inc cuts it to 0 without a word.",
-    remedy="State both bounds.",
+    rationale="am2inc silently truncates the distribution to 0.",
+    remedy="Set both bounds.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Parameter that is cut to an integer."""
+"""Fractional distribution parameter."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.inchron._ticks import is_read
 
-#: The parameters of distributions that need not be integers, but become ones.
+#: The parameters of distributions that can be fractions, but that am2inc reads as integers.
 _PARAMETERS: dict[type[Element], tuple[str, ...]] = {
     DiscreteValueStatistics: ("average",),
     DiscreteValueGaussDistribution: ("mean", "sd"),
@@ -28,17 +28,17 @@ def _check(element: IDiscreteValueDeviation, context: Context) -> Iterator[str]:
     for name in _PARAMETERS.get(type(element), ()) if is_read(element) else ():
         value: float | None = getattr(element, name)
         if value is not None and not float(value).is_integer():
-            yield f"the {name} of {value} ticks loses its fraction"
+            yield f"the {name.replace('sd', 'standard deviation')} of {value} ticks is truncated to an integer by am2inc"
 
 
 RULE = ModelRule(
     id="INC-SW-TICKS-INT",
-    title="parameter that is cut to an integer",
+    title="fractional distribution parameter",
     severity=Severity.INFO,
     target=IDiscreteValueDeviation,
     check=_check,
-    rationale="am2inc cuts off the fractions of averages, means and standard deviations.",
-    remedy="State whole ticks, or expect a small difference.",
+    rationale="am2inc truncates averages, means and standard deviations to integers.",
+    remedy="Use whole ticks, or expect a small deviation after the import.",
     fails="""
 <swModel>
   <runnables name="R">
