@@ -130,7 +130,9 @@ def test_least_times_above_the_greatest(rule, holder, least, greatest, what, tmp
         return found(rule, CONSTRAINTS.format(holder("".join(parts))), tmp_path)
 
     above = f'<{greatest} value="2" unit="ms"/>'
-    assert told(f'<{least} value="2001" unit="us"/>', above) == [f"the {what} is at least 2.001 ms and at most 2 ms"]
+    assert told(f'<{least} value="2001" unit="us"/>', above) == [
+        f"the minimum {what} 2.001 ms is above the maximum {what} 2 ms"
+    ]
     assert told(f'<{least} value="2000" unit="us"/>', above) == []
     assert told(f'<{least} value="3" unit="ms"/>') == []
     assert told(above) == []
@@ -185,9 +187,7 @@ def test_tasks_by_deadline_until_1_2(tmp_path):
 </osModel>
 <swModel><tasks name="T"/></swModel>
 <mappingModel><taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/></mappingModel>"""
-    assert found(EDF, excerpt, tmp_path, "1.2.0") == [
-        "'T' is scheduled by deadlines, and no requirement limits its response time"
-    ]
+    assert found(EDF, excerpt, tmp_path, "1.2.0") == ["'T' is scheduled by EDF, but no requirement limits its response time"]
 
 
 @pytest.mark.parametrize(
@@ -233,14 +233,14 @@ def test_instructions_per_cycle(category, feature, value, is_told, tmp_path):
 @pytest.mark.parametrize(
     ("kind", "features", "expected"),
     [
-        ("CPU", "", ["'D' has no instructions per cycle, 1.0 is taken"]),
-        ("CPU", "Instructions/other?type=HwFeature", ["'D' has no instructions per cycle, 1.0 is taken"]),
-        ("CPU", "Power/IPC_3?type=HwFeature", ["'D' has no instructions per cycle, 1.0 is taken"]),
+        ("CPU", "", ["IPC of 'D' is not defined; assuming 1.0"]),
+        ("CPU", "Instructions/other?type=HwFeature", ["IPC of 'D' is not defined; assuming 1.0"]),
+        ("CPU", "Power/IPC_3?type=HwFeature", ["IPC of 'D' is not defined; assuming 1.0"]),
         ("CPU", "Instructions/IPC_1?type=HwFeature", []),
         (
             "CPU",
             "Instructions/IPC_1?type=HwFeature Instructions/IPC_2?type=HwFeature",
-            ["'D' has 2 values of instructions per cycle, the first one is taken"],
+            ["IPC of 'D' is defined 2 times; using the first value"],
         ),
         ("GPU", "", []),
         ("_undefined_", "", []),
@@ -287,12 +287,12 @@ TRUE = "TA-Software-ModeConditionDisjunctionAlwaysTrue"
 @pytest.mark.parametrize(
     ("entries", "expected"),
     [
-        ([("EQUAL", "on"), ("EQUAL", "off")], ["'L' is required to be 'on' and 'off' at once"]),
+        ([("EQUAL", "on"), ("EQUAL", "off")], ["'L' must equal 'on' and 'off' at the same time"]),
         ([("EQUAL", "on"), ("EQUAL", "on")], []),
         ([("EQUAL", "on"), ("EQUAL", "off", "K")], []),
         # By the reference, whether there is a third literal or not.
-        ([("NOT_EQUAL", "on"), ("NOT_EQUAL", "off")], ["'L' is required not to be 'on' and 'off'"]),
-        ([("EQUAL", "on"), ("NOT_EQUAL", "on")], ["'L' is required both to be and not to be 'on'"]),
+        ([("NOT_EQUAL", "on"), ("NOT_EQUAL", "off")], ["'L' must differ from 'on' and 'off'"]),
+        ([("EQUAL", "on"), ("NOT_EQUAL", "on")], ["'L' must both equal and differ from 'on'"]),
         ([("EQUAL", "on"), ("NOT_EQUAL", "off")], []),
         ([("EQUAL", "on"), ("LESS_THAN", "on"), ("_undefined_", "off")], []),
     ],
@@ -305,10 +305,10 @@ def test_conditions_that_cannot_all_be_true(entries, expected, tmp_path):
 @pytest.mark.parametrize(
     ("entries", "expected"),
     [
-        ([("EQUAL", "on"), ("EQUAL", "off")], ["'L' may be any of its literals"]),
+        ([("EQUAL", "on"), ("EQUAL", "off")], ["'L' may have any of its literals"]),
         ([("EQUAL", "on"), ("EQUAL", "off", "K")], []),
         ([("EQUAL", "on")], []),
-        ([("EQUAL", "on"), ("NOT_EQUAL", "on")], ["'L' may be 'on', and anything else"]),
+        ([("EQUAL", "on"), ("NOT_EQUAL", "on")], ["'L' may equal 'on' or differ from it"]),
         ([("EQUAL", "on"), ("NOT_EQUAL", "off")], []),
         # Always true, too, but not told by the reference.
         ([("NOT_EQUAL", "on"), ("NOT_EQUAL", "off")], []),
@@ -366,7 +366,7 @@ def test_events_that_are_never_set(items, is_told, tmp_path):
   <tasks name="T"><activityGraph>{graph}{both}</activityGraph></tasks>
   <events name="E"/><events name="F"/>
 </swModel>"""
-    expected = ["'E' is waited for, and nothing sets it"] if is_told else []
+    expected = ["'E' is waited for, but never set"] if is_told else []
     assert found("TA-Stimuli-ArrivalCurveStimulus", excerpt, tmp_path) == expected
 
 
@@ -396,16 +396,26 @@ def test_a_runnable_that_is_its_own_server(call, tmp_path):
     [
         ("", "3.3.0", []),
         ('initialValue="1"', "3.3.0", []),
-        ('initialValue="2"', "3.3.0", ["'S' has 2 users at the start, and room for 1"]),
-        ('initialValue="-1"', "2.0.0", ["'S' has -1 users at the start", "'S' has room for 0 users"]),
-        ('maxValue="0"', "2.0.0", ["'S' has room for 0 users"]),
+        ('initialValue="2"', "3.3.0", ["the initial value 2 of 'S' is above the maximum value 1"]),
+        (
+            'initialValue="-1"',
+            "2.0.0",
+            [
+                "the initial value of 'S' is -1, but must be 0 or more",
+                "the maximum value of 'S' is 0, but must be greater than 0",
+            ],
+        ),
+        ('maxValue="0"', "2.0.0", ["the maximum value of 'S' is 0, but must be greater than 0"]),
         (
             'initialValue="1" maxValue="0"',
             "2.0.0",
-            ["'S' has room for 0 users", "'S' has 1 users at the start, and room for 0"],
+            [
+                "the maximum value of 'S' is 0, but must be greater than 0",
+                "the initial value 1 of 'S' is above the maximum value 0",
+            ],
         ),
-        # Until 2.0 there is no room where nothing is stated.
-        ("", "2.0.0", ["'S' has room for 0 users"]),
+        # Until 2.0 the default of the maximum value is 0.
+        ("", "2.0.0", ["the maximum value of 'S' is 0, but must be greater than 0"]),
         ("", "2.1.0", []),
     ],
 )

@@ -1,4 +1,4 @@
-"""ISR without an interrupt controller."""
+"""Interrupt service routine without an interrupt controller."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def _check(element: ISR, context: Context) -> Iterator[str]:
 
 RULE = ModelRule(
     id="AM-Mapping-ISR-Scheduler",
-    title="ISR without an interrupt controller",
+    title="interrupt service routine without an interrupt controller",
     severity=Severity.WARNING,
     target=ISR,
     check=_check,
