@@ -86,7 +86,7 @@ def test_times_that_may_be_negative(frame, kind, feature, tmp_path):
     assert not messages(tmp_path, "AM-Basic-Time-Range", role(frame, kind, feature, 'value="-1" unit="ms"'))
 
 
-def test_a_time_is_told_with_its_role_and_unit(tmp_path):
+def test_a_message_names_the_role_and_the_unit(tmp_path):
     excerpt = role(STIMULUS, "ArrivalCurveStimulus", "entries/lowerTimeBorder", 'value="-2" unit="us"')
     assert messages(tmp_path, "AM-Basic-Time-Range", excerpt) == ["the lower time border is -2 us, but must be 0 or more"]
     excerpt = role(STIMULUS, "PeriodicStimulus", "recurrence", "")

@@ -126,17 +126,17 @@ def data_age(parts):
     ],
 )
 def test_least_times_above_the_greatest(rule, holder, least, greatest, what, tmp_path):
-    def told(*parts):
+    def reported(*parts):
         return found(rule, CONSTRAINTS.format(holder("".join(parts))), tmp_path)
 
     above = f'<{greatest} value="2" unit="ms"/>'
-    assert told(f'<{least} value="2001" unit="us"/>', above) == [
+    assert reported(f'<{least} value="2001" unit="us"/>', above) == [
         f"the minimum {what} 2.001 ms is above the maximum {what} 2 ms"
     ]
-    assert told(f'<{least} value="2000" unit="us"/>', above) == []
-    assert told(f'<{least} value="3" unit="ms"/>') == []
-    assert told(above) == []
-    assert told(f'<{least} value="3"/>', above) == []
+    assert reported(f'<{least} value="2000" unit="us"/>', above) == []
+    assert reported(f'<{least} value="3" unit="ms"/>') == []
+    assert reported(above) == []
+    assert reported(f'<{least} value="3"/>', above) == []
 
 
 # Deadlines
@@ -161,7 +161,7 @@ LIMIT = '<limit xsi:type="am:TimeRequirementLimit" limitType="{}" metric="{}"><l
 
 
 @pytest.mark.parametrize(
-    ("definition", "limit", "is_told"),
+    ("definition", "limit", "is_reported"),
     [
         ("EarliestDeadlineFirst", "", True),
         ("EarliestDeadlineFirst", LIMIT.format("UpperLimit", "ResponseTime"), False),
@@ -170,8 +170,8 @@ LIMIT = '<limit xsi:type="am:TimeRequirementLimit" limitType="{}" metric="{}"><l
         ("FixedPriorityPreemptive", "", False),
     ],
 )
-def test_tasks_by_deadline(definition, limit, is_told, tmp_path):
-    assert bool(found(EDF, scheduled(definition, limit), tmp_path)) is is_told
+def test_tasks_by_deadline(definition, limit, is_reported, tmp_path):
+    assert bool(found(EDF, scheduled(definition, limit), tmp_path)) is is_reported
 
 
 def test_a_task_that_is_allocated_to_nothing_needs_no_deadline(tmp_path):
@@ -191,13 +191,13 @@ def test_tasks_by_deadline_until_1_2(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("metric", "value", "is_told"),
+    ("metric", "value", "is_reported"),
     [("ResponseTime", 0, True), ("ResponseTime", -1, True), ("ResponseTime", 1, False), ("Lateness", 0, False)],
 )
-def test_limits_of_response_times(metric, value, is_told, tmp_path):
+def test_limits_of_response_times(metric, value, is_reported, tmp_path):
     limit = f"""<limit xsi:type="am:TimeRequirementLimit" metric="{metric}"><limitValue value="{value}" unit="ms"/></limit>"""
     excerpt = CONSTRAINTS.format(f'<requirements xsi:type="am:ProcessRequirement" name="R">{limit}</requirements>')
-    assert bool(found("TA-Constraints-RTLimitMustBePositive", excerpt, tmp_path)) is is_told
+    assert bool(found("TA-Constraints-RTLimitMustBePositive", excerpt, tmp_path)) is is_reported
 
 
 def test_a_limit_without_a_value_is_not_judged(tmp_path):
@@ -210,7 +210,7 @@ def test_a_limit_without_a_value_is_not_judged(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("category", "feature", "value", "is_told"),
+    ("category", "feature", "value", "is_reported"),
     [
         ("Instructions", "IPC_1", 'value="0"', True),
         ("INSTRUCTIONS", "IPC_1", 'value="-1.5"', True),
@@ -224,10 +224,10 @@ def test_a_limit_without_a_value_is_not_judged(tmp_path):
         ("Power", "IPC_1", 'value="0"', False),
     ],
 )
-def test_instructions_per_cycle(category, feature, value, is_told, tmp_path):
+def test_instructions_per_cycle(category, feature, value, is_reported, tmp_path):
     excerpt = f"""
 <hwModel><featureCategories name="{category}"><features name="{feature}" {value}/></featureCategories></hwModel>"""
-    assert bool(found("TA-Hardware-HWFIPCMustBePositive", excerpt, tmp_path)) is is_told
+    assert bool(found("TA-Hardware-HWFIPCMustBePositive", excerpt, tmp_path)) is is_reported
 
 
 @pytest.mark.parametrize(
@@ -310,7 +310,7 @@ def test_conditions_that_cannot_all_be_true(entries, expected, tmp_path):
         ([("EQUAL", "on")], []),
         ([("EQUAL", "on"), ("NOT_EQUAL", "on")], ["'L' may equal 'on' or differ from it"]),
         ([("EQUAL", "on"), ("NOT_EQUAL", "off")], []),
-        # Always true, too, but not told by the reference.
+        # Always true, too, but not reported by the reference.
         ([("NOT_EQUAL", "on"), ("NOT_EQUAL", "off")], []),
     ],
 )
@@ -346,7 +346,7 @@ def test_conditions_of_older_versions(version, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("items", "is_told"),
+    ("items", "is_reported"),
     [
         (["WaitEvent"], True),
         (["WaitEvent", "ClearEvent"], True),
@@ -356,7 +356,7 @@ def test_conditions_of_older_versions(version, tmp_path):
         ([], False),
     ],
 )
-def test_events_that_are_never_set(items, is_told, tmp_path):
+def test_events_that_are_never_set(items, is_reported, tmp_path):
     graph = "".join(
         f'<items xsi:type="am:{item}"><eventMask events="F?type=OsEvent E?type=OsEvent"/></items>' for item in items
     )
@@ -366,7 +366,7 @@ def test_events_that_are_never_set(items, is_told, tmp_path):
   <tasks name="T"><activityGraph>{graph}{both}</activityGraph></tasks>
   <events name="E"/><events name="F"/>
 </swModel>"""
-    expected = ["'E' is waited for, but never set"] if is_told else []
+    expected = ["'E' is waited for, but never set"] if is_reported else []
     assert found("TA-Stimuli-ArrivalCurveStimulus", excerpt, tmp_path) == expected
 
 
@@ -380,7 +380,7 @@ def runnables(item):
 
 
 def test_a_runnable_that_calls_itself(tmp_path):
-    # By way of others it is not told.
+    # Calls through others are not reported.
     item = '<items xsi:type="am:RunnableCall" runnable="R?type=Runnable"/>'
     assert found("TA-Software-RunnableCall", runnables(item), tmp_path) == ["'R' calls itself"]
 

@@ -85,8 +85,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Time,
     check=_check,
-    rationale="Periods must be positive; offsets, points in time and bounds must not be negative. APP4MC's validation also "
-    "reports it.",
+    rationale="Periods must be positive; offsets, points in time and bounds must not be negative. APP4MC's validation also reports it.",
     remedy="Set periods to more than 0, and offsets, points in time and bounds to 0 or more.",
     fails="""
 <stimuliModel>

@@ -31,9 +31,8 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=AbstractEventChain,
     check=_check,
-    rationale="The segments of an event chain must form a path without gaps. APP4MC's validation also reports it.",
-    remedy="Start each segment at the response of the previous one, and begin and end with the stimulus and response of the "
-    "chain.",
+    rationale="The segments of an event chain must form a path from its stimulus to its response. APP4MC's validation also reports it.",
+    remedy="Start each segment at the response of the previous one, and begin and end with the stimulus and response of the chain.",
     fails="""
 <eventModel>
   <events xsi:type="am:CustomEvent" name="a"/>

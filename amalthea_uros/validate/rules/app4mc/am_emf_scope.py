@@ -24,8 +24,8 @@ RULE = ModelRule(
     target=IReferable,
     check=_check,
     among=lambda context: context.namesakes,
-    rationale="References identify an object by its name and class across all files of the model. APP4MC's validation also "
-    "reports it.",
+    rationale="References identify objects by name and class across all files of the model, so references to these objects "
+    "are ambiguous. APP4MC's validation also reports it.",
     remedy="Give each object of a class a unique name.",
     fails="""
 <swModel>

@@ -60,8 +60,7 @@ RULE = ModelRule(
     check=_check,
     rationale="The access latency is the sum over the elements of the path, so the path must be complete. APP4MC's validation "
     "also reports it.",
-    remedy="Connect the processing unit to the destination by connections that share ports, and keep the addresses within the "
-    "memory.",
+    remedy="Connect the processing unit to the destination by connections that share ports, and keep the addresses within the memory.",
     fails="""
 <hwModel>
   <definitions xsi:type="am:MemoryDefinition" name="D">

@@ -23,8 +23,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=HwPort,
     check=_check,
-    rationale="A connection links exactly two ports; only a connection handler can link more. APP4MC's validation also "
-    "reports it.",
+    rationale="A connection links exactly two ports; only a connection handler can link more. APP4MC's validation also reports it.",
     remedy="Use a separate port for each connection, or insert a connection handler.",
     fails="""
 <hwModel>

@@ -22,8 +22,7 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=HwPort,
     check=_check,
-    rationale="Without a type and an interface, connections to the port cannot be checked. APP4MC's validation also reports "
-    "it.",
+    rationale="Without a type and an interface, connections to the port cannot be checked. APP4MC's validation also reports it.",
     remedy="Set the port type and the port interface.",
     fails="""
 <hwModel>

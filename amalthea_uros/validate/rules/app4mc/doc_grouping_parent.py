@@ -37,8 +37,8 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=TaskScheduler,
     check=_check,
-    rationale="A grouping makes no scheduling decisions itself, and other algorithms, too, may need a parent or exactly one "
-    "child. The APP4MC documentation requires a hierarchy that matches the algorithm.",
+    rationale="A grouping makes no scheduling decisions itself, and some other algorithms need a parent or exactly one child. "
+    "The APP4MC documentation requires a hierarchy that matches the algorithm.",
     remedy="Associate the scheduler with a parent, or change the number of tasks and schedulers below it.",
     fails="""
 <osModel>

@@ -28,8 +28,8 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=TaskAllocation,
     check=_check,
-    rationale="A task runs on those processing units of its affinity that its scheduler is responsible for, or on all of the "
-    "scheduler if it has no affinity. The APP4MC documentation requires at least one.",
+    rationale="A task runs only on processing units that are in its affinity, if it has one, and in the responsibility of its "
+    "scheduler. The APP4MC documentation requires at least one.",
     remedy="Add a processing unit of the scheduler to the affinity, or extend the responsibility of the scheduler.",
     fails="""
 <swModel>

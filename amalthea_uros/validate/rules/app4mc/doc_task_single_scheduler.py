@@ -32,8 +32,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=TaskAllocation,
     check=_check,
-    rationale="It is undefined which scheduler runs the task. The APP4MC documentation requires exactly one scheduler per "
-    "task.",
+    rationale="It is undefined which scheduler runs the task. The APP4MC documentation requires exactly one scheduler per task.",
     remedy="Allocate the task to one scheduler. To use several processing units, choose a scheduler that is responsible for "
     "all of them.",
     fails="""

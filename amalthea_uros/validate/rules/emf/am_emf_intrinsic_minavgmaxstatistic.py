@@ -22,7 +22,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=MinAvgMaxStatistic,
     check=_check,
-    rationale="No set of values has such a statistic. APP4MC's validation also reports it.",
+    rationale="No set of values has this average. APP4MC's validation also reports it.",
     remedy="Correct the minimum, the average or the maximum.",
     fails="""
 <swModel>

@@ -1,4 +1,4 @@
-"""Mean outside the bounds of a time Gauss distribution."""
+"""Mean outside the bounds of a Gauss distribution of times."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def _check(element: TimeGaussDistribution, context: Context) -> Iterator[str]:
 
 RULE = ModelRule(
     id="TA-Basic-TimeGaussDistribution-mean",
-    title="mean outside the bounds of a time Gauss distribution",
+    title="mean outside the bounds of a Gauss distribution of times",
     severity=Severity.ERROR,
     target=TimeGaussDistribution,
     check=_check,

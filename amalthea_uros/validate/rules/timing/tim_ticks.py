@@ -28,7 +28,7 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=Ticks,
     check=_check,
-    rationale="The ticks take no time, or the execution time of everything that executes them is unknown.",
+    rationale="Ticks without a value take no time, or leave the execution time of everything that executes them unknown.",
     remedy="Set a default, or a value for each processing unit definition that executes the ticks.",
     fails="""
 <swModel>
