@@ -12,7 +12,7 @@ HEADING = "## The rules\n"
 
 def main() -> None:
     text = PAGE.read_text()
-    rows = ["| rule | severity | profile | what is wrong | why it matters |", "|---|---|---|---|---|"]
+    rows = ["| rule | severity | profile | problem | why it matters |", "|---|---|---|---|---|"]
     for identifier in registry.ids():
         rule = registry.rule(identifier)
         rows.append(f"| {rule.id} | {rule.severity} | {registry.profile_of(identifier)} | {rule.title} | {rule.rationale} |")

@@ -1,4 +1,4 @@
-"""Comparison and naming of objects for repairs."""
+"""Comparing and naming objects for repairs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from amalthea_uros.validate.context import Context
 
 
 def is_same(one: Element, other: Element) -> bool:
-    """Whether two objects say the same: the same values, references to the same objects, parts that say the same."""
+    """Whether two objects have equal content: the same values, references to the same objects, and parts with equal content."""
     if type(one) is not type(other) or one.is_referable:
         return one is other
     features = {*one.__dict__, *other.__dict__}
@@ -17,7 +17,7 @@ def is_same(one: Element, other: Element) -> bool:
 
 
 def _stated(element: Element, name: str) -> object:
-    """The value of a feature; None for an empty list, as for everything that is not stated."""
+    """The value of a feature; None if it is not set or an empty list."""
     value = element.__dict__.get(name)
     return None if value == [] else value
 
@@ -31,6 +31,6 @@ def _is_same_value(one: object, other: object) -> bool:
 
 
 def new_name(stem: str, cls: type[Element], context: Context) -> str:
-    """A name that no object of a class has."""
+    """A name that no object of a class uses yet."""
     taken = {getattr(element, "name", None) for element in context.all(cls)}
     return next(name for number in count(1) if (name := f"{stem}_{number}") not in taken)

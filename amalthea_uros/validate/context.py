@@ -1,4 +1,4 @@
-"""What rules may ask of the model, found once for all of them."""
+"""Facts about a model that rules share, computed once."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Context:
 
     @cached_property
     def versions(self) -> frozenset[str]:
-        """The AMALTHEA versions whose facts hold for some of the objects."""
+        """The AMALTHEA versions of the facts for the files."""
         return frozenset(document.facts_version for document in self.model.documents)
 
     @cached_property
@@ -40,17 +40,17 @@ class Context:
         return next(iter(self.versions)) if len(self.versions) == 1 else None
 
     def version_of(self, element: Element) -> str:
-        """The AMALTHEA version whose facts hold for an object."""
+        """The AMALTHEA version of the facts for an object."""
         return self._only_version or self.document_of(element).facts_version
 
     def document_of(self, element: Element) -> Document:
-        """The file in which an object stands."""
+        """The file that contains an object."""
         documents = self.model.documents
         return documents[0] if len(documents) == 1 else cast("Document", element.document)
 
     @cached_property
     def dangling(self) -> dict[Element, list[tuple[str, str]]]:
-        """The references to nothing: by object the features, by their XML names, and what they say."""
+        """The unresolved references: by object, the XML name of the feature and the text of the reference."""
         found: dict[Element, list[tuple[str, str]]] = {}
         for cls, holders in self._by_type.items():
             for holder in holders:
@@ -62,7 +62,7 @@ class Context:
 
     @cached_property
     def namesakes(self) -> dict[Element, list[Element]]:
-        """The objects that others of their class share their name with, and all that do."""
+        """The objects that share their name with others of their class, each with all objects of this name."""
         by_name: dict[str, list[Element]] = {}
         for kind, found in self._by_type.items():
             if kind.is_referable:
@@ -72,7 +72,7 @@ class Context:
 
     @cached_property
     def referred(self) -> frozenset[Element]:
-        """The objects to which some other refers."""
+        """The objects that are the target of a reference."""
         values = (value for element in self.model.walk() for _, value in references_of(element))
         return frozenset(target for value in values for target in (value if isinstance(value, list) else (value,)))
 
@@ -83,18 +83,18 @@ class Context:
         return cast("Sequence[E]", self._once[cls])
 
     def by_class(self, cls: type[Element] | tuple[type[Element], ...]) -> Iterator[tuple[type[Element], Sequence[Element]]]:
-        """The objects of a class, or of several, and of their subclasses, by their own class."""
+        """The objects of one or several classes and their subclasses, grouped by their own class."""
         return ((kind, found) for kind, found in self._by_type.items() if issubclass(kind, cls))
 
     def uses(self, cls: type[Element], feature: str) -> Counter[Element]:
-        """How often each object is referred to by a feature of objects of a class."""
+        """The number of references to each object by a feature of the objects of a class."""
         key = (cls, feature)
         if key not in self._once:
             self._once[key] = Counter(getattr(element, feature) for element in self.all(cls))
         return cast("Counter[Element]", self._once[key])
 
     def once(self, function: Callable[[Context], T]) -> T:
-        """What a function of a rule finds out about the whole model."""
+        """The result of a function of the whole model, computed once."""
         if function not in self._once:
             self._once[function] = function(self)
         return cast("T", self._once[function])

@@ -8,11 +8,11 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Milder, ModelRule
+from amalthea_uros.validate.rule import Downgraded, ModelRule
 
 
 def run(model: Model, rules: Iterable[ModelRule]) -> list[Finding]:
-    """The findings of rules. A rule that crashes is a finding, too."""
+    """The findings of rules; a rule that crashes is reported as a finding."""
     context = Context(model)
     return [finding for rule in rules for finding in _findings(rule, context)]
 
@@ -22,16 +22,18 @@ def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
         try:
             messages = list(rule.check(element, context))
         except Exception as error:
-            message = f"the rule {rule.id} failed at this object: {type(error).__name__}: {error}"
-            yield _finding("CHK001", Severity.ERROR, message, element, "Please report it, with the model if you can.")
+            text = f"rule {rule.id} failed on this object: {type(error).__name__}: {error}"
+            yield _finding(
+                "CHK001", Severity.ERROR, text, element, "Report this as a bug in amuros, with the model if possible."
+            )
             continue
-        for told in messages:
-            message, severity = told if isinstance(told, Milder) else (told, rule.severity)
-            yield _finding(rule.id, severity, message, element, rule.remedy)
+        for message in messages:
+            text, severity = message if isinstance(message, Downgraded) else (message, rule.severity)
+            yield _finding(rule.id, severity, text, element, rule.remedy)
 
 
 def concerned(rule: ModelRule, context: Context) -> Iterator[Element]:
-    """The objects that a rule is about."""
+    """The objects that a rule checks."""
     versions = [version for version in context.versions if (rule.since or "") <= version <= (rule.until or "9")]
     if rule.among is not None and versions:
         yield from (element for element in rule.among(context) if isinstance(element, rule.target))

@@ -1,4 +1,4 @@
-"""Bounds of deviations and clocks as exact numbers, and quantities as text for people."""
+"""Bounds of deviations and clock frequencies as exact numbers, and quantities formatted for messages."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ from amalthea_uros.metamodel.classes import (
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.magnitudes import SIZES, TIMES, hertz, picoseconds
 
-#: Units for text, biggest first.
+#: Units for messages, largest first.
 _SIZES_SHOWN = ("GiB", "GB", "MiB", "MB", "KiB", "kB", "B", "bit")
 
 Deviation = ITimeDeviation | IDiscreteValueDeviation | IContinuousValueDeviation
 
 
 def clock(unit: ProcessingUnit) -> Fraction | None:
-    """The frequency of a processing unit in hertz; None if it is not known."""
+    """The clock frequency of a processing unit in hertz; None if it is unknown."""
     value = hertz(unit.frequency_domain.default_value) if unit.frequency_domain is not None else None
     return value if value is not None and value > 0 else None
 
 
 def bounds(deviation: Deviation | None) -> tuple[float | None, float | None]:
-    """The least and the greatest value, whole numbers exact, times in picoseconds; None where there is no bound."""
+    """The lower and upper bound, whole numbers exact, times in picoseconds; None for a missing bound."""
     match deviation:
         case None:
             return None, None
@@ -61,19 +61,19 @@ def _number(element: Element, feature: str) -> float | None:
 
 
 def time_text(time: int | Fraction) -> str:
-    """A time for people, in the biggest unit in which it is at least 1: `2.5 ms`."""
+    """A time for messages, in the largest unit in which it is at least 1: `2.5 ms`."""
     value = Fraction(time)
     unit = next((unit for unit, size in TIMES.items() if abs(value) >= size), TimeUnit.S)
     return f"{number_text(value / TIMES[unit])} {unit}"
 
 
 def size_text(size: int) -> str:
-    """A data size for people, in the biggest unit that needs no decimals: `240 KiB`."""
+    """A data size for messages, in the largest unit that needs no decimals: `240 KiB`."""
     unit = next(unit for unit in map(DataSizeUnit, _SIZES_SHOWN) if size % SIZES[unit] == 0) if size else DataSizeUnit.B
     return f"{number_text(Fraction(size, SIZES[unit]))} {unit}"
 
 
 def number_text(number: Fraction) -> str:
     """A number of any size with at most twelve digits."""
-    # Quantities may be beyond the range of float.
+    # Quantities may exceed the range of float.
     return f"{Decimal(number.numerator) / Decimal(number.denominator):.12g}"

@@ -1,4 +1,4 @@
-"""Which rules there are: the files tell, so that none has to be imported for that."""
+"""The available rules, found by their files so that listing them imports none of them."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from importlib.resources import files
 
 from amalthea_uros.validate.rule import Profile, Rule
 
-#: How a file says the id of its rule.
+#: The line of a file that defines the id of its rule.
 _ID = re.compile(r'^    id="([^"]+)",$', re.MULTILINE)
 
 
 def ids(profiles: Iterable[Profile] = Profile) -> Iterator[str]:
-    """The ids of the rules of some profiles, in order."""
+    """The ids of the rules in profiles, sorted within each profile."""
     for profile in profiles:
         folder = files("amalthea_uros.validate.rules") / _folder(profile)
         yield from sorted(_ID.findall((folder / f"{name}.py").read_text())[0] for name in _modules(profile))
 
 
 def profile_of(identifier: str) -> Profile | None:
-    """The profile of a rule, None if there is no such rule."""
+    """The profile of a rule; None if there is no such rule."""
     name = _module(identifier)
     return next((profile for profile in Profile if name in _modules(profile)), None)
 
@@ -32,7 +32,7 @@ def rule(identifier: str) -> Rule:
 
     Raises
     ------
-    KeyError : there is none.
+    KeyError : there is no such rule.
     """
     profile = profile_of(identifier)
     if profile is None:

@@ -1,4 +1,4 @@
-"""Repairs what rules find, where there is one way to."""
+"""Automatic repair of findings that can be repaired in exactly one way."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from amalthea_uros.validate.rule import ModelRule
 
 @dataclass(frozen=True, slots=True)
 class Repairs:
-    """What was done to a model.
+    """The changes to a model.
 
     Attributes
     ----------
-    done : how many objects were repaired, by the id of the rule
-    changed : the documents in which something changed
-    rewritten : those of them that have to be written in canonical form
+    done : the number of repaired objects by the id of the rule
+    changed : the documents that were changed
+    rewritten : the changed documents that must be written in canonical form
     """
 
     done: Counter[str] = field(default_factory=Counter)
@@ -30,14 +30,14 @@ class Repairs:
 
 
 def repair(model: Model, rules: Iterable[ModelRule]) -> Repairs:
-    """Change a model such that rules fire less often."""
+    """Repair the findings of rules in a model where possible."""
     repairs = Repairs()
     for rule in rules:
         if rule.fix is None and not rule.in_canonical_form:
             continue
-        # What other rules changed counts.
+        # A new context, because earlier rules may have changed the model.
         context = Context(model)
-        for element in list(_faulty(rule, context)):
+        for element in list(_with_findings(rule, context)):
             document = element.document
             if document is not None and (rule.fix is None or rule.fix(element, context)):
                 repairs.done[rule.id] += 1
@@ -47,10 +47,10 @@ def repair(model: Model, rules: Iterable[ModelRule]) -> Repairs:
     return repairs
 
 
-def _faulty(rule: ModelRule, context: Context) -> Iterator[Element]:
+def _with_findings(rule: ModelRule, context: Context) -> Iterator[Element]:
     for element in concerned(rule, context):
         try:
             if any(rule.check(element, context)):
                 yield element
-        except Exception:  # a mistake of the rule, which is told when it is run
+        except Exception:  # a bug in the rule, reported when the rule is run
             continue

@@ -1,4 +1,4 @@
-"""What a rule is."""
+"""The definition of a rule."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from amalthea_uros.validate.context import Context
 
 
 class Profile(StrEnum):
-    """A set of rules for a purpose; the folder in which they are has its name."""
+    """A set of rules for a purpose, in the folder of the same name."""
 
     SCHEMA = "schema"
     EMF = "emf"
@@ -26,15 +26,15 @@ class Profile(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rule:
-    """What is to be known of a rule; what finds it is elsewhere: the XML schema, or the building of a system from a description.
+    """The description of a rule. Its check is elsewhere: in the XML schema, or in the code that builds a system from a description.
 
     Attributes
     ----------
-    id : unique; those of APP4MC's own rules are APP4MC's
-    title : what is wrong where the rule fires, in a few words
-    rationale : why that matters
-    remedy : what to do about it
-    fails, passes : what stands in a model, or in a description, in which the rule fires, or does not
+    id : unique id; rules of APP4MC keep the id that APP4MC uses
+    title : the problem, as a short noun phrase
+    rationale : the consequence of the problem
+    remedy : how to solve the problem, as an imperative
+    fails, passes : content of a model, or a description, with and without a finding of the rule
     """
 
     id: str
@@ -46,17 +46,17 @@ class Rule:
     passes: str
 
 
-class Milder(NamedTuple):
-    """A sentence about something that matters less than what a rule else finds."""
+class Downgraded(NamedTuple):
+    """A message with a lower severity than that of its rule."""
 
     message: str
     severity: Severity = Severity.WARNING
 
 
-#: What is wrong with an object, one sentence for each thing.
-Check = Callable[[Any, Context], Iterator[str | Milder]]
+#: Yields one message for each problem of an object.
+Check = Callable[[Any, Context], Iterator[str | Downgraded]]
 
-#: Repairs an object of which something is wrong, and says whether it did: it does so only where there is one way to.
+#: Repairs an object with a finding if there is exactly one way to do so; returns whether it did.
 Fix = Callable[[Any, Context], bool]
 
 
@@ -66,16 +66,16 @@ class ModelRule(Rule):
 
     Attributes
     ----------
-    target : the class, or classes, whose objects, and those of their subclasses, are looked at
-    check : what is wrong with one of them
-    among : the objects that come into question, where it is known of which; None: all
-    concerns : whether anything can be wrong with objects of a class in an AMALTHEA version; the others are passed over
-    fix : repairs one of them
-    in_canonical_form : nothing is wrong any more where the file is written as EMF writes it
+    target : the class or classes whose objects are checked, including those of subclasses
+    check : yields the messages for one object
+    among : a preselection of the objects to check; None: all objects of the target
+    concerns : whether objects of a class can have findings in an AMALTHEA version; other classes are skipped
+    fix : repairs one object
+    in_canonical_form : writing the file in EMF's form removes the findings
     example_version : AMALTHEA version of the failing example
-    beside : content of a second file, of AMALTHEA 3.3.0, that makes a model with each of the examples
-    since, until : AMALTHEA versions for which it is meant; None: any
-    is_about_files : it tells of what reading found odd in a file, such as unknown elements
+    beside : content of a second file, of AMALTHEA 3.3.0, that is loaded together with each example
+    since, until : the first and the last AMALTHEA version to which the rule applies; None: no limit
+    is_about_files : the rule reports problems found while reading a file, such as unknown elements
     """
 
     target: type[Element] | tuple[type[Element], ...]

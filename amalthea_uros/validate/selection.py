@@ -1,4 +1,4 @@
-"""Which rules somebody wants."""
+"""Selection of rules by profiles and patterns."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from amalthea_uros.validate.rule import Profile
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Selection:
-    """Which rules are wanted, by patterns in which `*` stands for anything.
+    """Rules selected by profiles and by patterns in which `*` matches any text.
 
     Attributes
     ----------
-    profiles : rules for these purposes; all if none is given
-    selected : only these rules; all of the profiles if none is given
-    ignored : not these rules, nor other findings of that id
+    profiles : the profiles to use; empty: all
+    selected : patterns of the rules to run; empty: all rules of the profiles
+    ignored : patterns of the rules and other findings to leave out
     """
 
     profiles: tuple[Profile, ...] = ()
@@ -26,17 +26,17 @@ class Selection:
     ignored: tuple[str, ...] = ()
 
     def rules(self) -> list[str]:
-        """The ids of the rules that are wanted."""
+        """The ids of the selected rules."""
         known = registry.ids(self.profiles or Profile)
         return [identifier for identifier in known if self._is_selected(identifier) and not self.is_ignored(identifier)]
 
     def unknown(self) -> list[str]:
-        """The patterns to select that no rule has."""
+        """The patterns in `selected` that match no rule."""
         known = list(registry.ids())
         return [pattern for pattern in self.selected if not any(fnmatchcase(identifier, pattern) for identifier in known)]
 
     def is_ignored(self, identifier: str) -> bool:
-        """Whether findings of an id are not wanted."""
+        """Whether findings with an id are left out."""
         return _matches(identifier, self.ignored)
 
     def _is_selected(self, identifier: str) -> bool:

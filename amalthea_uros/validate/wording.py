@@ -1,4 +1,4 @@
-"""How several things are named in one sentence."""
+"""Phrases that messages share: lists of names, and numbers with their noun."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from amalthea_uros.metamodel.naming import name_of
 
 
 def listed(elements: Iterable[Element], most: int = 5) -> str:
-    """The names of some objects; of many only the first."""
+    """The quoted names of objects; the rest of a long list is only counted."""
     return joined([repr(name_of(element)) for element in elements], most)
 
 
 def joined(texts: Iterable[str], most: int = 5) -> str:
-    """Some texts; of many only the first.
+    """An enumeration of texts; the rest of a long list is only counted.
 
     >>> joined("ab"), joined("abcd", most=2)
     ('a and b', 'a, b and 2 more')
@@ -23,3 +23,12 @@ def joined(texts: Iterable[str], most: int = 5) -> str:
     if len(every) > most:
         every[most:] = [f"{len(every) - most} more"]
     return " and ".join(filter(None, [", ".join(every[:-1]), *every[-1:]]))
+
+
+def counted(number: int, noun: str) -> str:
+    """A number with its noun, in the singular or with a plural in -s.
+
+    >>> counted(1, "port"), counted(2, "port")
+    ('1 port', '2 ports')
+    """
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -229,7 +229,9 @@ def test_each_file_on_its_own_or_together(tmp_path):
     tasks.write_text(MODEL.format('<swModel><tasks name="T" stimuli="S?type=SingleStimulus"/></swModel>'))
     select = ("--select", "AM-EMF-INTRINSIC/proxy-resolves")
     assert amuros("check", stimuli, tasks, *select).stdout == "no findings\n"
-    assert "refers to 'S?type=SingleStimulus', which is nowhere" in amuros("check", "--each", stimuli, tasks, *select).stdout
+    assert (
+        "refers to 'S?type=SingleStimulus', which is not defined" in amuros("check", "--each", stimuli, tasks, *select).stdout
+    )
     # Descriptions are always models of their own.
     run = amuros("check", ADVANCED, stimuli, ADVANCED.with_name("bodas-test-simple.yaml"), "--select", "INC-CO-KIND")
     assert run.stdout.count("INC-CO-KIND warning") == 2

@@ -6,7 +6,7 @@ CONNECTIONS = [
     ("AM-HW-Connection", ECU.format("", connection("w", None, None)), ["has no port1", "has no port2"]),
     ("AM-HW-Connection", ECU.format("", port("a") + connection("w", "ECU/a", None)), ["has no port2"]),
     ("AM-HW-Connection", ECU.format("", port("a") + connection("w", None, "ECU/a")), ["has no port1"]),
-    ("AM-HW-Connection", ECU.format("", port("a") + connection("w", "ECU/a", "ECU/a")), ["with itself"]),
+    ("AM-HW-Connection", ECU.format("", port("a") + connection("w", "ECU/a", "ECU/a")), ["to itself"]),
     (
         "AM-HW-Connection",
         ECU.format("", port("a", interface="AXI") + port("b", interface="AHB") + connection("w", "ECU/a", "ECU/b")),
@@ -62,17 +62,17 @@ PATHS = [
     ("AM-HW-AccessPath", path("", ""), []),
     ("AM-HW-AccessPath", path("", ' startAddress="0x10" endAddress="0xf"'), ["0xf is below the start address 0x10"]),
     ("AM-HW-AccessPath", path("", ' startAddress="0x10" endAddress="0x10"'), []),
-    ("AM-HW-AccessPath", path(TO_RAM, "", ram=module("Memory", "RAM")), ["'RAM' at its end has no definition"]),
+    ("AM-HW-AccessPath", path(TO_RAM, "", ram=module("Memory", "RAM")), ["destination memory 'RAM' has no definition"]),
     ("AM-HW-AccessPath", path(TO_RAM, ' startAddress="0x100" endAddress="0x500"'), []),
-    ("AM-HW-AccessPath", path(TO_RAM, ' startAddress="0x100" endAddress="0x501"'), ["0x401 bytes from the offset 0x0"]),
-    ("AM-HW-AccessPath", path(TO_RAM, ' endAddress="0x400" memOffset="0x1"'), ["0x400 bytes from the offset 0x1 on"]),
+    ("AM-HW-AccessPath", path(TO_RAM, ' startAddress="0x100" endAddress="0x501"'), ["0x401 bytes at offset 0x0"]),
+    ("AM-HW-AccessPath", path(TO_RAM, ' endAddress="0x400" memOffset="0x1"'), ["0x400 bytes at offset 0x1"]),
     ("AM-HW-AccessPath", path(TO_RAM, ' endAddress="0x400"', size='<size value="8191" unit="bit"/>'), ["0x3ff bytes"]),
     ("AM-HW-AccessPath", path(TO_RAM, ' endAddress="0x401"', size=""), []),
     ("AM-HW-AccessPath", path(TO_RAM, ' endAddress="0x401"', size='<size value="1"/>'), []),
     ("AM-HW-AccessPath", path(TO_RAM, ' startAddress="0x501" endAddress="0x100"'), ["below"]),
     ("AM-HW-AccessPath", path(TO_RAM, ' startAddress="0x10" endAddress="0xf" memOffset="0x800"'), ["below"]),
     ("AM-HW-AccessPath", path(TO_RAM, ' memOffset="0x400"'), []),
-    ("AM-HW-AccessPath", path(TO_RAM, ' memOffset="0x401"'), ["0x0 bytes from the offset 0x401 on"]),
+    ("AM-HW-AccessPath", path(TO_RAM, ' memOffset="0x401"'), ["0x0 bytes at offset 0x401"]),
     ("AM-HW-AccessPath", path(' destination="gone?type=Memory"', ' endAddress="0x401"'), []),
     ("AM-HW-AccessPath", path(' destination="gone?type=Memory"', over(WIRE), JOINED), []),
     ("AM-HW-AccessPath", path(TO_RAM, over(WIRE), JOINED), []),
@@ -84,7 +84,7 @@ PATHS = [
     (
         "AM-HW-AccessPath",
         path(TO_RAM, over(WIRE, "ECU/v?type=HwConnection"), BUSES),
-        ["'ECU.w' and 'ECU.v' follow each other"],
+        ["'ECU.w' and 'ECU.v' are adjacent"],
     ),
     (
         "AM-HW-AccessPath",
@@ -105,7 +105,7 @@ INTERNAL = module(
 )
 DELEGATED = ECU.format("", port("p") + THREE_PORTS + TWO_WIRES.format("ECU/p"))
 PORTS = [
-    (rule, content, ["2 connections lead to the port"] * reported)
+    (rule, content, ["has 2 connections, but at most 1 is allowed"] * reported)
     for content, rules in (
         (
             ECU.format("", CORE.format("") + THREE_PORTS + TWO_WIRES.format("core/p")),
@@ -143,8 +143,8 @@ STRUCTURES = [
     ("AM-HW-Structure", structure(first, second, inner, outer), said)
     for inner, outer, first, second, said in (
         ("i", "i", INITIATOR, RESPONDER, []),
-        ("i", "i", INITIATOR, INITIATOR, ["two ports of the type initiator"]),
-        ("i", "i", RESPONDER, RESPONDER, ["two ports of the type responder"]),
+        ("i", "i", INITIATOR, INITIATOR, ["two ports of type initiator"]),
+        ("i", "i", RESPONDER, RESPONDER, ["two ports of type responder"]),
         ("i", "i", INITIATOR, "", []),
         ("i", "i", "", "", []),
         ("i", "i", "_undefined_", "_undefined_", []),
@@ -176,7 +176,7 @@ STRUCTURES += [
             + connection("u", "ECU/a", "ECU/a")
             + connection("w", "ECU/a", "ECU/b"),
         ),
-        ["'w' joins two ports"],
+        ["'w' connects two ports"],
     ),
     ("AM-HW-Structure", ECU.format("", port("a", INITIATOR) + connection("w", "ECU/a", "ECU/gone")), []),
 ]
@@ -193,10 +193,10 @@ TRANSFERS = [
     ("DOC-ConnectionHandler-Transfers", HANDLER.format(f' maxConcurrentTransfers="{most}"' if most else "", handlers), said)
     for most, handlers, said in (
         (2, handler("bus", *2 * [INITIATOR, RESPONDER]), []),
-        (3, handler("bus", *2 * [INITIATOR, RESPONDER]), ["3 transfers at a time, but 2 ports"]),
-        (2, handler("bus", RESPONDER, RESPONDER, INITIATOR), ["1 ports of type initiator at 'bus'"]),
-        (2, handler("bus", RESPONDER, INITIATOR, INITIATOR), ["1 ports of type responder at 'bus'"]),
-        (1, handler("bus", RESPONDER), ["0 ports of type initiator"]),
+        (3, handler("bus", *2 * [INITIATOR, RESPONDER]), ["'bus' has 2 initiator ports, too few for 3 concurrent transfers"]),
+        (2, handler("bus", RESPONDER, RESPONDER, INITIATOR), ["'bus' has 1 initiator port,"]),
+        (2, handler("bus", RESPONDER, INITIATOR, INITIATOR), ["'bus' has 1 responder port,"]),
+        (1, handler("bus", RESPONDER), ["0 initiator ports, too few for 1 concurrent transfer"]),
         (
             2,
             handler("a", RESPONDER, INITIATOR) + handler("b", *2 * [INITIATOR, RESPONDER]) + handler("c", INITIATOR),
@@ -219,7 +219,7 @@ CATEGORIES = [
         (("I/a", "J/a"), {"AM-HW-Definition": [], "DOC-Feature-Single": []}),
         (
             ("I/a", "I/b", "J/a"),
-            {"AM-HW-Definition": ["'a'", "'b'"], "DOC-Feature-Single": ["'D' has 2 features of the category 'I'"]},
+            {"AM-HW-Definition": ["'a'", "'b'"], "DOC-Feature-Single": ["'D' has 2 features of category 'I'"]},
         ),
         (("I/gone", "J/gone"), {"AM-HW-Definition": [], "DOC-Feature-Single": []}),
         ((), {"AM-HW-Definition": [], "DOC-Feature-Single": []}),

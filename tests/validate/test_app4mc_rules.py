@@ -76,12 +76,12 @@ CALLS = f"""<swModel><runnables name="S"><parameters name="p"/></runnables><runn
         ([CALLS.replace(' name="a"', "")], 0),
     ],
 )
-def test_each_object_of_a_name_is_told(excerpts, count, tmp_path):
+def test_each_object_of_a_name_is_reported(excerpts, count, tmp_path):
     assert len(messages(tmp_path, "AM-EMF-SCOPE", *excerpts)) == count
 
 
 def test_documented_constraints_are_not_said_to_be_reported():
     for identifier in registry.ids([Profile.APP4MC]):
         rationale = registry.rule(identifier).rationale
-        assert rationale.endswith("APP4MC reports it when it validates the model.") is identifier.startswith("AM-")
-        assert ("documentation of APP4MC asks for" in rationale) is identifier.startswith("DOC-")
+        assert rationale.endswith("APP4MC's validation also reports it.") is identifier.startswith("AM-")
+        assert ("The APP4MC documentation requires" in rationale) is identifier.startswith("DOC-")

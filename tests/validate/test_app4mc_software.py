@@ -18,10 +18,14 @@ def calls(argument, called="S"):
 
 ARGUMENTS = [
     ("AM-SW-CallArgument", calls(argument("S", "in")), []),
-    ("AM-SW-CallArgument", calls(argument("R", "in")), ["'R.in' is no parameter of 'S'"]),
-    ("AM-SW-CallArgument", calls("<arguments/>"), ["names no parameter"]),
-    ("AM-SW-CallArgument", calls(argument("S", "in")).replace(' runnable="S?type=Runnable"', ""), ["call of no runnable"]),
-    ("AM-SW-CallArgument", calls("<arguments/>").replace(' runnable="S?type=Runnable"', ""), ["no parameter", "no runnable"]),
+    ("AM-SW-CallArgument", calls(argument("R", "in")), ["'R.in' is not a parameter of the called runnable 'S'"]),
+    ("AM-SW-CallArgument", calls("<arguments/>"), ["has no parameter"]),
+    ("AM-SW-CallArgument", calls(argument("S", "in")).replace(' runnable="S?type=Runnable"', ""), ["call without a runnable"]),
+    (
+        "AM-SW-CallArgument",
+        calls("<arguments/>").replace(' runnable="S?type=Runnable"', ""),
+        ["no parameter", "without a runnable"],
+    ),
     ("AM-SW-CallArgument", calls(argument("S", "gone")), []),
     ("AM-SW-CallArgument", calls(argument("S", "in"), called="gone"), []),
 ]
@@ -62,12 +66,12 @@ DEPENDENCIES = [
     ("AM-SW-DataDependency", depending(owner, on), said)
     for owner, on, said in (
         ("access write", ON_LABEL, []),
-        ("access read", ON_LABEL, ["an access that does not write"]),
-        ("access ", ON_LABEL, ["an access that does not write"]),
+        ("access read", ON_LABEL, ["a label access that does not write"]),
+        ("access ", ON_LABEL, ["a label access that does not write"]),
         ("parameter out", ON_LABEL, []),
         ("parameter inout", ON_LABEL, []),
-        ("parameter in", ON_LABEL, ["the parameter 'in'"]),
-        ("parameter free", ON_LABEL, ["the parameter 'free'"]),
+        ("parameter in", ON_LABEL, ["parameter 'in' is not an output"]),
+        ("parameter free", ON_LABEL, ["parameter 'free' is not an output"]),
         ("argument in", ON_LABEL, []),
         ("argument inout", ON_LABEL, []),
         ("argument out", ON_LABEL, ["the argument for 'S.out'"]),
@@ -105,7 +109,7 @@ DEPENDENCIES += [
         ),
         [],
     ),
-    # An argument that names no parameter is not told twice.
+    # An argument without a parameter is not reported twice.
     (
         "AM-SW-DataDependency",
         f"<swModel>{runnable('R', call('S', '<arguments><dependsOn/></arguments>'))}{OTHER}</swModel>",
@@ -118,8 +122,8 @@ SERVES = runnable("S", features='service="true"')
 SERVICES = [
     ("DOC-Service-Caller", SERVICE(SERVES), []),
     ("DOC-Service-Caller", SERVICE(runnable("S") + process("tasks", "T", call("S"))), []),
-    ("DOC-Service-Caller", SERVICE(SERVES + process("isrs", "I", call("S"))), ["'S' is called by 'I' itself"]),
-    ("DOC-Service-Caller", SERVICE(SERVES + process("tasks", "T", call("S"), call("S"))), ["'S' is called by 'T' itself"]),
+    ("DOC-Service-Caller", SERVICE(SERVES + process("isrs", "I", call("S"))), ["'S' is called directly by 'I'"]),
+    ("DOC-Service-Caller", SERVICE(SERVES + process("tasks", "T", call("S"), call("S"))), ["'S' is called directly by 'T'"]),
     (
         "DOC-Service-Caller",
         SERVICE(
@@ -161,8 +165,8 @@ TRANSMISSIONS = [
     ("DOC-Transmission-Chunk", content, said)
     for content, said in (
         (transmits("", chunk(32, "bit"), rest=LABEL.format(4, "B")), []),
-        (transmits("", chunk(33, "bit"), rest=LABEL.format(4, "B")), ["33 bit is larger than the 4 B"]),
-        (transmits("", chunk(1, "KiB"), rest=LABEL.format(1, "kB")), ["1 KiB is larger than the 1 kB"]),
+        (transmits("", chunk(33, "bit"), rest=LABEL.format(4, "B")), ["33 bit is larger than the transmitted 4 B"]),
+        (transmits("", chunk(1, "KiB"), rest=LABEL.format(1, "kB")), ["1 KiB is larger than the transmitted 1 kB"]),
         (transmits("", chunk(1, "kB"), rest=LABEL.format(1, "KiB")), []),
         (transmits("", chunk(1, "Mibit"), rest=LABEL.format(131, "kB")), ["1 Mibit"]),
         (transmits("", chunk(1, "Mibit"), rest=LABEL.format(132, "kB")), []),
@@ -176,7 +180,7 @@ TRANSMISSIONS = [
         (transmits("", chunk(4, "B"), **IN_CHANNEL, rest=queue("W?type=BaseTypeDefinition") + WORD), []),
         (
             transmits("", chunk(5, "B"), **IN_CHANNEL, rest=queue("W?type=BaseTypeDefinition") + WORD),
-            ["5 B is larger than the 4 B"],
+            ["5 B is larger than the transmitted 4 B"],
         ),
         (transmits("", chunk(5, "B"), **IN_CHANNEL, rest='<channels name="C"/>'), []),
         (transmits("", chunk(5, "B"), **IN_CHANNEL, rest='<channels name="C"><size value="1" unit="B"/></channels>'), []),
@@ -194,10 +198,10 @@ CHANNELS = [
         ("", []),
         ('elements="2"', []),
         ('elements="2" lowerBound="0"', []),
-        ('elements="2" lowerBound="-1"', ["below 0"]),
-        ('elements="2" lowerBound="3"', ["3, of at most 2"]),
+        ('elements="2" lowerBound="-1"', ["-1 is negative"]),
+        ('elements="2" lowerBound="3"', ["3 is above the number of elements 2"]),
         ('lowerBound="3"', []),
-        ('lowerBound="-1"', ["below 0"]),
+        ('lowerBound="-1"', ["-1 is negative"]),
     )
 ] + [
     ("DOC-Channel-Fill", f'<swModel><channels name="C" {bounds}/>{sender}</swModel>', said)
@@ -205,7 +209,7 @@ CHANNELS = [
         ("", "", []),
         ('defaultElements="3"', "", []),
         ('defaultElements="3" maxElements="3"', "", []),
-        ('defaultElements="4" maxElements="3"', "", ["'C' holds 4 elements at the start, of at most 3"]),
+        ('defaultElements="4" maxElements="3"', "", ["'C' starts with 4 elements, but can hold at most 3"]),
         *(
             (
                 bounds,
@@ -220,7 +224,7 @@ CHANNELS = [
             )
             for bounds, sent, said in (
                 ('maxElements="3"', (3, 1), []),
-                ('maxElements="3"', (1, 4, 2), ["4 elements at once"]),
+                ('maxElements="3"', (1, 4, 2), ["'C' receives 4 elements at once"]),
                 ('maxElements="3"', (1, ""), []),
                 ("", (4,), []),
             )
@@ -236,13 +240,13 @@ INITIAL = [
         ('mode="M?type=EnumMode"', []),
         ('mode="M?type=EnumMode" initialValue="on"', []),
         ('mode="M?type=EnumMode" initialValue=" on "', []),
-        ('mode="M?type=EnumMode" initialValue="On"', ["'On', which is no literal of 'M'"]),
-        ('mode="M?type=EnumMode" initialValue="0"', ["'0', which is no literal"]),
+        ('mode="M?type=EnumMode" initialValue="On"', ["'On' of 'L' is not a literal of 'M'"]),
+        ('mode="M?type=EnumMode" initialValue="0"', ["'0' of 'L' is not a literal"]),
         ('mode="N?type=NumericMode" initialValue="0"', []),
         ('mode="N?type=NumericMode" initialValue=" -12 "', []),
-        ('mode="N?type=NumericMode" initialValue="+1"', ["no integer"]),
-        ('mode="N?type=NumericMode" initialValue="1.0"', ["no integer"]),
-        ('mode="N?type=NumericMode" initialValue="on"', ["no integer"]),
+        ('mode="N?type=NumericMode" initialValue="+1"', ["not an integer"]),
+        ('mode="N?type=NumericMode" initialValue="1.0"', ["not an integer"]),
+        ('mode="N?type=NumericMode" initialValue="on"', ["not an integer"]),
         ('initialValue="on"', []),
         ('mode="gone?type=EnumMode" initialValue="off"', []),
     )
@@ -257,6 +261,6 @@ def test_a_case(rule, excerpt, said, tmp_path):
 def test_the_type_of_a_channel_is_contained_in_old_models(tmp_path):
     element = '<channels name="C"><elementType xsi:type="am:{}"/></channels>'
     typed = element.format('TypeRef" typeDef="W?type=BaseTypeDefinition')
-    for rest, said in ((typed, ["5 B is larger than the 4 B"]), (element.format("Array"), [])):
+    for rest, said in ((typed, ["5 B is larger than the transmitted 4 B"]), (element.format("Array"), [])):
         excerpt = transmits("", chunk(5, "B"), **IN_CHANNEL, rest=rest + WORD)
         assert_said(messages(tmp_path, "DOC-Transmission-Chunk", excerpt, version="2.2.0"), said)

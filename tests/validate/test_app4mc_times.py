@@ -86,11 +86,11 @@ def test_times_that_may_be_negative(frame, kind, feature, tmp_path):
     assert not messages(tmp_path, "AM-Basic-Time-Range", role(frame, kind, feature, 'value="-1" unit="ms"'))
 
 
-def test_a_time_is_told_with_its_role_and_unit(tmp_path):
+def test_a_message_names_the_role_and_the_unit(tmp_path):
     excerpt = role(STIMULUS, "ArrivalCurveStimulus", "entries/lowerTimeBorder", 'value="-2" unit="us"')
-    assert messages(tmp_path, "AM-Basic-Time-Range", excerpt) == ["the lower time border is -2 us, which is not 0 or more"]
+    assert messages(tmp_path, "AM-Basic-Time-Range", excerpt) == ["the lower time border is -2 us, but must be 0 or more"]
     excerpt = role(STIMULUS, "PeriodicStimulus", "recurrence", "")
-    assert messages(tmp_path, "AM-Basic-Time-Range", excerpt) == ["the recurrence is 0, which is not above 0"]
+    assert messages(tmp_path, "AM-Basic-Time-Range", excerpt) == ["the recurrence is 0, but must be greater than 0"]
 
 
 def test_each_of_several_times_is_looked_at(tmp_path):

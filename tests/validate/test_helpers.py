@@ -27,7 +27,7 @@ from amalthea_uros.metamodel.classes import (
 from amalthea_uros.metamodel.magnitudes import bits, picoseconds
 from amalthea_uros.validate.graphs import bottom_up, circles
 from amalthea_uros.validate.quantities import bounds, clock, size_text, time_text
-from amalthea_uros.validate.wording import joined, listed
+from amalthea_uros.validate.wording import counted, joined, listed
 
 
 @pytest.mark.parametrize(
@@ -153,6 +153,11 @@ def test_lists():
     assert joined("abcdef", most=6) == "a, b, c, d, e and f"
     assert joined("abcdefg", most=5) == "a, b, c, d, e and 2 more"
     assert listed([Task(name="T"), Task()]) == "'T' and ''"
+
+
+@pytest.mark.parametrize(("number", "text"), [(0, "0 ports"), (1, "1 port"), (2, "2 ports")])
+def test_numbers_with_a_noun(number, text):
+    assert counted(number, "port") == text
 
 
 GRAPHS = st.dictionaries(st.integers(0, 7), st.lists(st.integers(0, 7), max_size=3), max_size=8)

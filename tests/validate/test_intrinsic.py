@@ -106,10 +106,10 @@ MODES = """
     [
         ('mode="E?type=EnumMode"', []),
         ('mode="E?type=EnumMode" initialValue=" on "', []),
-        ('mode="E?type=EnumMode" initialValue="1"', ["'L' starts with '1', which is not one of 'on'"]),
+        ('mode="E?type=EnumMode" initialValue="1"', ["the initial value '1' of 'L' is not one of 'on'"]),
         ('mode="N?type=NumericMode" initialValue="-12"', []),
-        ('mode="N?type=NumericMode" initialValue="1.5"', ["'L' starts with '1.5', which is not an integer"]),
-        ('initialValue="1"', ["the mode label 'L' has no mode"]),
+        ('mode="N?type=NumericMode" initialValue="1.5"', ["the initial value '1.5' of 'L' is not an integer"]),
+        ('initialValue="1"', ["mode label 'L' has no mode"]),
     ],
 )
 def test_initial_values_of_mode_labels(attributes, expected, tmp_path):

@@ -126,15 +126,17 @@ def data_age(parts):
     ],
 )
 def test_least_times_above_the_greatest(rule, holder, least, greatest, what, tmp_path):
-    def told(*parts):
+    def reported(*parts):
         return found(rule, CONSTRAINTS.format(holder("".join(parts))), tmp_path)
 
     above = f'<{greatest} value="2" unit="ms"/>'
-    assert told(f'<{least} value="2001" unit="us"/>', above) == [f"the {what} is at least 2.001 ms and at most 2 ms"]
-    assert told(f'<{least} value="2000" unit="us"/>', above) == []
-    assert told(f'<{least} value="3" unit="ms"/>') == []
-    assert told(above) == []
-    assert told(f'<{least} value="3"/>', above) == []
+    assert reported(f'<{least} value="2001" unit="us"/>', above) == [
+        f"the minimum {what} 2.001 ms is above the maximum {what} 2 ms"
+    ]
+    assert reported(f'<{least} value="2000" unit="us"/>', above) == []
+    assert reported(f'<{least} value="3" unit="ms"/>') == []
+    assert reported(above) == []
+    assert reported(f'<{least} value="3"/>', above) == []
 
 
 # Deadlines
@@ -159,7 +161,7 @@ LIMIT = '<limit xsi:type="am:TimeRequirementLimit" limitType="{}" metric="{}"><l
 
 
 @pytest.mark.parametrize(
-    ("definition", "limit", "is_told"),
+    ("definition", "limit", "is_reported"),
     [
         ("EarliestDeadlineFirst", "", True),
         ("EarliestDeadlineFirst", LIMIT.format("UpperLimit", "ResponseTime"), False),
@@ -168,8 +170,8 @@ LIMIT = '<limit xsi:type="am:TimeRequirementLimit" limitType="{}" metric="{}"><l
         ("FixedPriorityPreemptive", "", False),
     ],
 )
-def test_tasks_by_deadline(definition, limit, is_told, tmp_path):
-    assert bool(found(EDF, scheduled(definition, limit), tmp_path)) is is_told
+def test_tasks_by_deadline(definition, limit, is_reported, tmp_path):
+    assert bool(found(EDF, scheduled(definition, limit), tmp_path)) is is_reported
 
 
 def test_a_task_that_is_allocated_to_nothing_needs_no_deadline(tmp_path):
@@ -185,19 +187,17 @@ def test_tasks_by_deadline_until_1_2(tmp_path):
 </osModel>
 <swModel><tasks name="T"/></swModel>
 <mappingModel><taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/></mappingModel>"""
-    assert found(EDF, excerpt, tmp_path, "1.2.0") == [
-        "'T' is scheduled by deadlines, and no requirement limits its response time"
-    ]
+    assert found(EDF, excerpt, tmp_path, "1.2.0") == ["'T' is scheduled by EDF, but no requirement limits its response time"]
 
 
 @pytest.mark.parametrize(
-    ("metric", "value", "is_told"),
+    ("metric", "value", "is_reported"),
     [("ResponseTime", 0, True), ("ResponseTime", -1, True), ("ResponseTime", 1, False), ("Lateness", 0, False)],
 )
-def test_limits_of_response_times(metric, value, is_told, tmp_path):
+def test_limits_of_response_times(metric, value, is_reported, tmp_path):
     limit = f"""<limit xsi:type="am:TimeRequirementLimit" metric="{metric}"><limitValue value="{value}" unit="ms"/></limit>"""
     excerpt = CONSTRAINTS.format(f'<requirements xsi:type="am:ProcessRequirement" name="R">{limit}</requirements>')
-    assert bool(found("TA-Constraints-RTLimitMustBePositive", excerpt, tmp_path)) is is_told
+    assert bool(found("TA-Constraints-RTLimitMustBePositive", excerpt, tmp_path)) is is_reported
 
 
 def test_a_limit_without_a_value_is_not_judged(tmp_path):
@@ -210,7 +210,7 @@ def test_a_limit_without_a_value_is_not_judged(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("category", "feature", "value", "is_told"),
+    ("category", "feature", "value", "is_reported"),
     [
         ("Instructions", "IPC_1", 'value="0"', True),
         ("INSTRUCTIONS", "IPC_1", 'value="-1.5"', True),
@@ -224,23 +224,23 @@ def test_a_limit_without_a_value_is_not_judged(tmp_path):
         ("Power", "IPC_1", 'value="0"', False),
     ],
 )
-def test_instructions_per_cycle(category, feature, value, is_told, tmp_path):
+def test_instructions_per_cycle(category, feature, value, is_reported, tmp_path):
     excerpt = f"""
 <hwModel><featureCategories name="{category}"><features name="{feature}" {value}/></featureCategories></hwModel>"""
-    assert bool(found("TA-Hardware-HWFIPCMustBePositive", excerpt, tmp_path)) is is_told
+    assert bool(found("TA-Hardware-HWFIPCMustBePositive", excerpt, tmp_path)) is is_reported
 
 
 @pytest.mark.parametrize(
     ("kind", "features", "expected"),
     [
-        ("CPU", "", ["'D' has no instructions per cycle, 1.0 is taken"]),
-        ("CPU", "Instructions/other?type=HwFeature", ["'D' has no instructions per cycle, 1.0 is taken"]),
-        ("CPU", "Power/IPC_3?type=HwFeature", ["'D' has no instructions per cycle, 1.0 is taken"]),
+        ("CPU", "", ["IPC of 'D' is not defined; assuming 1.0"]),
+        ("CPU", "Instructions/other?type=HwFeature", ["IPC of 'D' is not defined; assuming 1.0"]),
+        ("CPU", "Power/IPC_3?type=HwFeature", ["IPC of 'D' is not defined; assuming 1.0"]),
         ("CPU", "Instructions/IPC_1?type=HwFeature", []),
         (
             "CPU",
             "Instructions/IPC_1?type=HwFeature Instructions/IPC_2?type=HwFeature",
-            ["'D' has 2 values of instructions per cycle, the first one is taken"],
+            ["IPC of 'D' is defined 2 times; using the first value"],
         ),
         ("GPU", "", []),
         ("_undefined_", "", []),
@@ -287,12 +287,12 @@ TRUE = "TA-Software-ModeConditionDisjunctionAlwaysTrue"
 @pytest.mark.parametrize(
     ("entries", "expected"),
     [
-        ([("EQUAL", "on"), ("EQUAL", "off")], ["'L' is required to be 'on' and 'off' at once"]),
+        ([("EQUAL", "on"), ("EQUAL", "off")], ["'L' must equal 'on' and 'off' at the same time"]),
         ([("EQUAL", "on"), ("EQUAL", "on")], []),
         ([("EQUAL", "on"), ("EQUAL", "off", "K")], []),
         # By the reference, whether there is a third literal or not.
-        ([("NOT_EQUAL", "on"), ("NOT_EQUAL", "off")], ["'L' is required not to be 'on' and 'off'"]),
-        ([("EQUAL", "on"), ("NOT_EQUAL", "on")], ["'L' is required both to be and not to be 'on'"]),
+        ([("NOT_EQUAL", "on"), ("NOT_EQUAL", "off")], ["'L' must differ from 'on' and 'off'"]),
+        ([("EQUAL", "on"), ("NOT_EQUAL", "on")], ["'L' must both equal and differ from 'on'"]),
         ([("EQUAL", "on"), ("NOT_EQUAL", "off")], []),
         ([("EQUAL", "on"), ("LESS_THAN", "on"), ("_undefined_", "off")], []),
     ],
@@ -305,12 +305,12 @@ def test_conditions_that_cannot_all_be_true(entries, expected, tmp_path):
 @pytest.mark.parametrize(
     ("entries", "expected"),
     [
-        ([("EQUAL", "on"), ("EQUAL", "off")], ["'L' may be any of its literals"]),
+        ([("EQUAL", "on"), ("EQUAL", "off")], ["'L' may have any of its literals"]),
         ([("EQUAL", "on"), ("EQUAL", "off", "K")], []),
         ([("EQUAL", "on")], []),
-        ([("EQUAL", "on"), ("NOT_EQUAL", "on")], ["'L' may be 'on', and anything else"]),
+        ([("EQUAL", "on"), ("NOT_EQUAL", "on")], ["'L' may equal 'on' or differ from it"]),
         ([("EQUAL", "on"), ("NOT_EQUAL", "off")], []),
-        # Always true, too, but not told by the reference.
+        # Always true, too, but not reported by the reference.
         ([("NOT_EQUAL", "on"), ("NOT_EQUAL", "off")], []),
     ],
 )
@@ -346,7 +346,7 @@ def test_conditions_of_older_versions(version, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("items", "is_told"),
+    ("items", "is_reported"),
     [
         (["WaitEvent"], True),
         (["WaitEvent", "ClearEvent"], True),
@@ -356,7 +356,7 @@ def test_conditions_of_older_versions(version, tmp_path):
         ([], False),
     ],
 )
-def test_events_that_are_never_set(items, is_told, tmp_path):
+def test_events_that_are_never_set(items, is_reported, tmp_path):
     graph = "".join(
         f'<items xsi:type="am:{item}"><eventMask events="F?type=OsEvent E?type=OsEvent"/></items>' for item in items
     )
@@ -366,7 +366,7 @@ def test_events_that_are_never_set(items, is_told, tmp_path):
   <tasks name="T"><activityGraph>{graph}{both}</activityGraph></tasks>
   <events name="E"/><events name="F"/>
 </swModel>"""
-    expected = ["'E' is waited for, and nothing sets it"] if is_told else []
+    expected = ["'E' is waited for, but never set"] if is_reported else []
     assert found("TA-Stimuli-ArrivalCurveStimulus", excerpt, tmp_path) == expected
 
 
@@ -380,7 +380,7 @@ def runnables(item):
 
 
 def test_a_runnable_that_calls_itself(tmp_path):
-    # By way of others it is not told.
+    # Calls through others are not reported.
     item = '<items xsi:type="am:RunnableCall" runnable="R?type=Runnable"/>'
     assert found("TA-Software-RunnableCall", runnables(item), tmp_path) == ["'R' calls itself"]
 
@@ -396,16 +396,26 @@ def test_a_runnable_that_is_its_own_server(call, tmp_path):
     [
         ("", "3.3.0", []),
         ('initialValue="1"', "3.3.0", []),
-        ('initialValue="2"', "3.3.0", ["'S' has 2 users at the start, and room for 1"]),
-        ('initialValue="-1"', "2.0.0", ["'S' has -1 users at the start", "'S' has room for 0 users"]),
-        ('maxValue="0"', "2.0.0", ["'S' has room for 0 users"]),
+        ('initialValue="2"', "3.3.0", ["the initial value 2 of 'S' is above the maximum value 1"]),
+        (
+            'initialValue="-1"',
+            "2.0.0",
+            [
+                "the initial value of 'S' is -1, but must be 0 or more",
+                "the maximum value of 'S' is 0, but must be greater than 0",
+            ],
+        ),
+        ('maxValue="0"', "2.0.0", ["the maximum value of 'S' is 0, but must be greater than 0"]),
         (
             'initialValue="1" maxValue="0"',
             "2.0.0",
-            ["'S' has room for 0 users", "'S' has 1 users at the start, and room for 0"],
+            [
+                "the maximum value of 'S' is 0, but must be greater than 0",
+                "the initial value 1 of 'S' is above the maximum value 0",
+            ],
         ),
-        # Until 2.0 there is no room where nothing is stated.
-        ("", "2.0.0", ["'S' has room for 0 users"]),
+        # Until 2.0 the default of the maximum value is 0.
+        ("", "2.0.0", ["the maximum value of 'S' is 0, but must be greater than 0"]),
         ("", "2.1.0", []),
     ],
 )

@@ -93,7 +93,7 @@ def test_a_priority_by_default(tmp_path):
 def test_priorities_below_a_grouping(tmp_path):
     # The parent of a grouping decides, by the priority of the task, or by that of the whole group.
     parent = '<parentAssociation parent="P?type=TaskScheduler">{}</parentAssociation>'
-    for inner, expected in (("", ["the task 'T' has no priority"]), (prioritized(1), [])):
+    for inner, expected in (("", ["task 'T' has no priority"]), (prioritized(1), [])):
         excerpt = scheduled("Grouping", [("T", None)], parent=parent.format(inner))
         assert found("TIM-PRIORITY", excerpt, tmp_path) == expected
 
@@ -152,7 +152,7 @@ def test_priorities_until_1_2(tmp_path):
 </mappingModel>"""
 
     one = '<schedulingParameters priority="1"/>'
-    assert found("TIM-PRIORITY", excerpt(one, ""), tmp_path, "1.2.0") == ["the task 'U' has no priority"]
+    assert found("TIM-PRIORITY", excerpt(one, ""), tmp_path, "1.2.0") == ["task 'U' has no priority"]
     assert len(found("TIM-PRIORITY-SHARED", excerpt(one, one), tmp_path, "1.2.0")) == 2
 
 
@@ -178,15 +178,15 @@ def test_a_scheduler_without_tasks_needs_no_policy(tmp_path):
         (
             "",
             [
-                "'T' is allocated to no scheduler and no interrupt controller",
-                "'I' is allocated to no scheduler and no interrupt controller",
+                "'T' is not allocated to a scheduler or an interrupt controller",
+                "'I' is not allocated to a scheduler or an interrupt controller",
             ],
         ),
         (
             '<taskAllocation task="T?type=Task"/><isrAllocation isr="I?type=ISR"/>',
             [
-                "'T' is allocated to no scheduler and no interrupt controller",
-                "'I' is allocated to no scheduler and no interrupt controller",
+                "'T' is not allocated to a scheduler or an interrupt controller",
+                "'I' is not allocated to a scheduler or an interrupt controller",
             ],
         ),
         (
@@ -227,7 +227,7 @@ def test_clocks(value, is_known, tmp_path):
     <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
   </structures>
 </hwModel>"""
-    assert found("TIM-CLOCK", excerpt, tmp_path) == ([] if is_known else ["the clock of 'core' is not known"])
+    assert found("TIM-CLOCK", excerpt, tmp_path) == ([] if is_known else ["the clock frequency of 'core' is unknown"])
 
 
 # Activations
@@ -296,12 +296,16 @@ TRIGGER = '<items xsi:type="am:InterProcessTrigger" stimulus="I?type=InterProces
 @pytest.mark.parametrize(
     ("stimuli", "others", "expected"),
     [
-        ("", "", ["nothing activates 'T'"]),
-        ("I?type=InterProcessStimulus", "", ["nothing activates 'T': nothing triggers 'I'"]),
-        ("I?type=InterProcessStimulus", f'<isrs name="J">{graph(TRIGGER)}</isrs>', ["nothing activates 'J'"]),
+        ("", "", ["'T' is never activated: it has no stimulus"]),
+        ("I?type=InterProcessStimulus", "", ["'T' is never activated: nothing triggers 'I'"]),
+        (
+            "I?type=InterProcessStimulus",
+            f'<isrs name="J">{graph(TRIGGER)}</isrs>',
+            ["'J' is never activated: it has no stimulus"],
+        ),
         # The runnable is not executed.
-        ("I?type=InterProcessStimulus", runnable("R", TRIGGER), ["nothing activates 'T': nothing triggers 'I'"]),
-        ("E?type=EventStimulus", "", ["nothing activates 'T': nothing triggers 'E'"]),
+        ("I?type=InterProcessStimulus", runnable("R", TRIGGER), ["'T' is never activated: nothing triggers 'I'"]),
+        ("E?type=EventStimulus", "", ["'T' is never activated: nothing triggers 'E'"]),
         ("I?type=InterProcessStimulus C?type=CustomStimulus", "", []),
         ("elsewhere?type=InterProcessStimulus", "", []),
     ],
@@ -504,7 +508,9 @@ def test_processes_that_take_no_time(task, others, is_told, tmp_path):
 )
 def test_runnables_that_no_process_executes(task, others, expected, tmp_path):
     excerpt = f'<swModel><tasks name="T">{graph(task)}</tasks>{others}</swModel>'
-    assert found("TIM-UNREACHABLE", excerpt, tmp_path) == [f"no process executes the runnable {name!r}" for name in expected]
+    assert found("TIM-UNREACHABLE", excerpt, tmp_path) == [
+        f"runnable {name!r} is not executed by any process" for name in expected
+    ]
 
 
 def test_a_runnable_that_waits_for_itself_as_a_server(tmp_path):
@@ -568,12 +574,12 @@ def test_bounds(deviation, expected, tmp_path):
     ("attributes", "expected"),
     [
         ('lowerBound="1" average="5" upperBound="9"', []),
-        ('lowerBound="1" average="1" upperBound="9"', ["the average 1.0 does not lie strictly between 1 and 9"]),
-        ('lowerBound="1" average="9" upperBound="9"', ["the average 9.0 does not lie strictly between 1 and 9"]),
+        ('lowerBound="1" average="1" upperBound="9"', ["the average 1.0 is not strictly between the bounds 1 and 9"]),
+        ('lowerBound="1" average="9" upperBound="9"', ["the average 9.0 is not strictly between the bounds 1 and 9"]),
         ('lowerBound="1" average="5" upperBound="9" pRemainPromille="999.9"', []),
         (
             'lowerBound="1" average="5" upperBound="9" pRemainPromille="1000"',
-            ["the probability of more than the upper bound is 1000.0 per mille"],
+            ["the probability of exceeding the upper bound is 1000.0 per mille, but must be greater than 0 and less than 1000"],
         ),
     ],
 )
@@ -624,21 +630,21 @@ COST = 'features="Matrix/cost?type=HwFeature"'
 @pytest.mark.parametrize(
     ("excerpt", "expected"),
     [
-        (two_types(need("Matrix"), COST), ["nothing says what the need 'Matrix' takes on 'core1'"]),
+        (two_types(need("Matrix"), COST), ["the cost of need 'Matrix' is not defined for 'core1'"]),
         (two_types(need("Matrix"), COST, tasks="T"), []),
         (two_types(need("Matrix"), COST, tasks=""), []),
-        (two_types(need("Matrix")), ["the need 'Matrix' is no feature category of any processing unit in use"]),
-        (two_types(need("Vector"), COST), ["the need 'Vector' is no feature category of any processing unit in use"]),
+        (two_types(need("Matrix")), ["need 'Matrix' is not a feature category of any processing unit in use"]),
+        (two_types(need("Vector"), COST), ["need 'Vector' is not a feature category of any processing unit in use"]),
         # A cost of nothing is none.
         (
             two_types(need("Matrix"), 'features="Matrix/nothing?type=HwFeature"'),
-            ["the need 'Matrix' is no feature category of any processing unit in use"],
+            ["need 'Matrix' is not a feature category of any processing unit in use"],
         ),
         # One instruction takes one tick.
         (two_types(need("Instructions")), []),
         (
             two_types(need("Vector").replace('<needs key="Vector">', "<needs>")),
-            ["the need '' is no feature category of any processing unit in use"],
+            ["need '' is not a feature category of any processing unit in use"],
         ),
     ],
 )
@@ -674,8 +680,8 @@ def test_waiting(tmp_path):
     items = '<items xsi:type="am:WaitEvent"><eventMask events="E?type=OsEvent F?type=OsEvent"/></items><items xsi:type="am:WaitEvent"/>'
     excerpt = f'<swModel><tasks name="T">{graph(items)}</tasks><events name="E"/><events name="F"/></swModel>'
     assert found("TIM-WAIT", excerpt, tmp_path) == [
-        "nothing says how long it waits for 'E' and 'F' at most",
-        "nothing says how long it waits at most",
+        "the maximum waiting time for 'E' and 'F' is unknown",
+        "the maximum waiting time is unknown",
     ]
 
 
@@ -705,7 +711,7 @@ def mapped(element, place="M"):
 
 
 SECTION = '<physicalSectionMapping name="P" origin="S?type=Section" memory="M?type=Memory"/>'
-FULL = "what is mapped into 'M' needs 11 B, and it has 10 B"
+FULL = "'M' has a size of 10 B, but the objects mapped to it need 11 B"
 
 
 @pytest.mark.parametrize(
@@ -742,19 +748,19 @@ def test_what_lies_in_a_memory(mappings, expected, tmp_path):
         (
             '<size value="1" unit="KiB"/>',
             '<size value="1025" unit="B"/>',
-            ["what is mapped into 'M' needs 1025 B, and it has 1 KiB"],
+            ["'M' has a size of 1 KiB, but the objects mapped to it need 1025 B"],
         ),
         ('<size value="1" unit="KiB"/>', '<size value="1024" unit="B"/>', []),
         (
             '<size value="1" unit="kB"/>',
             '<size value="1" unit="KiB"/>',
-            ["what is mapped into 'M' needs 1 KiB, and it has 1 kB"],
+            ["'M' has a size of 1 kB, but the objects mapped to it need 1 KiB"],
         ),
         ('<size value="1" unit="kbit"/>', '<size value="125" unit="B"/>', []),
         (
             '<size value="1" unit="kbit"/>',
             '<size value="1001" unit="bit"/>',
-            ["what is mapped into 'M' needs 1001 bit, and it has 125 B"],
+            ["'M' has a size of 125 B, but the objects mapped to it need 1001 bit"],
         ),
         ('<size value="0" unit="B"/>', "", []),
     ],

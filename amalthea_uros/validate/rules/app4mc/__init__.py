@@ -1,1 +1,1 @@
-"""What APP4MC reports when it validates a model, under its own ids (AM), and what its documentation asks for (DOC)."""
+"""The checks of APP4MC's own validation, under their original ids (AM), and requirements of its documentation (DOC)."""

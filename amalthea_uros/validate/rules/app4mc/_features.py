@@ -6,7 +6,7 @@ from amalthea_uros.metamodel.classes import HwFeature, HwFeatureCategory, Proces
 
 
 def shared_categories(definition: ProcessingUnitDefinition) -> dict[HwFeatureCategory, list[HwFeature]]:
-    """The categories of which a definition has more than one feature, with these."""
+    """The categories from which a definition refers to more than one feature, with these features."""
     found: dict[HwFeatureCategory, list[HwFeature]] = {}
     for feature in dict.fromkeys(definition.features):
         if isinstance(feature.container, HwFeatureCategory):

@@ -10,19 +10,19 @@ from amalthea_uros.validate.context import Context
 
 
 def is_internal(connection: HwConnection) -> bool:
-    """Whether a connection lies inside a connection handler."""
+    """Whether a connection belongs to a connection handler."""
     return isinstance(connection.container, ConnectionHandler)
 
 
 def connections_outside(context: Context) -> Counter[HwPort]:
-    """How many connections lead to each port, but for those inside connection handlers."""
+    """The number of connections at each port, not counting those inside connection handlers."""
     return Counter(
         port for connection in context.all(HwConnection) if not is_internal(connection) for port in set(_ports(connection))
     )
 
 
 def share_no_port(first: Element, second: Element) -> bool:
-    """Whether it is known of two connections or modules that they have no port in common."""
+    """Whether two connections or modules certainly have no port in common; False if one of them is unresolved."""
     if first.unresolved is not None or second.unresolved is not None:
         return False
     if isinstance(second, HwConnection):  # it has two ports, a module may have many

@@ -1,4 +1,4 @@
-"""Where software runs and lies, as the mapping model says."""
+"""Where software is executed and stored, according to the mapping model."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.execution import executing
 from amalthea_uros.validate.scheduling import responsibilities
 
-#: The places of each object that has some, in their order (a dictionary of nothing is a set with an order).
+#: The places of each mapped object, as an ordered set (a dictionary without values).
 Places = dict[Element, dict[Element, None]]
 
 
 def memories(context: Context) -> Places:
-    """The memories of labels: those they are mapped into themselves, or else those of their section."""
+    """The memories of labels: those of their own mappings, or else those of their section."""
     sections = _gathered(
         (part, mapping.memory) for mapping in context.all(PhysicalSectionMapping) for part in (*mapping.origin, *mapping.labels)
     )
@@ -40,7 +40,7 @@ def memories(context: Context) -> Places:
 
 
 def schedulers(context: Context) -> Places:
-    """The schedulers of tasks and runnables, and the interrupt controllers of service routines."""
+    """The schedulers of tasks and runnables, and the interrupt controllers of ISRs."""
     tasks = _gathered((allocation.task, allocation.scheduler) for allocation in context.all(TaskAllocation))
     isrs = _gathered((allocation.isr, allocation.controller) for allocation in context.all(ISRAllocation))
     runnables = _gathered((allocation.entity, allocation.scheduler) for allocation in context.all(RunnableAllocation))
@@ -62,7 +62,7 @@ def cores(context: Context) -> Places:
 
 
 def _with_runnables(processes: Places, stated: Places, context: Context) -> Places:
-    """A runnable is where an allocation of its own says, or else where the processes are in which it runs."""
+    """Add the runnables, by their own allocations, or else by those of the processes that execute them."""
     running = _gathered(
         (runnable, place)
         for runnable in context.all(Runnable)

@@ -1,4 +1,4 @@
-"""Counter with an offset below zero."""
+"""Negative counter offset."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Counter, context: Context) -> Iterator[str]:
     if (element.offset or 0) < 0:
-        yield f"the counter has the offset {element.offset}"
+        yield f"the counter offset is {element.offset}, but must be 0 or more"
 
 
 RULE = ModelRule(
     id="AM-Basic-Counter",
-    title="counter with an offset below zero",
+    title="negative counter offset",
     severity=Severity.ERROR,
     target=Counter,
     check=_check,
-    rationale="It would take effect before the first occurrence. APP4MC reports it when it validates the model.",
-    remedy="State an offset of 0 or more.",
+    rationale="A counter cannot take effect before the first occurrence. APP4MC's validation also reports it.",
+    remedy="Set the offset to 0 or more.",
     fails="""
 <swModel>
   <runnables name="R">

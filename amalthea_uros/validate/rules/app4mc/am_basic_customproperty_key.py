@@ -1,4 +1,4 @@
-"""Custom property that is given twice."""
+"""Duplicate custom property."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ def _check(element: IAnnotatable, context: Context) -> Iterator[str]:
         return
     for key, times in Counter(entry.key for entry in properties).items():
         if times > 1:
-            yield f"the custom property {key!r} is given {times} times"
+            yield f"custom property {key!r} is defined {times} times"
 
 
 RULE = ModelRule(
     id="AM-Basic-CustomProperty-Key",
-    title="custom property that is given twice",
+    title="duplicate custom property",
     severity=Severity.WARNING,
     target=IAnnotatable,
     check=_check,
-    rationale="Only one of them counts, and it is not said which. APP4MC reports it when it validates the model.",
-    remedy="Give each key once.",
+    rationale="Only one of the values takes effect, and which one is undefined. APP4MC's validation also reports it.",
+    remedy="Define each key only once.",
     fails="""
 <swModel>
   <tasks name="T">

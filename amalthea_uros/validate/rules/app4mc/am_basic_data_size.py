@@ -1,4 +1,4 @@
-"""Size that is not above zero."""
+"""Size of zero or less."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: AbstractMemoryElement, context: Context) -> Iterator[str]:
     if element.size is not None and (element.size.value or 0) <= 0:
-        yield f"the size of {element.name!r} is {element.size.value or 0}"
+        yield f"the size of {element.name!r} is {element.size.value or 0}, but must be greater than 0"
 
 
 RULE = ModelRule(
     id="AM-Basic-Data-Size",
-    title="size that is not above zero",
+    title="size of zero or less",
     severity=Severity.ERROR,
     target=AbstractMemoryElement,
     check=_check,
-    rationale="Something in memory cannot be that small. APP4MC reports it when it validates the model.",
-    remedy="State a size above 0, or none.",
+    rationale="An object in memory occupies at least one bit. APP4MC's validation also reports it.",
+    remedy="Set a size greater than 0, or remove the size.",
     fails="""
 <swModel>
   <labels name="L">

@@ -1,4 +1,4 @@
-"""Frequency that is not above zero."""
+"""Frequency of zero or less."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ClockFunction, Frequency, FrequencyDomain
+from amalthea_uros.metamodel.naming import name_of
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
@@ -14,17 +15,17 @@ def _check(element: Frequency, context: Context) -> Iterator[str]:
     holder = element.container
     decides = isinstance(holder, FrequencyDomain) or (isinstance(holder, ClockFunction) and holder.y_offset is element)
     if decides and (element.value or 0) <= 0:
-        yield f"the frequency is {element.value or 0}"
+        yield f"the frequency of {name_of(holder)!r} is {element.value or 0}, but must be greater than 0"
 
 
 RULE = ModelRule(
     id="AM-Basic-Frequency",
-    title="frequency that is not above zero",
+    title="frequency of zero or less",
     severity=Severity.ERROR,
     target=Frequency,
     check=_check,
-    rationale="A clock that stands still counts nothing. APP4MC reports it when it validates the model.",
-    remedy="State a frequency above 0.",
+    rationale="A clock needs a positive frequency to tick. APP4MC's validation also reports it.",
+    remedy="Set a frequency greater than 0.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="c">

@@ -21,8 +21,8 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=Quantity,
     check=_check,
-    rationale="Without a unit a value means nothing, also 0. APP4MC reports it when it validates the model.",
-    remedy="State the unit.",
+    rationale="A value without a unit is meaningless, even if it is 0. APP4MC's validation also reports it.",
+    remedy="Add the unit.",
     fails="""
 <swModel>
   <labels name="L">

@@ -1,4 +1,4 @@
-"""Time below what its role allows."""
+"""Time out of range."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
-_POSITIVE, _NOT_NEGATIVE = "above 0", "0 or more"
+_POSITIVE, _NOT_NEGATIVE = "greater than 0", "0 or more"
 
-#: Least value, in whatever unit: times are whole numbers.
-_LEAST = {_POSITIVE: 1, _NOT_NEGATIVE: 0}
+#: The smallest allowed value in any unit: times are whole numbers.
+_MINIMUM = {_POSITIVE: 1, _NOT_NEGATIVE: 0}
 
-#: What times have to be in their roles, that is, in these features of these classes; in all others they are free.
+#: The required range of times, by class and feature; all other times are unrestricted.
 _ROLES: tuple[tuple[type[Element], str, str], ...] = (
     (FixedPeriodic, "recurrence", _POSITIVE),
     (FixedPeriodic, "offset", _NOT_NEGATIVE),
@@ -64,29 +64,29 @@ _ROLES: tuple[tuple[type[Element], str, str], ...] = (
 
 
 def _check(element: Time, context: Context) -> Iterator[str]:
-    feature, demand = context.once(_demands).get(element, ("", ""))
+    feature, required = context.once(_required_ranges).get(element, ("", ""))
     value = element.value or 0
-    if demand and value < _LEAST[demand]:
-        yield f"the {feature.replace('_', ' ')} is {value} {element.unit or ''}".rstrip() + f", which is not {demand}"
+    if required and value < _MINIMUM[required]:
+        yield f"the {feature.replace('_', ' ')} is {value} {element.unit or ''}".rstrip() + f", but must be {required}"
 
 
-def _demands(context: Context) -> dict[Time, tuple[str, str]]:
+def _required_ranges(context: Context) -> dict[Time, tuple[str, str]]:
     found: dict[Time, tuple[str, str]] = {}
-    for cls, feature, demand in _ROLES:
+    for cls, feature, required in _ROLES:
         for holder in context.all(cls):
             held = getattr(holder, feature)
-            found.update((time, (feature, demand)) for time in (held if isinstance(held, list) else [held]))
+            found.update((time, (feature, required)) for time in (held if isinstance(held, list) else [held]))
     return found
 
 
 RULE = ModelRule(
     id="AM-Basic-Time-Range",
-    title="time below what its role allows",
+    title="time out of range",
     severity=Severity.ERROR,
     target=Time,
     check=_check,
-    rationale="Nothing recurs at once, and nothing begins before the start. APP4MC reports it when it validates the model.",
-    remedy="State a period above 0; an offset, a moment or a bound of 0 or more.",
+    rationale="Periods must be positive; offsets, points in time and bounds must not be negative. APP4MC's validation also reports it.",
+    remedy="Set periods to more than 0, and offsets, points in time and bounds to 0 or more.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicStimulus" name="S">

@@ -1,4 +1,4 @@
-"""Segments that do not fit together."""
+"""Event chain with a gap."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ def _check(element: AbstractEventChain, context: Context) -> Iterator[str]:
         yield "the last segment does not end with the response of the chain"
     for number, (first, then) in enumerate(pairwise(segments), start=2):
         if first.response is not then.stimulus:
-            yield f"the segment {number} does not start with the response of the one before it"
+            yield f"segment {number} does not start with the response of segment {number - 1}"
 
 
 RULE = ModelRule(
     id="AM-Constraints-EventChain",
-    title="segments that do not fit together",
+    title="event chain with a gap",
     severity=Severity.ERROR,
     target=AbstractEventChain,
     check=_check,
-    rationale="A chain is a path without gaps. APP4MC reports it when it validates the model.",
-    remedy="Start each segment with the response of the one before it, and keep to the ends of the chain.",
+    rationale="The segments of an event chain must form a path from its stimulus to its response. APP4MC's validation also reports it.",
+    remedy="Start each segment at the response of the previous one, and begin and end with the stimulus and response of the chain.",
     fails="""
 <eventModel>
   <events xsi:type="am:CustomEvent" name="a"/>

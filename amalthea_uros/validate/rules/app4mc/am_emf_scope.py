@@ -1,4 +1,4 @@
-"""Name that several objects have."""
+"""Ambiguous object name."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: IReferable, context: Context) -> Iterator[str]:
     same = context.namesakes.get(element)
     if element.name and same is not None:
-        yield f"there are {len(same)} objects {unique_name(element)!r}"
+        yield f"{unique_name(element)!r} identifies {len(same)} objects"
 
 
 RULE = ModelRule(
     id="AM-EMF-SCOPE",
-    title="name that several objects have",
+    title="ambiguous object name",
     severity=Severity.ERROR,
     target=IReferable,
     check=_check,
     among=lambda context: context.namesakes,
-    rationale="In all files of a model together, references find an object by its name and class. "
-    "APP4MC reports it when it validates the model.",
-    remedy="Give each object of a class a name of its own.",
+    rationale="References identify objects by name and class across all files of the model, so references to these objects "
+    "are ambiguous. APP4MC's validation also reports it.",
+    remedy="Give each object of a class a unique name.",
     fails="""
 <swModel>
   <tasks name="T"/>

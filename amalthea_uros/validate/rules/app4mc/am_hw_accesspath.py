@@ -1,4 +1,4 @@
-"""Access path that does not lead there."""
+"""Invalid access path."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _check(element: HwAccessPath, context: Context) -> Iterator[str]:
         yield from _end(element.path_elements[-1], destination, "end")
         for first, second in pairwise(element.path_elements):
             if share_no_port(first, second):
-                yield f"{first.qualified_name!r} and {second.qualified_name!r} follow each other, but share no port"
+                yield f"{first.qualified_name!r} and {second.qualified_name!r} are adjacent, but share no port"
 
 
 def _addresses(path: HwAccessPath, destination: HwDestination | None) -> Iterator[str]:
@@ -36,31 +36,31 @@ def _addresses(path: HwAccessPath, destination: HwDestination | None) -> Iterato
     if not isinstance(destination, Memory) or destination.unresolved is not None:
         return
     if destination.definition is None:
-        yield f"the memory {destination.name!r} at its end has no definition"
+        yield f"the destination memory {destination.name!r} has no definition"
         return
     size = bits(destination.definition.size)
     if size is not None and start <= end and 8 * (offset + end - start) > size:
-        yield f"{end - start:#x} bytes from the offset {offset:#x} on are more than the {size // 8:#x} bytes of {destination.name!r}"
+        yield f"{end - start:#x} bytes at offset {offset:#x} exceed the {size // 8:#x} bytes of {destination.name!r}"
 
 
 def _end(element: HwPathElement, neighbour: Element | None, which: str) -> Iterator[str]:
     if element.unresolved is not None:
         return
     if not isinstance(element, HwConnection):
-        yield f"{element.qualified_name!r} at the {which} of the path is no connection"
+        yield f"{element.qualified_name!r} at the {which} of the path is not a connection"
     elif neighbour is not None and share_no_port(element, neighbour):
-        yield f"the connection {element.name!r} at the {which} of the path has no port of {neighbour.qualified_name!r}"
+        yield f"connection {element.name!r} at the {which} of the path has no port of {neighbour.qualified_name!r}"
 
 
 RULE = ModelRule(
     id="AM-HW-AccessPath",
-    title="access path that does not lead there",
+    title="invalid access path",
     severity=Severity.ERROR,
     target=HwAccessPath,
     check=_check,
-    rationale="What an access costs is the sum over its path, which has to be one without gaps. "
-    "APP4MC reports it when it validates the model.",
-    remedy="Lead the path by connections that share ports from the processing unit to the destination, within the size of the memory.",
+    rationale="The access latency is the sum over the elements of the path, so the path must be complete. APP4MC's validation "
+    "also reports it.",
+    remedy="Connect the processing unit to the destination by connections that share ports, and keep the addresses within the memory.",
     fails="""
 <hwModel>
   <definitions xsi:type="am:MemoryDefinition" name="D">

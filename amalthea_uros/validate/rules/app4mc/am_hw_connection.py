@@ -1,4 +1,4 @@
-"""Connection whose ends do not fit."""
+"""Invalid hardware connection."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ def _check(element: HwConnection, context: Context) -> Iterator[str]:
     first, second = element.port1, element.port2
     for name, port in (("port1", first), ("port2", second)):
         if port is None:
-            yield f"the connection {element.name!r} has no {name}"
+            yield f"connection {element.name!r} has no {name}"
     if first is None or second is None:
         return
     if first is second:
-        yield f"the connection {element.name!r} joins a port with itself"
+        yield f"connection {element.name!r} connects a port to itself"
     elif not is_internal(element):
         interfaces = {first.port_interface, second.port_interface} - {None, PortInterface.UNDEFINED}
         if len(interfaces) > 1:
-            yield f"the connection {element.name!r} joins ports of the interfaces {' and '.join(sorted(map(str, interfaces)))}"
+            yield f"connection {element.name!r} connects different interfaces: {' and '.join(sorted(map(str, interfaces)))}"
 
 
 RULE = ModelRule(
     id="AM-HW-Connection",
-    title="connection whose ends do not fit",
+    title="invalid hardware connection",
     severity=Severity.ERROR,
     target=HwConnection,
     check=_check,
-    rationale="It joins nothing, or what cannot be joined. APP4MC reports it when it validates the model.",
-    remedy="Join two different ports of the same interface.",
+    rationale="No data can be transferred over such a connection. APP4MC's validation also reports it.",
+    remedy="Connect two different ports with the same interface.",
     fails="""
 <hwModel>
   <structures name="ECU">

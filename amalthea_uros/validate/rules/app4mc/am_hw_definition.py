@@ -1,4 +1,4 @@
-"""Two features of one category."""
+"""Hardware features of the same category."""
 
 from __future__ import annotations
 
@@ -14,17 +14,18 @@ from amalthea_uros.validate.rules.app4mc._features import shared_categories
 def _check(element: ProcessingUnitDefinition, context: Context) -> Iterator[str]:
     for features in shared_categories(element).values():
         for feature in features:
-            yield f"the feature {feature.name!r} is not the only one of its category"
+            yield f"feature {feature.name!r} is not the only feature of its category in {element.name!r}"
 
 
 RULE = ModelRule(
     id="AM-HW-Definition",
-    title="two features of one category",
+    title="hardware features of the same category",
     severity=Severity.ERROR,
     target=ProcessingUnitDefinition,
     check=_check,
-    rationale="Execution needs find their feature by the category, which has to be one. APP4MC reports it when it validates the model.",
-    remedy="Refer to one feature of each category.",
+    rationale="Execution needs select a feature by its category; with several features the selection is ambiguous. APP4MC's "
+    "validation also reports it.",
+    remedy="Refer to only one feature of each category.",
     fails="""
 <hwModel>
   <definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="I/a?type=HwFeature I/b?type=HwFeature"/>

@@ -21,8 +21,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=HwModule,
     check=_check,
-    rationale="Its properties are not known. APP4MC reports it when it validates the model.",
-    remedy="Refer to a definition.",
+    rationale="Without a definition, the properties of the module are unknown. APP4MC's validation also reports it.",
+    remedy="Add a reference to a definition.",
     fails="""
 <hwModel>
   <structures name="ECU">

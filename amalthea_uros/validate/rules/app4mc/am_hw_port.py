@@ -14,7 +14,7 @@ from amalthea_uros.validate.rules.app4mc._hardware import connections_outside
 def _check(element: HwPort, context: Context) -> Iterator[str]:
     count = context.once(connections_outside)[element]
     if count > 1 and not isinstance(element.container, HwStructure):
-        yield f"{count} connections lead to the port {element.qualified_name!r}"
+        yield f"port {element.qualified_name!r} has {count} connections, but at most 1 is allowed"
 
 
 RULE = ModelRule(
@@ -23,9 +23,8 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=HwPort,
     check=_check,
-    rationale="A connection joins two ports and nothing else; only connection handlers join more. "
-    "APP4MC reports it when it validates the model.",
-    remedy="Give each connection a port of its own, or put a connection handler in between.",
+    rationale="A connection links exactly two ports; only a connection handler can link more. APP4MC's validation also reports it.",
+    remedy="Use a separate port for each connection, or insert a connection handler.",
     fails="""
 <hwModel>
   <structures name="ECU">

@@ -1,4 +1,4 @@
-"""Port without a type or an interface."""
+"""Port without a type or interface."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: HwPort, context: Context) -> Iterator[str]:
     for feature in ("port_type", "port_interface"):
         if getattr(element, feature) in (None, "_undefined_"):
-            yield f"the {feature.replace('_', ' ')} of {element.name!r} is not stated"
+            yield f"port {element.name!r} has no {feature.replace('_', ' ')}"
 
 
 RULE = ModelRule(
     id="AM-HW-Port-Definition",
-    title="port without a type or an interface",
+    title="port without a type or interface",
     severity=Severity.WARNING,
     target=HwPort,
     check=_check,
-    rationale="It is not known what can be joined to it. APP4MC reports it when it validates the model.",
-    remedy="State both.",
+    rationale="Without a type and an interface, connections to the port cannot be checked. APP4MC's validation also reports it.",
+    remedy="Set the port type and the port interface.",
     fails="""
 <hwModel>
   <structures name="ECU">

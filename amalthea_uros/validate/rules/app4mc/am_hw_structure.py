@@ -1,4 +1,4 @@
-"""Connection between ports of types that do not fit."""
+"""Connection between incompatible ports."""
 
 from __future__ import annotations
 
@@ -20,30 +20,30 @@ def _check(element: HwConnection, context: Context) -> Iterator[str]:
         return
     outer = {_is_outer(first, structure), _is_outer(second, structure)}
     if outer == {True, False} and first.port_type != second.port_type:
-        yield f"the connection {element.name!r} delegates a port of type {first.port_type} to one of type {second.port_type}"
+        yield f"connection {element.name!r} delegates between ports of type {first.port_type} and {second.port_type}"
     elif outer in ({True}, {False}) and first.port_type == second.port_type:
-        yield f"the connection {element.name!r} joins two ports of the type {first.port_type}"
+        yield f"connection {element.name!r} connects two ports of type {first.port_type}"
 
 
 def _is_outer(port: HwPort, structure: HwStructure) -> bool | None:
-    """True for a port of the structure itself, False for one of what is directly in it, None for any other."""
+    """True for a port of the structure itself, False for a port of its direct parts, None for any other port."""
     holder = port.container
     if holder is structure:
         return True
     if holder is not None and isinstance(holder.container, ProcessingUnit):
-        holder = holder.container  # the port is one of a cache
+        holder = holder.container  # the port belongs to a cache
     return False if holder is not None and holder.container is structure else None
 
 
 RULE = ModelRule(
     id="AM-HW-Structure",
-    title="connection between ports of types that do not fit",
+    title="connection between incompatible ports",
     severity=Severity.ERROR,
     target=HwConnection,
     check=_check,
-    rationale="One side of a connection asks, the other one answers; a port of a structure stands for one of the same type inside. "
-    "APP4MC reports it when it validates the model.",
-    remedy="Join an initiator with a responder, and delegate ports of a structure to ports of the same type.",
+    rationale="A connection links an initiator to a responder; a port of a structure delegates to an inner port of the same "
+    "type. APP4MC's validation also reports it.",
+    remedy="Connect an initiator to a responder, and delegate ports of a structure to inner ports of the same type.",
     fails="""
 <hwModel>
   <structures name="ECU">

@@ -1,4 +1,4 @@
-"""Interrupt service routine without a controller."""
+"""Interrupt service routine without an interrupt controller."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: ISR, context: Context) -> Iterator[str]:
     if not context.uses(ISRAllocation, "isr")[element]:
-        yield f"no ISR allocation refers to {element.name!r}"
+        yield f"ISR {element.name!r} has no ISR allocation"
 
 
 RULE = ModelRule(
     id="AM-Mapping-ISR-Scheduler",
-    title="interrupt service routine without a controller",
+    title="interrupt service routine without an interrupt controller",
     severity=Severity.WARNING,
     target=ISR,
     check=_check,
-    rationale="It is not served by anything. APP4MC reports it when it validates the model.",
-    remedy="Allocate it to an interrupt controller.",
+    rationale="Without an allocation, no interrupt controller serves the ISR. APP4MC's validation also reports it.",
+    remedy="Allocate the ISR to an interrupt controller.",
     fails="""
 <swModel>
   <isrs name="I"/>

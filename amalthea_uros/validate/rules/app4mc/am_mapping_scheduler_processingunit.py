@@ -13,7 +13,7 @@ from amalthea_uros.validate.scheduling import GROUPING, policy
 
 def _check(element: Scheduler, context: Context) -> Iterator[str]:
     if policy(element) != GROUPING and not context.uses(SchedulerAllocation, "scheduler")[element]:
-        yield f"no scheduler allocation refers to {element.name!r}"
+        yield f"scheduler {element.name!r} has no scheduler allocation"
 
 
 RULE = ModelRule(
@@ -22,8 +22,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=Scheduler,
     check=_check,
-    rationale="It decides for nothing. APP4MC reports it when it validates the model.",
-    remedy="Give it a scheduler allocation.",
+    rationale="Without an allocation, the scheduler controls no processing unit. APP4MC's validation also reports it.",
+    remedy="Add a scheduler allocation with the processing units of the scheduler.",
     fails="""
 <osModel>
   <operatingSystems name="OS">

@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Task, context: Context) -> Iterator[str]:
     if not context.uses(TaskAllocation, "task")[element]:
-        yield f"no task allocation refers to {element.name!r}"
+        yield f"task {element.name!r} has no task allocation"
 
 
 RULE = ModelRule(
@@ -21,8 +21,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=Task,
     check=_check,
-    rationale="It is not served by anything. APP4MC reports it when it validates the model.",
-    remedy="Allocate it to a task scheduler.",
+    rationale="Without an allocation, no scheduler runs the task. APP4MC's validation also reports it.",
+    remedy="Allocate the task to a task scheduler.",
     fails="""
 <swModel>
   <tasks name="T"/>

@@ -1,4 +1,4 @@
-"""Argument that is not for the called runnable."""
+"""Call argument without a matching parameter."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ def _check(element: CallArgument, context: Context) -> Iterator[str]:
     call, parameter = element.container, element.parameter
     called = call.runnable if isinstance(call, RunnableCall) else None
     if parameter is None:
-        yield "the argument names no parameter"
+        yield "the argument has no parameter"
     if called is None:
-        yield "the argument belongs to a call of no runnable"
+        yield "the argument belongs to a call without a runnable"
     elif parameter is not None and None is called.unresolved is parameter.unresolved and parameter.container is not called:
-        yield f"{parameter.qualified_name!r} is no parameter of {called.qualified_name!r}, which is called"
+        yield f"{parameter.qualified_name!r} is not a parameter of the called runnable {called.qualified_name!r}"
 
 
 RULE = ModelRule(
     id="AM-SW-CallArgument",
-    title="argument that is not for the called runnable",
+    title="call argument without a matching parameter",
     severity=Severity.ERROR,
     target=CallArgument,
     check=_check,
-    rationale="It is not known what receives the value. APP4MC reports it when it validates the model.",
-    remedy="Name a parameter of the runnable that is called.",
+    rationale="The called runnable does not receive the value. APP4MC's validation also reports it.",
+    remedy="Refer to a parameter of the called runnable.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Dependency of data that cannot be."""
+"""Invalid data dependency."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
-#: Directions of parameters that bring data into a runnable, and out of it.
+#: Directions of input and output parameters.
 _IN = (DirectionType.IN, DirectionType.INOUT)
 _OUT = (DirectionType.OUT, DirectionType.INOUT)
 
@@ -30,7 +30,7 @@ def _check(element: DataDependency, context: Context) -> Iterator[str]:
     yield from _of_owner(element.container)
     for parameter in element.parameters:
         if parameter.unresolved is None and not (parameter.container is runnable and parameter.direction in _IN):
-            yield f"{parameter.qualified_name!r} is no parameter that brings data into {runnable.qualified_name!r}"
+            yield f"{parameter.qualified_name!r} is not an input parameter of {runnable.qualified_name!r}"
     for argument in element.call_arguments:
         if argument.unresolved is None and not (argument.enclosing(Runnable) is runnable and _has_result(argument)):
             yield f"{argument.qualified_name!r} is not the result of a call in {runnable.qualified_name!r}"
@@ -39,11 +39,11 @@ def _check(element: DataDependency, context: Context) -> Iterator[str]:
 def _of_owner(owner: Element | None) -> Iterator[str]:
     match owner:
         case LabelAccess() if owner.access != LabelAccessEnum.WRITE:
-            yield "an access that does not write depends on data"
+            yield "a label access that does not write cannot depend on data"
         case RunnableParameter() if owner.direction not in _OUT:
-            yield f"the parameter {owner.name!r}, which brings no data out of the runnable, depends on data"
+            yield f"parameter {owner.name!r} is not an output parameter and cannot depend on data"
         case CallArgument(parameter=RunnableParameter(unresolved=None) as parameter) if parameter.direction not in _IN:
-            yield f"the argument for {parameter.qualified_name!r}, which brings no data into the called runnable, depends on data"
+            yield f"the argument for {parameter.qualified_name!r}, which is not an input parameter, cannot depend on data"
 
 
 def _has_result(argument: CallArgument) -> bool:
@@ -53,13 +53,14 @@ def _has_result(argument: CallArgument) -> bool:
 
 RULE = ModelRule(
     id="AM-SW-DataDependency",
-    title="dependency of data that cannot be",
+    title="invalid data dependency",
     severity=Severity.ERROR,
     target=DataDependency,
     check=_check,
-    rationale="Only what is written depends on data, and only on what has come into the runnable. "
-    "APP4MC reports it when it validates the model.",
-    remedy="State dependencies of written labels, outgoing parameters and passed arguments, on parameters and results that come in.",
+    rationale="Only written data can depend on other data, and only on data that is available in the runnable. APP4MC's "
+    "validation also reports it.",
+    remedy="Declare dependencies of written labels, output parameters and passed arguments on labels, input parameters and "
+    "call results.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Channel that is to hold more than it can."""
+"""Channel filled beyond its capacity."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Channel, ChannelSend
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.wording import counted
 
 
 def _check(element: Channel, context: Context) -> Iterator[str]:
@@ -15,14 +16,14 @@ def _check(element: Channel, context: Context) -> Iterator[str]:
     if most is None:
         return
     if (element.default_elements or 0) > most:
-        yield f"{element.name!r} holds {element.default_elements} elements at the start, of at most {most}"
+        yield f"{element.name!r} starts with {counted(element.default_elements or 0, 'element')}, but can hold at most {most}"
     sent = context.once(_sent).get(element, 0)
     if sent > most:
-        yield f"{sent} elements at once are sent to {element.name!r}, which holds at most {most}"
+        yield f"{element.name!r} receives {counted(sent, 'element')} at once, but can hold at most {most}"
 
 
 def _sent(context: Context) -> dict[Channel, int]:
-    """The most elements that are sent to each channel at once."""
+    """The largest number of elements that is sent to each channel at once."""
     found: dict[Channel, int] = {}
     for access in context.all(ChannelSend):
         if access.data is not None:
@@ -32,12 +33,13 @@ def _sent(context: Context) -> dict[Channel, int]:
 
 RULE = ModelRule(
     id="DOC-Channel-Fill",
-    title="channel that is to hold more than it can",
+    title="channel filled beyond its capacity",
     severity=Severity.ERROR,
     target=Channel,
     check=_check,
-    rationale="What does not fit in is lost. The documentation of APP4MC asks for no more elements than the greatest number.",
-    remedy="Raise the greatest number of elements, or put fewer of them in.",
+    rationale="Elements beyond the maximum are lost. The APP4MC documentation requires the number of elements to stay within "
+    "the maximum.",
+    remedy="Increase the maximum number of elements, or reduce the number of initial or sent elements.",
     fails="""
 <swModel>
   <channels name="C" defaultElements="3" maxElements="2"/>

@@ -1,4 +1,4 @@
-"""Least number of received elements that is out of range."""
+"""Lower bound of received elements out of range."""
 
 from __future__ import annotations
 
@@ -13,19 +13,20 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: ChannelReceive, context: Context) -> Iterator[str]:
     least, most = element.lower_bound, element.elements
     if least is not None and least < 0:
-        yield f"the lower bound is {least}, which is below 0"
+        yield f"the lower bound {least} is negative"
     if least is not None and most is not None and least > most:
-        yield f"the lower bound is {least}, of at most {most} elements"
+        yield f"the lower bound {least} is above the number of elements {most}"
 
 
 RULE = ModelRule(
     id="DOC-Channel-LowerBound",
-    title="least number of received elements that is out of range",
+    title="lower bound of received elements out of range",
     severity=Severity.ERROR,
     target=ChannelReceive,
     check=_check,
-    rationale="Nothing can be received that fulfils it. The documentation of APP4MC asks for 0 to the number of elements.",
-    remedy="State a lower bound from 0 to the number of elements.",
+    rationale="A negative bound is meaningless, and a bound above the number of elements can never be met. The APP4MC "
+    "documentation requires a value from 0 to the number of elements.",
+    remedy="Set a lower bound from 0 to the number of elements.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""More transfers at a time than there are ports for."""
+"""More concurrent transfers than ports."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ConnectionHandler, ConnectionHandlerDefinition, PortType
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.wording import counted
 
 _TYPES = (PortType.INITIATOR, PortType.RESPONDER)
 
@@ -20,7 +21,8 @@ def _check(element: ConnectionHandlerDefinition, context: Context) -> Iterator[s
         if transfers is not None and handler.ports and count.keys() <= set(_TYPES):
             fewest = min(_TYPES, key=count.__getitem__)
             if transfers > count[fewest]:
-                yield f"there are {transfers} transfers at a time, but {count[fewest]} ports of type {fewest} at {handler.name!r}"
+                ports = counted(count[fewest], f"{fewest} port")
+                yield f"{handler.name!r} has {ports}, too few for {counted(transfers, 'concurrent transfer')}"
 
 
 def _handlers(context: Context) -> dict[ConnectionHandlerDefinition, list[ConnectionHandler]]:
@@ -33,12 +35,13 @@ def _handlers(context: Context) -> dict[ConnectionHandlerDefinition, list[Connec
 
 RULE = ModelRule(
     id="DOC-ConnectionHandler-Transfers",
-    title="more transfers at a time than there are ports for",
+    title="more concurrent transfers than ports",
     severity=Severity.ERROR,
     target=ConnectionHandlerDefinition,
     check=_check,
-    rationale="Each transfer goes from a port of one type to a port of the other. The documentation of APP4MC asks for enough of both.",
-    remedy="State no more transfers than the handlers have ports of each type.",
+    rationale="Each transfer needs one initiator port and one responder port. The APP4MC documentation requires enough ports "
+    "of both types.",
+    remedy="Reduce the number of concurrent transfers, or add ports.",
     fails="""
 <hwModel>
   <definitions xsi:type="am:ConnectionHandlerDefinition" name="D" maxConcurrentTransfers="2"/>

@@ -1,4 +1,4 @@
-"""Initial value that the mode does not have."""
+"""Invalid initial mode value."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ def _check(element: ModeLabel, context: Context) -> Iterator[str]:
     if value is None or mode is None or mode.unresolved is not None:
         return
     if isinstance(mode, EnumMode) and value.strip() not in context.once(_literals).get(mode, frozenset()):
-        yield f"{element.name!r} starts with {value!r}, which is no literal of {mode.name!r}"
+        yield f"the initial value {value!r} of {element.name!r} is not a literal of {mode.name!r}"
     if isinstance(mode, NumericMode) and not _INTEGER.fullmatch(value.strip()):
-        yield f"{element.name!r} starts with {value!r}, which is no integer"
+        yield f"the initial value {value!r} of {element.name!r} is not an integer"
 
 
 def _literals(context: Context) -> dict[EnumMode, frozenset[str | None]]:
@@ -29,13 +29,13 @@ def _literals(context: Context) -> dict[EnumMode, frozenset[str | None]]:
 
 RULE = ModelRule(
     id="DOC-Enum-Initial",
-    title="initial value that the mode does not have",
+    title="invalid initial mode value",
     severity=Severity.ERROR,
     target=ModeLabel,
     check=_check,
-    rationale="It is not known what branches on the mode do at first. "
-    "The documentation of APP4MC asks for the name of a literal, or for an integer where the mode is numeric.",
-    remedy="Start with a literal of the mode, or with an integer.",
+    rationale="The initial result of conditions on the mode is undefined. The APP4MC documentation requires a literal of the "
+    "mode, or an integer if the mode is numeric.",
+    remedy="Set the initial value to a literal of the mode, or to an integer if the mode is numeric.",
     fails="""
 <swModel>
   <modes xsi:type="am:EnumMode" name="M">

@@ -1,4 +1,4 @@
-"""Category of which there are several features."""
+"""Category with several features."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from amalthea_uros.validate.rules.app4mc._features import shared_categories
 
 def _check(element: ProcessingUnitDefinition, context: Context) -> Iterator[str]:
     for category, features in shared_categories(element).items():
-        yield f"{element.name!r} has {len(features)} features of the category {category.name!r}"
+        yield f"{element.name!r} has {len(features)} features of category {category.name!r}"
 
 
 RULE = ModelRule(
     id="DOC-Feature-Single",
-    title="category of which there are several features",
+    title="category with several features",
     severity=Severity.ERROR,
     target=ProcessingUnitDefinition,
     check=_check,
-    rationale="It is not known which of them an execution need means. The documentation of APP4MC asks for at most one of a category.",
-    remedy="Refer to one feature of each category.",
+    rationale="It is undefined which feature an execution need refers to. The APP4MC documentation requires at most one "
+    "feature per category.",
+    remedy="Refer to only one feature of each category.",
     fails="""
 <hwModel>
   <definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="I/a?type=HwFeature I/b?type=HwFeature"/>

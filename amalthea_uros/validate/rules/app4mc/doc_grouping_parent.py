@@ -1,4 +1,4 @@
-"""Scheduler with a parent or children other than its algorithm asks for."""
+"""Invalid scheduler hierarchy."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ def _check(element: TaskScheduler, context: Context) -> Iterator[str]:
     algorithm, definition = policy(element), element.definition
     needs_parent = algorithm == GROUPING or (definition is not None and definition.requires_parent_scheduler is True)
     if needs_parent and parent_of(element) is None:
-        yield f"{element.name!r} has no scheduler above it, which {algorithm} needs"
+        yield f"{element.name!r} has no parent scheduler, but {algorithm} requires one"
     children = context.once(_children)[element]
     if definition is not None and definition.has_exactly_one_child is True and children != 1:
-        yield f"{element.name!r} serves {children} tasks and schedulers, where {algorithm} serves exactly one"
+        yield f"{element.name!r} schedules {children} tasks and schedulers, but {algorithm} requires exactly one"
 
 
 def _children(context: Context) -> Counter[Scheduler | None]:
@@ -33,13 +33,13 @@ def _children(context: Context) -> Counter[Scheduler | None]:
 
 RULE = ModelRule(
     id="DOC-Grouping-Parent",
-    title="scheduler with a parent or children other than its algorithm asks for",
+    title="invalid scheduler hierarchy",
     severity=Severity.ERROR,
     target=TaskScheduler,
     check=_check,
-    rationale="A group decides nothing itself, and other algorithms, too, work only below another scheduler or for a single child. "
-    "The documentation of APP4MC asks for it.",
-    remedy="Associate the scheduler with the one above it, and give it as many tasks and schedulers as its algorithm serves.",
+    rationale="A grouping makes no scheduling decisions itself, and some other algorithms need a parent or exactly one child. "
+    "The APP4MC documentation requires a hierarchy that matches the algorithm.",
+    remedy="Associate the scheduler with a parent, or change the number of tasks and schedulers below it.",
     fails="""
 <osModel>
   <schedulerDefinitions name="Grouping" requiresParentScheduler="true"/>

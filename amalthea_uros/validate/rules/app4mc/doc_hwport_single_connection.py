@@ -1,4 +1,4 @@
-"""Port with more connections than its kind has."""
+"""Too many connections at a port."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ def _check(element: HwPort, context: Context) -> Iterator[str]:
     count = context.once(connections_outside)[element]
     most = 2 if isinstance(element.container, HwStructure) else 1
     if count > most:
-        yield f"{count} connections lead to the port {element.qualified_name!r}, of at most {most}"
+        yield f"port {element.qualified_name!r} has {count} connections, but at most {most} {'is' if most == 1 else 'are'} allowed"
 
 
 RULE = ModelRule(
     id="DOC-HwPort-Single-Connection",
-    title="port with more connections than its kind has",
+    title="too many connections at a port",
     severity=Severity.ERROR,
     target=HwPort,
     check=_check,
-    rationale="The port of a structure is joined on the outside and on the inside, the port of a module once; "
-    "connections inside connection handlers come on top. The documentation of APP4MC asks for no more.",
-    remedy="Give each connection a port of its own, or put a connection handler in between.",
+    rationale="A port of a structure has one outer and one inner connection, any other port only one; connections inside "
+    "connection handlers are not counted. The APP4MC documentation requires this.",
+    remedy="Use a separate port for each connection, or insert a connection handler.",
     fails="""
 <hwModel>
   <structures name="ECU">

@@ -1,8 +1,9 @@
-"""Objects that are not together, or not apart, as they have to be."""
+"""Violated pairing or separation constraint."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from itertools import chain
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import (
@@ -26,8 +27,9 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.app4mc._places import Places, cores, memories, schedulers
+from amalthea_uros.validate.wording import joined
 
-#: Of each kind of target: the feature that lists those that count, and what tells where things are.
+#: For each kind of target: the feature that lists the relevant targets, and the function that finds the places of objects.
 _TARGETS: dict[type[Element], tuple[str, Callable[[Context], Places]]] = {
     TargetMemory: ("memories", memories),
     TargetCore: ("cores", cores),
@@ -49,7 +51,7 @@ def _check(element: AffinityConstraint, context: Context) -> Iterator[str]:
         (members,) = groups
         if members and not set.intersection(*map(set, members.values())):
             where = ", ".join(f"{_name(each)} is on {_names(places[each])}" for each in members)
-            yield f"what {element.name!r} pairs is not together on a target: {where}"
+            yield f"the objects paired by {element.name!r} have no common target: {where}"
     else:
         yield from _not_apart(element, groups)
 
@@ -92,13 +94,13 @@ def _not_apart(constraint: AffinityConstraint, groups: list[dict[Element, list[E
     for place, by_group in held.items():
         present = [members for members in by_group if members]
         if len(groups) == 1:
-            yield f"{_names(present[0])} is on {_name(place)}, from which {constraint.name!r} keeps it away"
+            yield f"{_name(place)} is used by {_names(present[0])}, which {constraint.name!r} forbids"
         elif len(present) > 1:
-            yield f"{' is with '.join(map(_names, present))} on {_name(place)}, which {constraint.name!r} keeps apart"
+            yield f"{_name(place)} is shared by {_names(chain.from_iterable(present))}, which {constraint.name!r} separates"
 
 
 def _names(elements: Iterable[Element]) -> str:
-    return ", ".join(map(_name, elements))
+    return joined(map(_name, elements))
 
 
 def _name(element: Element) -> str:
@@ -107,12 +109,13 @@ def _name(element: Element) -> str:
 
 RULE = ModelRule(
     id="DOC-Pairing-Separation",
-    title="objects that are not together, or not apart, as they have to be",
+    title="violated pairing or separation constraint",
     severity=Severity.ERROR,
     target=AffinityConstraint,
     check=_check,
-    rationale="What is paired has to be on one target, what is separated on none. The documentation of APP4MC asks for it.",
-    remedy="Allocate the objects as the constraint says, or change the constraint.",
+    rationale="Paired objects must share a target, and separated objects must not. The APP4MC documentation requires the "
+    "mapping to respect this.",
+    remedy="Change the mapping to satisfy the constraint, or change the constraint.",
     fails="""
 <swModel>
   <labels name="L"/>

@@ -1,4 +1,4 @@
-"""Section in a memory that is not for it."""
+"""Section in a disallowed memory."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ def _check(element: PhysicalSectionMapping, context: Context) -> Iterator[str]:
     for section in element.origin:
         for constraint in context.once(_constraints).get(section, []):
             if memory not in constraint.memories:
-                yield f"{section.qualified_name!r} lies in {memory.qualified_name!r}, which {constraint.name!r} does not allow"
+                where = f"mapped to {memory.qualified_name!r}, which {constraint.name!r} does not allow"
+                yield f"section {section.qualified_name!r} is {where}"
 
 
 def _constraints(context: Context) -> dict[Section, list[PhysicalSectionConstraint]]:
@@ -30,12 +31,12 @@ def _constraints(context: Context) -> dict[Section, list[PhysicalSectionConstrai
 
 RULE = ModelRule(
     id="DOC-PhysicalSection",
-    title="section in a memory that is not for it",
+    title="section in a disallowed memory",
     severity=Severity.ERROR,
     target=PhysicalSectionMapping,
     check=_check,
-    rationale="A constraint says in which memories the section may lie. The documentation of APP4MC asks for mappings that keep to it.",
-    remedy="Map the section to a memory of the constraint, or add the memory there.",
+    rationale="A constraint limits the memories of the section. The APP4MC documentation requires mappings to respect it.",
+    remedy="Map the section to a memory that the constraint allows, or add the memory to the constraint.",
     fails="""
 <swModel>
   <sections name="s"/>

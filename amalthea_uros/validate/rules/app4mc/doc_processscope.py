@@ -1,4 +1,4 @@
-"""Sequence of fewer than two groups."""
+"""Sequencing constraint with fewer than two groups."""
 
 from __future__ import annotations
 
@@ -9,35 +9,36 @@ from amalthea_uros.metamodel.classes import Process, Runnable, RunnableSequencin
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.execution import executing
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.wording import counted
 
 
 def _check(element: RunnableSequencingConstraint, context: Context) -> Iterator[str]:
     groups = element.runnable_groups
-    # A prototype runs nothing, so that nothing can be told from it.
+    # Prototypes are not executed, so a scope with prototypes cannot be evaluated.
     scope = {process for process in element.process_scope if isinstance(process, Process) and process.unresolved is None}
     if len(groups) < 2:
-        yield f"{element.name!r} puts {len(groups)} groups of runnables into an order"
+        yield f"{element.name!r} has {counted(len(groups), 'runnable group')}, but needs at least 2"
     elif scope and len(scope) == len(set(element.process_scope)):
         inside = sum(any(_is_inside(runnable, scope, context) for runnable in group.runnables) for group in groups)
         if inside < 2:
-            yield f"only {inside} of the {len(groups)} groups of {element.name!r} have a runnable that runs in the process scope"
+            yield f"{element.name!r} has {counted(inside, 'runnable group')} in its process scope, but needs at least 2"
 
 
 def _is_inside(runnable: Runnable, scope: set[Process], context: Context) -> bool:
-    """Whether a runnable runs in the scope, or it is not known where it runs."""
+    """Whether a runnable runs in the scope, or no process is known to execute it."""
     processes = executing(runnable, context)
     return not processes or not scope.isdisjoint(processes)
 
 
 RULE = ModelRule(
     id="DOC-ProcessScope",
-    title="sequence of fewer than two groups",
+    title="sequencing constraint with fewer than two groups",
     severity=Severity.INFO,
     target=RunnableSequencingConstraint,
     check=_check,
-    rationale="It demands nothing: runnables outside of the process scope do not count. "
-    "The documentation of APP4MC asks for at least two groups.",
-    remedy="Give the constraint two groups of runnables that run in its process scope.",
+    rationale="The constraint has no effect; runnables outside the process scope are ignored. The APP4MC documentation "
+    "requires at least two groups.",
+    remedy="Add runnable groups until at least two have runnables that run in the process scope.",
     fails="""
 <swModel>
   <runnables name="R"/>

@@ -1,4 +1,4 @@
-"""Service that a process calls."""
+"""Service called by a process."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: Runnable, context: Context) -> Iterator[str]:
     if element.service:
         for process in context.once(_processes).get(element, {}):
-            yield f"the service {element.name!r} is called by {process.name!r} itself"
+            yield f"service {element.name!r} is called directly by {process.name!r}"
 
 
 def _processes(context: Context) -> dict[Runnable, dict[Process, None]]:
-    """The processes that call each runnable themselves."""
+    """The processes that call each runnable directly."""
     found: dict[Runnable, dict[Process, None]] = {}
     for process in context.all(Process):
         for runnable in called(process, context):
@@ -28,12 +28,12 @@ def _processes(context: Context) -> dict[Runnable, dict[Process, None]]:
 
 RULE = ModelRule(
     id="DOC-Service-Caller",
-    title="service that a process calls",
+    title="service called by a process",
     severity=Severity.INFO,
     target=Runnable,
     check=_check,
-    rationale="A service does something for other runnables. The documentation of APP4MC asks for it to be called by them only.",
-    remedy="Call it from a runnable, or do not mark it as a service.",
+    rationale="A service is meant for other runnables. The APP4MC documentation requires that only runnables call it.",
+    remedy="Call the service from a runnable, or do not mark it as a service.",
     fails="""
 <swModel>
   <tasks name="T">

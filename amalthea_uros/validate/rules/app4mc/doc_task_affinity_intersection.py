@@ -1,4 +1,4 @@
-"""Task that no processing unit may run."""
+"""Task without an allowed processing unit."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
         return
     served = responsibilities(context).get(scheduler, [])
     if not served:
-        yield f"{task.qualified_name!r} runs nowhere: {scheduler.name!r} decides for no processing unit"
+        yield f"task {task.qualified_name!r} cannot run: {scheduler.name!r} is responsible for no processing unit"
     elif element.affinity and set(served).isdisjoint(element.affinity):
-        yield f"{task.qualified_name!r} runs nowhere: {scheduler.name!r} decides for none of the processing units of its affinity"
+        yield f"task {task.qualified_name!r} cannot run: {scheduler.name!r} is responsible for no processing unit of its affinity"
 
 
 RULE = ModelRule(
     id="DOC-Task-Affinity-Intersection",
-    title="task that no processing unit may run",
+    title="task without an allowed processing unit",
     severity=Severity.ERROR,
     target=TaskAllocation,
     check=_check,
-    rationale="A task runs on the processing units of its affinity for which its scheduler decides, or on all of these if it has none. "
-    "The documentation of APP4MC asks for at least one.",
-    remedy="Name processing units in the affinity that are in the responsibility of the scheduler.",
+    rationale="A task runs only on processing units that are in its affinity, if it has one, and in the responsibility of its "
+    "scheduler. The APP4MC documentation requires at least one.",
+    remedy="Add a processing unit of the scheduler to the affinity, or extend the responsibility of the scheduler.",
     fails="""
 <swModel>
   <tasks name="T"/>

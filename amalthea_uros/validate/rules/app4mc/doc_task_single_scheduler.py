@@ -8,13 +8,14 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Task, TaskAllocation, TaskScheduler
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.wording import joined
 
 
 def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
     task = element.task
     schedulers = context.once(_schedulers).get(task, {}) if task is not None else {}
     if task is not None and len(schedulers) > 1:
-        yield f"{task.qualified_name!r} is allocated to {', '.join(repr(each.qualified_name) for each in schedulers)}"
+        yield f"task {task.qualified_name!r} is allocated to {joined(repr(each.qualified_name) for each in schedulers)}"
 
 
 def _schedulers(context: Context) -> dict[Task, dict[TaskScheduler, None]]:
@@ -31,8 +32,9 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=TaskAllocation,
     check=_check,
-    rationale="It is not known which of them decides. The documentation of APP4MC asks for exactly one scheduler of a task.",
-    remedy="Allocate the task to one scheduler; for several processing units, to one that decides for all of them.",
+    rationale="It is undefined which scheduler runs the task. The APP4MC documentation requires exactly one scheduler per task.",
+    remedy="Allocate the task to one scheduler. To use several processing units, choose a scheduler that is responsible for "
+    "all of them.",
     fails="""
 <swModel>
   <tasks name="T"/>

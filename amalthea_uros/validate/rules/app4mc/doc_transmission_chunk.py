@@ -1,4 +1,4 @@
-"""Chunk larger than what is transmitted."""
+"""Chunk larger than the transmitted data."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _check(element: TransmissionPolicy, context: Context) -> Iterator[str]:
     if chunk is None or whole is None or chunk_bits is None or whole_bits is None:
         return
     if chunk_bits > whole_bits:
-        yield f"a chunk of {chunk.value} {chunk.unit} is larger than the {whole.value} {whole.unit} that are transmitted"
+        yield f"the chunk size of {chunk.value} {chunk.unit} is larger than the transmitted {whole.value} {whole.unit}"
 
 
 def _transmitted(access: Element | None) -> DataSize | None:
@@ -43,12 +43,13 @@ def _transmitted(access: Element | None) -> DataSize | None:
 
 RULE = ModelRule(
     id="DOC-Transmission-Chunk",
-    title="chunk larger than what is transmitted",
+    title="chunk larger than the transmitted data",
     severity=Severity.ERROR,
     target=TransmissionPolicy,
     check=_check,
-    rationale="A chunk is a part of a label, or of an element of a channel. The documentation of APP4MC asks for it.",
-    remedy="State a chunk size up to the size of the label, or of the type of the elements of the channel.",
+    rationale="A chunk is a part of a label or of a channel element. The APP4MC documentation requires it to be no larger "
+    "than the whole.",
+    remedy="Reduce the chunk size to at most the size of the label, or of the element type of the channel.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Transmitted share outside of 0 to 1."""
+"""Transmit ratio outside the range 0 to 1."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: TransmissionPolicy, context: Context) -> Iterator[str]:
     if element.transmit_ratio is not None and not 0 <= element.transmit_ratio <= 1:
-        yield f"the transmit ratio is {element.transmit_ratio}"
+        yield f"the transmit ratio is {element.transmit_ratio}, but must be from 0 to 1"
 
 
 RULE = ModelRule(
     id="DOC-Transmission-Ratio",
-    title="transmitted share outside of 0 to 1",
+    title="transmit ratio outside the range 0 to 1",
     severity=Severity.ERROR,
     target=TransmissionPolicy,
     check=_check,
-    rationale="It is the part of the data that is transmitted, not a percentage. The documentation of APP4MC asks for 0 to 1.",
-    remedy="State a transmit ratio from 0 to 1.",
+    rationale="The ratio is a fraction, not a percentage. The APP4MC documentation requires a value from 0 to 1.",
+    remedy="Set the transmit ratio to a value from 0 to 1.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,1 +1,1 @@
-"""What EMF checks of every model, from the facts of the metamodel, and what its classes demand of themselves."""
+"""The checks that EMF derives from the metamodel, the checks of the AMALTHEA classes themselves, and EMF's form of files."""

@@ -1,4 +1,4 @@
-"""What the facts of a version say of the features of a class, under their Python names."""
+"""The features of a class in an AMALTHEA version, by their Python names."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 
 def per_class(find: Callable[[type[Element], str], T]) -> Callable[[type[Element], str], T]:
-    """Remember what a function finds for a class and a version: it is asked for each object."""
+    """Cache the result of a function by class and version; it is called for each object."""
     known: dict[tuple[type[Element], str], T] = {}
 
     def found(cls: type[Element], version: str) -> T:
@@ -26,7 +26,7 @@ def per_class(find: Callable[[type[Element], str], T]) -> Callable[[type[Element
 
 
 def stored_features(cls: type[Element], version: str) -> dict[str, FeatureFact]:
-    """The features of a class that stand in files of a version, in the order in which EMF writes them."""
+    """The features of a class that files of a version contain, in the order in which EMF writes them."""
     declared = facts(version)
     names = {feature.xml_name: name for name, feature in features_of(cls).items()}
     stored = declared.features(cls.__name__) if cls.__name__ in declared.classes else ()

@@ -11,7 +11,7 @@ from amalthea_uros.metamodel.magnitudes import picoseconds
 
 
 def disorder(element: Element) -> Iterator[str]:
-    """Which of lower bound, average and upper bound are in the wrong order; what is not given is in order."""
+    """A message for each pair of lower bound, average and upper bound in the wrong order; missing values are skipped."""
     values = [(words, getattr(element, name, None)) for name, words in _NAMES.items()]
     if values[1][1] is not None:
         yield from _decreasing(values)

@@ -10,7 +10,7 @@ _INTEGER = re.compile(r"-?[0-9]+")
 
 
 def is_value_of(mode: Mode | None, value: str) -> bool:
-    """Whether a text is a value of a mode; nothing is said of a mode that is not known."""
+    """Whether a text is a value of a mode; True if the mode is not known."""
     if isinstance(mode, EnumMode) and mode.unresolved is None:
         return value.strip() in {literal.name for literal in mode.literals}
     if isinstance(mode, NumericMode) and mode.unresolved is None:
@@ -19,7 +19,7 @@ def is_value_of(mode: Mode | None, value: str) -> bool:
 
 
 def allowed_values(mode: Mode | None) -> str:
-    """What may stand there."""
+    """The values of a mode, in words."""
     if isinstance(mode, EnumMode):
         return f"one of {', '.join(repr(literal.name) for literal in mode.literals)}"
     return "an integer"

@@ -1,4 +1,4 @@
-"""Number outside of its type."""
+"""Number out of range."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ def _check(element: Element, context: Context) -> Iterator[str]:
     for name, xml_name, number in _limited(type(element), context.version_of(element)):
         value = values.get(name)
         if value is not None and (value < number.minimum or (number.exclusive and value == number.minimum)):
-            limit = f"{'above' if number.exclusive else 'at least'} {number.minimum}"
-            yield f"the {xml_name} of the {type(element).__name__} is {value}, which has to be {limit}"
+            limit = f"{'greater than' if number.exclusive else 'at least'} {number.minimum}"
+            yield f"the {xml_name} of the {type(element).__name__} is {value}, but must be {limit}"
 
 
 @per_class
@@ -32,13 +32,13 @@ def _limited(cls: type[Element], version: str) -> tuple[tuple[str, str, NumberFa
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/datatype",
-    title="number outside of its type",
+    title="number out of range",
     severity=Severity.ERROR,
     target=Element,
     check=_check,
     concerns=_limited,
-    rationale="The value has no meaning there, such as a counter that divides by 0. APP4MC reports it when it validates the model.",
-    remedy="State a value within the limit.",
+    rationale="The value is meaningless, for example a counter that divides by 0. APP4MC's validation also reports it.",
+    remedy="Set a value within the range.",
     fails="""
 <swModel>
   <runnables name="R">

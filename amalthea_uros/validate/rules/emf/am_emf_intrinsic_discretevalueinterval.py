@@ -1,4 +1,4 @@
-"""Bounds in the wrong order."""
+"""Bounds of a discrete value in the wrong order."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def _check(element: DiscreteValueInterval, context: Context) -> Iterator[str]:
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/DiscreteValueInterval",
-    title="bounds of a number in the wrong order",
+    title="bounds of a discrete value in the wrong order",
     severity=Severity.ERROR,
     target=DiscreteValueInterval,
     check=_check,
-    rationale="No value lies between such bounds. APP4MC reports it when it validates the model.",
-    remedy="Correct the bounds and the average.",
+    rationale="No value can satisfy these bounds. APP4MC's validation also reports it.",
+    remedy="Correct the bounds or the average.",
     fails="""
 <swModel>
   <runnables name="R">

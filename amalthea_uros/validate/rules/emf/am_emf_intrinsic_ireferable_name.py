@@ -17,7 +17,7 @@ def _check(element: IReferable, context: Context) -> Iterator[str]:
 
 
 def _fix(element: IReferable, context: Context) -> bool:
-    # Any name will do: without one nothing can refer to it.
+    # Any name is safe: nothing can refer to an object without a name.
     element.name = new_name(type(element).__name__, type(element), context)
     return True
 
@@ -29,8 +29,8 @@ RULE = ModelRule(
     target=IReferable,
     check=_check,
     fix=_fix,
-    rationale="Nothing can refer to it, and no report can name it. APP4MC reports it when it validates the model.",
-    remedy="Give it a name.",
+    rationale="References cannot target the object, and reports cannot name it. APP4MC's validation also reports it.",
+    remedy="Give the object a name.",
     fails="""
 <swModel>
   <tasks/>

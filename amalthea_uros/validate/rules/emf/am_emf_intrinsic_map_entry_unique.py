@@ -1,4 +1,4 @@
-"""Key that stands twice."""
+"""Duplicate key in a map."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _check(element: Element, context: Context) -> Iterator[str]:
             continue
         for key, times in Counter(entry.key for entry in entries).items():
             if times > 1:
-                yield f"{xml_name} has the key {_shown(key)} {times} times"
+                yield f"{xml_name} contains the key {_shown(key)} {times} times"
 
 
 @per_class
@@ -35,7 +35,7 @@ def _maps(cls: type[Element], version: str) -> tuple[tuple[str, str], ...]:
 
 
 def _fix(element: Element, context: Context) -> bool:
-    """Drop entries that repeat another one; which of two values counts nobody but the author knows."""
+    """Drop exact repetitions of entries; only the author can choose between different values."""
     repaired = False
     for name, _ in _maps(type(element), context.version_of(element)):
         entries = element.__dict__.get(name, [])
@@ -52,14 +52,14 @@ def _shown(key: str | Element | None) -> str:
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/map-entry-unique",
-    title="key that stands twice",
+    title="duplicate key in a map",
     severity=Severity.ERROR,
     target=Element,
     check=_check,
     concerns=_maps,
     fix=_fix,
-    rationale="Only one of the values counts, and it is not said which. APP4MC reports it when it validates the model.",
-    remedy="Give each key once.",
+    rationale="Only one of the values takes effect, and which one is undefined. APP4MC's validation also reports it.",
+    remedy="Define each key only once.",
     fails="""
 <swModel>
   <tasks name="T">

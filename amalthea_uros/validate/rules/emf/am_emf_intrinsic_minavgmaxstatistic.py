@@ -1,4 +1,4 @@
-"""Average outside of its bounds."""
+"""Average outside its bounds."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: MinAvgMaxStatistic, context: Context) -> Iterator[str]:
     least, average, most = (element.effective(name) for name in ("min", "avg", "max"))
     if not least <= average <= most:
-        yield f"min <= avg <= max does not hold: {least}, {average}, {most}"
+        yield f"the average {average} is not between the minimum {least} and the maximum {most}"
 
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/MinAvgMaxStatistic",
-    title="average outside of its bounds",
+    title="average outside its bounds",
     severity=Severity.ERROR,
     target=MinAvgMaxStatistic,
     check=_check,
-    rationale="No values have such an average. APP4MC reports it when it validates the model.",
-    remedy="Correct the three figures.",
+    rationale="No set of values has this average. APP4MC's validation also reports it.",
+    remedy="Correct the minimum, the average or the maximum.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Initial value of a mode label."""
+"""Mode label without a mode or with an invalid initial value."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from amalthea_uros.validate.rules.emf._modes import allowed_values, is_value_of
 
 def _check(element: ModeLabel, context: Context) -> Iterator[str]:
     if element.mode is None:
-        yield f"the mode label {element.name!r} has no mode"
+        yield f"mode label {element.name!r} has no mode"
     elif element.initial_value is not None and not is_value_of(element.mode, element.initial_value):
-        yield f"{element.name!r} starts with {element.initial_value!r}, which is not {allowed_values(element.mode)}"
+        yield f"the initial value {element.initial_value!r} of {element.name!r} is not {allowed_values(element.mode)}"
 
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/ModeLabel",
-    title="mode label without a mode, or with a value that it does not have",
+    title="mode label without a mode or with an invalid initial value",
     severity=Severity.ERROR,
     target=ModeLabel,
     check=_check,
-    rationale="What depends on the mode has no meaning then. APP4MC reports it when it validates the model.",
-    remedy="Give it a mode, and one of its values.",
+    rationale="Conditions on the mode label cannot be evaluated. APP4MC's validation also reports it.",
+    remedy="Set a mode, and use one of its values as the initial value.",
     fails="""
 <swModel>
   <modes xsi:type="am:EnumMode" name="M">

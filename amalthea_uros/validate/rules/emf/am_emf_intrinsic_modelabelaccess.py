@@ -1,4 +1,4 @@
-"""Value that a mode label is set to."""
+"""Invalid mode label access."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from amalthea_uros.validate.rules.emf._modes import allowed_values, is_value_of
 def _check(element: ModeLabelAccess, context: Context) -> Iterator[str]:
     label = element.data
     if label is None:
-        yield "it is not said which mode label is accessed"
+        yield "the access has no mode label"
     elif label.mode is None and label.unresolved is None:
-        yield f"the mode label {label.name!r} has no mode"
+        yield f"mode label {label.name!r} has no mode"
     elif element.access == ModeLabelAccessEnum.SET and element.value is not None and not is_value_of(label.mode, element.value):
-        yield f"{label.name!r} is set to {element.value!r}, which is not {allowed_values(label.mode)}"
+        yield f"the value {element.value!r} set in {label.name!r} is not {allowed_values(label.mode)}"
 
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/ModeLabelAccess",
-    title="access that sets a mode label to what is none of its values",
+    title="invalid mode label access",
     severity=Severity.ERROR,
     target=ModeLabelAccess,
     check=_check,
-    rationale="The mode label is in no mode then. APP4MC reports it when it validates the model.",
-    remedy="Set it to one of the values of its mode.",
+    rationale="The access leaves the mode label without a valid value. APP4MC's validation also reports it.",
+    remedy="Refer to a mode label that has a mode, and set one of the values of this mode.",
     fails="""
 <swModel>
   <modes xsi:type="am:EnumMode" name="M">

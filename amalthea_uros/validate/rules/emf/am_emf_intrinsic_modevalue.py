@@ -1,4 +1,4 @@
-"""Value with which a mode label is compared, or that it is given."""
+"""Invalid mode value."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from amalthea_uros.validate.rules.emf._modes import allowed_values, is_value_of
 def _check(element: ModeValue, context: Context) -> Iterator[str]:
     label = element.label
     if label is None:
-        yield "it is not said which mode label is meant"
+        yield "the mode value has no mode label"
     elif label.mode is None and label.unresolved is None:
-        yield f"the mode label {label.name!r} has no mode"
+        yield f"mode label {label.name!r} has no mode"
     elif element.value is None:
-        yield f"there is no value for {label.name!r}"
+        yield f"mode label {label.name!r} is used without a value"
     elif not is_value_of(label.mode, element.value):
-        yield f"{element.value!r} for {label.name!r} is not {allowed_values(label.mode)}"
+        yield f"the value {element.value!r} for {label.name!r} is not {allowed_values(label.mode)}"
 
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/ModeValue",
-    title="value that the mode of a mode label does not have",
+    title="invalid mode value",
     severity=Severity.ERROR,
     target=ModeValue,
     check=_check,
-    rationale="The condition never holds, or the assignment has no effect. APP4MC reports it when it validates the model.",
-    remedy="State the mode label and one of the values of its mode.",
+    rationale="The condition is never true, or the assignment has no effect. APP4MC's validation also reports it.",
+    remedy="Refer to a mode label that has a mode, and use one of the values of this mode.",
     fails="""
 <swModel>
   <modes xsi:type="am:EnumMode" name="M">

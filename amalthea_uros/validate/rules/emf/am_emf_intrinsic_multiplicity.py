@@ -1,4 +1,4 @@
-"""Too few or too many values."""
+"""Wrong number of values."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from amalthea_uros.metamodel.factfile import FeatureFact
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
+from amalthea_uros.validate.wording import counted
 
 
 def _check(element: Element, context: Context) -> Iterator[str]:
@@ -17,7 +18,7 @@ def _check(element: Element, context: Context) -> Iterator[str]:
     for name, fact in _bounded(type(element), context.version_of(element)):
         number = len(values.get(name, ()))
         if number < fact.lower or (fact.upper is not None and number > fact.upper):
-            yield f"the {type(element).__name__} has {number} {fact.name}, {_wanted(fact)}"
+            yield f"the {type(element).__name__} has {counted(number, 'value')} of {fact.name}, but needs {_required(fact)}"
 
 
 @per_class
@@ -26,21 +27,21 @@ def _bounded(cls: type[Element], version: str) -> tuple[tuple[str, FeatureFact],
     return tuple((name, fact) for name, fact in features if fact.many and (fact.lower or fact.upper is not None))
 
 
-def _wanted(fact: FeatureFact) -> str:
+def _required(fact: FeatureFact) -> str:
     if fact.upper is None:
-        return f"at least {fact.lower} are needed"
-    return f"{fact.lower} are needed" if fact.lower == fact.upper else f"{fact.lower} to {fact.upper} are needed"
+        return f"at least {fact.lower}"
+    return f"{fact.lower}" if fact.lower == fact.upper else f"{fact.lower} to {fact.upper}"
 
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/multiplicity",
-    title="too few or too many values",
+    title="wrong number of values",
     severity=Severity.ERROR,
     target=Element,
     check=_check,
     concerns=_bounded,
-    rationale="The number of values is part of what the feature means. APP4MC reports it when it validates the model.",
-    remedy="State as many as the message says.",
+    rationale="Tools rely on the number of values that the metamodel requires. APP4MC's validation also reports it.",
+    remedy="Add or remove values until their number is within the required range.",
     fails="""
 <constraintsModel>
   <timingConstraints xsi:type="am:EventChainSynchronizationConstraint" name="C" scope="A?type=EventChain"/>

@@ -1,4 +1,4 @@
-"""Reference to nothing."""
+"""Unresolved reference."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Element, context: Context) -> Iterator[str]:
     for name, text in context.dangling.get(element, ()):
-        yield f"{name} refers to {text!r}, which is nowhere"
+        yield f"{name} refers to {text!r}, which is not defined"
 
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/proxy-resolves",
-    title="reference to nothing",
+    title="unresolved reference",
     severity=Severity.ERROR,
     target=Element,
     check=_check,
     among=lambda context: context.dangling,
-    rationale="It is in none of the files that were read. APP4MC reports it when it validates the model.",
-    remedy="Correct the name, or read the missing file, too.",
+    rationale="The target is not defined in any of the files. APP4MC's validation also reports it.",
+    remedy="Correct the name, or add the file that defines the target.",
     fails="""
 <swModel>
   <tasks name="T" stimuli="S?type=PeriodicStimulus"/>

@@ -1,4 +1,4 @@
-"""Required feature without a value."""
+"""Missing required value."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ def _required(cls: type[Element], version: str) -> tuple[tuple[str, str], ...]:
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/required-feature",
-    title="required feature without a value",
+    title="missing required value",
     severity=Severity.ERROR,
     target=Element,
     check=_check,
     concerns=_required,
-    rationale="Other objects, and the tools that read the model, rely on it. APP4MC reports it when it validates the model.",
-    remedy="Give it a value.",
+    rationale="Other objects and the tools that read the model rely on the value. APP4MC's validation also reports it.",
+    remedy="Set the value.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Bounds in the wrong order."""
+"""Bounds of a time in the wrong order."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=TimeInterval,
     check=_check,
-    rationale="No value lies between such bounds. APP4MC reports it when it validates the model.",
-    remedy="Correct the bounds and the average.",
+    rationale="No value can satisfy these bounds. APP4MC's validation also reports it.",
+    remedy="Correct the bounds or the average.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicStimulus" name="S">

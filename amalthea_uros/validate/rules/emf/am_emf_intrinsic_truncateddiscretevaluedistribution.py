@@ -1,4 +1,4 @@
-"""Bounds in the wrong order."""
+"""Bounds of a discrete distribution in the wrong order."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ def _check(element: TruncatedDiscreteValueDistribution, context: Context) -> Ite
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/TruncatedDiscreteValueDistribution",
-    title="bounds of a distribution of numbers in the wrong order",
+    title="bounds of a discrete distribution in the wrong order",
     severity=Severity.ERROR,
     target=TruncatedDiscreteValueDistribution,
     check=_check,
-    rationale="No value lies between such bounds. APP4MC reports it when it validates the model.",
+    rationale="No value can satisfy these bounds. APP4MC's validation also reports it.",
     remedy="Correct the bounds.",
     fails="""
 <swModel>

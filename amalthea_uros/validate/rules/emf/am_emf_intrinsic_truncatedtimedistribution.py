@@ -1,4 +1,4 @@
-"""Bounds in the wrong order."""
+"""Bounds of a time distribution in the wrong order."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=TruncatedTimeDistribution,
     check=_check,
-    rationale="No value lies between such bounds. APP4MC reports it when it validates the model.",
+    rationale="No value can satisfy these bounds. APP4MC's validation also reports it.",
     remedy="Correct the bounds.",
     fails="""
 <stimuliModel>

@@ -1,4 +1,4 @@
-"""Name that another object has, too."""
+"""Duplicate name in a file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: IReferable, context: Context) -> Iterator[str]:
     if element.name and len(_in_file(element, context)) > 1:
-        yield f"{element.qualified_name!r} is the name of several objects of class {type(element).__name__} in this file"
+        yield f"{element.qualified_name!r} is the name of several {type(element).__name__} objects in this file"
 
 
 def _in_file(element: IReferable, context: Context) -> list[Element]:
@@ -22,7 +22,7 @@ def _in_file(element: IReferable, context: Context) -> list[Element]:
 
 
 def _fix(element: IReferable, context: Context) -> bool:
-    # References reach the first object of a name, so that the others are free to have another one.
+    # References resolve to the first object of a name, so the others can be renamed.
     if element in context.referred or context.namesakes[element][0] is element:
         return False
     element.name = new_name(element.name or "", type(element), context)
@@ -31,14 +31,15 @@ def _fix(element: IReferable, context: Context) -> bool:
 
 RULE = ModelRule(
     id="AM-EMF-INTRINSIC/unique-id",
-    title="name that another object of the file has, too",
+    title="duplicate name in a file",
     severity=Severity.ERROR,
     target=IReferable,
     check=_check,
     among=lambda context: context.namesakes,
     fix=_fix,
-    rationale="References go by class and name, and reach one of the objects only. APP4MC reports it when it validates the model.",
-    remedy="Give each its own name, or put one into another namespace.",
+    rationale="References identify objects by class and name, and can reach only one of these objects. APP4MC's validation "
+    "also reports it.",
+    remedy="Give each object a unique name, or move one of them to another namespace.",
     fails="""
 <swModel>
   <tasks name="T"/>

@@ -1,4 +1,4 @@
-"""Attributes that say nothing."""
+"""Explicit default values."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from amalthea_uros.metamodel.versions import facts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
+from amalthea_uros.validate.wording import counted
 
 
 def _check(element: Amalthea, context: Context) -> Iterator[str]:
@@ -28,12 +29,12 @@ def _check(element: Amalthea, context: Context) -> Iterator[str]:
     ]
     number = sum(omitted)
     if number:
-        yield f"{number} attributes state what they stand for anyway, which EMF leaves out"
+        yield f"the file sets {counted(number, 'attribute')} to the default value, which EMF does not write"
 
 
 @per_class
 def _omitted(cls: type[Element], version: str) -> tuple[tuple[str, object], ...]:
-    """The attributes that EMF leaves out while they have a certain value, and that value."""
+    """The attributes that EMF omits if they have a certain value, with this value."""
     declared = facts(version)
     found = (
         (name, default_value(declared, cls.__name__, fact.name))
@@ -45,12 +46,12 @@ def _omitted(cls: type[Element], version: str) -> tuple[tuple[str, object], ...]
 
 RULE = ModelRule(
     id="EMF-DEFAULT",
-    title="attributes with their default value",
+    title="explicit default values",
     severity=Severity.INFO,
     target=Amalthea,
     check=_check,
-    rationale="They say nothing, and the next tool that saves the model drops them.",
-    remedy="Let amuros check --fix, amuros fmt or APP4MC write the file.",
+    rationale="Explicit default values have no effect, and the next tool that saves the model removes them.",
+    remedy="Rewrite the file with amuros check --fix, amuros fmt or APP4MC.",
     fails="""
 <swModel>
   <tasks name="T" preemption="_undefined_"/>

@@ -1,4 +1,4 @@
-"""Ids of the objects of a file."""
+"""Missing or non-standard xmi:id."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Amalthea
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.wording import counted
 
 
 def _check(element: Amalthea, context: Context) -> Iterator[str]:
@@ -19,20 +20,20 @@ def _check(element: Amalthea, context: Context) -> Iterator[str]:
     stated = len(re.findall(rf"\s{re.escape(source.prefixes.xmi_id)}\s*=", source.text))
     referable = sum(part.is_referable for part in source.elements)
     if stated < referable:
-        yield f"{referable - stated} of {referable} objects to which others may refer have no xmi:id"
+        yield f"the file has no xmi:id for {referable - stated} of {counted(referable, 'referable object')}"
     odd = sum(name == "xmi:id" for _, name in document.spellings)
     if odd:
-        yield f"{odd} objects have an xmi:id that is not their name"
+        yield f"the xmi:id does not match the name of {counted(odd, 'object')}"
 
 
 RULE = ModelRule(
     id="EMF-ID",
-    title="xmi:id that is missing, or is not the name of its object",
+    title="missing or non-standard xmi:id",
     severity=Severity.INFO,
     target=Amalthea,
     check=_check,
-    rationale="EMF gives every object the id by which references find it; importers that look for it do not find the others.",
-    remedy="Let amuros check --fix, amuros fmt or APP4MC write the file.",
+    rationale="EMF writes an xmi:id for every referable object; importers that rely on it cannot find the other objects.",
+    remedy="Rewrite the file with amuros check --fix, amuros fmt or APP4MC.",
     fails="""
 <swModel>
   <labels name="L"/>

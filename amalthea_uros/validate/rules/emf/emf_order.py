@@ -1,4 +1,4 @@
-"""Order of the elements of a file."""
+"""Non-standard order of objects."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from amalthea_uros.metamodel.factfile import Kind
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
+from amalthea_uros.validate.wording import counted
 
 
 def _check(element: Amalthea, context: Context) -> Iterator[str]:
@@ -24,11 +25,11 @@ def _check(element: Amalthea, context: Context) -> Iterator[str]:
         for holder in holders if names else ():
             moved += _moved(holder, names, index)
     if moved:
-        yield f"at {moved} places objects stand in another order than EMF writes them"
+        yield f"the order of objects differs from EMF's order in {counted(moved, 'place')}"
 
 
 def _moved(holder: Element, names: Iterable[str], index: Mapping[Element, int]) -> int:
-    """How often a part of an object stands in the file before one that belongs in front of it."""
+    """How often a part of an object precedes, in the file, a part that EMF writes before it."""
     moved, last = 0, -1
     for name in names:
         value = holder.__dict__.get(name)
@@ -47,12 +48,12 @@ def _containments(cls: type[Element], version: str) -> tuple[str, ...]:
 
 RULE = ModelRule(
     id="EMF-ORDER",
-    title="objects in another order than EMF writes them",
+    title="non-standard order of objects",
     severity=Severity.INFO,
     target=Amalthea,
     check=_check,
-    rationale="The next tool that saves the model moves them, and what really changed drowns in the difference.",
-    remedy="Let amuros check --fix, amuros fmt or APP4MC write the file.",
+    rationale="The next tool that saves the model reorders the objects, which hides the real changes in a diff.",
+    remedy="Rewrite the file with amuros check --fix, amuros fmt or APP4MC.",
     fails="""
 <stimuliModel/>
 <swModel/>

@@ -7,17 +7,17 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import FrequencyDomain, HwStructure, ProcessingUnit
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Milder, ModelRule
+from amalthea_uros.validate.rule import Downgraded, ModelRule
 from amalthea_uros.validate.rules.inchron._importer import amount
 
 
-def _check(element: FrequencyDomain, context: Context) -> Iterator[str | Milder]:
+def _check(element: FrequencyDomain, context: Context) -> Iterator[str | Downgraded]:
     cores = context.once(_cores).get(element, [])
     if not cores or amount(element.default_value) > 0:
         return
     message = f"the frequency domain {element.name!r} has no positive frequency with a unit"
     is_compared = any(_has_others(core) for core in cores)
-    yield message if element.default_value is None and is_compared else Milder(message)
+    yield message if element.default_value is None and is_compared else Downgraded(message)
 
 
 def _cores(context: Context) -> dict[FrequencyDomain, list[ProcessingUnit]]:

@@ -8,17 +8,17 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Label, MemoryMapping
 from amalthea_uros.metamodel.naming import name_of
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Milder, ModelRule
+from amalthea_uros.validate.rule import Downgraded, ModelRule
 
 
-def _check(element: MemoryMapping, context: Context) -> Iterator[str | Milder]:
+def _check(element: MemoryMapping, context: Context) -> Iterator[str | Downgraded]:
     mapped = element.abstract_element
     if mapped is None:
         yield "the memory mapping has no element"
     elif element.memory is None:
-        yield Milder(f"the memory mapping of {name_of(mapped)!r} has no memory")
+        yield Downgraded(f"the memory mapping of {name_of(mapped)!r} has no memory")
     elif not isinstance(mapped, Label):
-        yield Milder(f"the memory mapping of the {type(mapped).__name__} {name_of(mapped)!r} is dropped by am2inc")
+        yield Downgraded(f"the memory mapping of the {type(mapped).__name__} {name_of(mapped)!r} is dropped by am2inc")
 
 
 RULE = ModelRule(

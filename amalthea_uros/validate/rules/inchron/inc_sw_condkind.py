@@ -15,10 +15,10 @@ from amalthea_uros.metamodel.classes import (
     NumericMode,
 )
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Milder, ModelRule
+from amalthea_uros.validate.rule import Downgraded, ModelRule
 
 
-def _check(element: Condition, context: Context) -> Iterator[str | Milder]:
+def _check(element: Condition, context: Context) -> Iterator[str | Downgraded]:
     if isinstance(element, ModeValueCondition):
         if element.label is None:
             yield "the condition has no mode label"
@@ -27,10 +27,10 @@ def _check(element: Condition, context: Context) -> Iterator[str | Milder]:
         if first is None or second is None:
             yield "the condition has fewer than two mode labels"
         elif first.unresolved is None and second.unresolved is None and not _is_of_same_kind(first, second):
-            yield Milder(f"the mode labels {first.name!r} and {second.name!r} have modes of different kinds")
+            yield Downgraded(f"the mode labels {first.name!r} and {second.name!r} have modes of different kinds")
     else:
         message = f"the {type(element).__name__} does not compare modes"
-        yield message if isinstance(element.container, ConditionConjunction) else Milder(message)
+        yield message if isinstance(element.container, ConditionConjunction) else Downgraded(message)
 
 
 def _is_of_same_kind(first: ModeLabel, second: ModeLabel) -> bool:

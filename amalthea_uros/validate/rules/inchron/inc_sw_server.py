@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import SenderReceiverCommunication, ServerCall
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Milder, ModelRule
+from amalthea_uros.validate.rule import Downgraded, ModelRule
 from amalthea_uros.validate.rules.inchron._importer import metamodel
 
 
-def _check(element: ServerCall | SenderReceiverCommunication, context: Context) -> Iterator[str | Milder]:
+def _check(element: ServerCall | SenderReceiverCommunication, context: Context) -> Iterator[str | Downgraded]:
     wanted = "server runnable" if isinstance(element, ServerCall) else "label"
     if metamodel(element) < "3":
-        yield Milder(f"the {type(element).__name__} is dropped by am2inc, because the model is older than AMALTHEA 3.0")
+        yield Downgraded(f"the {type(element).__name__} is dropped by am2inc, because the model is older than AMALTHEA 3.0")
     elif (element.server_runnable if isinstance(element, ServerCall) else element.label) is None:
         yield f"the {type(element).__name__} has no {wanted}"
 

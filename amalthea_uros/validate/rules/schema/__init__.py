@@ -1,1 +1,1 @@
-"""What the XML schema of a model's version says."""
+"""The XML schema of the AMALTHEA version of a model."""

@@ -1,4 +1,4 @@
-"""No schema."""
+"""Version without an XML schema."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ RULE = Rule(
     id="XSD000",
     title="version without an XML schema",
     severity=Severity.WARNING,
-    rationale="What the elements and attributes of the file have to be is not known; the nearest version serves for reading it.",
-    remedy="Correct the version in the namespace of the root element, if it is a mistake.",
+    rationale="The elements and attributes of the file cannot be validated, and the file is read as the nearest known version.",
+    remedy="Correct the version in the namespace of the root element if it is a mistake.",
     fails="""
 <am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/3.4.0"/>
 """,

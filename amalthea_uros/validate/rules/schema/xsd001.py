@@ -1,4 +1,4 @@
-"""Break of the schema."""
+"""Violation of the XML schema."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="XSD001",
-    title="break of the XML schema",
+    title="violation of the XML schema",
     severity=Severity.ERROR,
-    rationale="APP4MC and the tools after it refuse elements, attributes and values that the version of the file does not know.",
-    remedy="Write what is allowed there.",
+    rationale="APP4MC and downstream tools reject elements, attributes and values that the version of the file does not define.",
+    remedy="Use only elements, attributes and values that the schema of this version allows.",
     fails="""
 <am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0">
   <swModel>

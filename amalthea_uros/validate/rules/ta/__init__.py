@@ -1,1 +1,1 @@
-"""What the tools of Timing Architects ask of a model beyond APP4MC, under their own ids."""
+"""Additional rules of the Timing Architects tools, under their original ids."""

@@ -1,4 +1,4 @@
-"""Two values that are in a certain order."""
+"""The order of two values: a mean and a bound, or a minimum and a maximum."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from amalthea_uros.validate.quantities import time_text
 
 
 def outside(gauss: DiscreteValueGaussDistribution | ContinuousValueGaussDistribution | TimeGaussDistribution) -> Iterator[str]:
-    """Whether the mean is beyond a bound; what is not given, or no number, is beyond nothing."""
+    """Messages about a mean outside its bounds; missing and non-finite values are skipped."""
     mean, lower, upper = (_value(gauss.effective(name)) for name in ("mean", "lower_bound", "upper_bound"))
     if mean is not None and lower is not None and mean < lower:
         yield f"the mean {_text(gauss.mean)} is below the lower bound {_text(gauss.lower_bound)}"
@@ -34,7 +34,7 @@ def _text(value: Time | float | None) -> str:
 
 
 def reversed_times(what: str, lower: Time | None, upper: Time | None) -> Iterator[str]:
-    """Whether a least time is above the greatest one; times without a unit are not compared."""
-    least, greatest = picoseconds(lower), picoseconds(upper)
-    if least is not None and greatest is not None and least > greatest:
-        yield f"the {what} is at least {time_text(least)} and at most {time_text(greatest)}"
+    """A message about a minimum time above the maximum; times without a unit are not compared."""
+    minimum, maximum = picoseconds(lower), picoseconds(upper)
+    if minimum is not None and maximum is not None and minimum > maximum:
+        yield f"the minimum {what} {time_text(minimum)} is above the maximum {what} {time_text(maximum)}"

@@ -9,7 +9,7 @@ from amalthea_uros.metamodel.element import Element
 
 
 def by_label(conditions: Iterable[Element]) -> dict[ModeLabel, tuple[dict[str, None], dict[str, None]]]:
-    """The literals to which each mode label is required to be equal, and not equal."""
+    """The literals that each mode label is compared with, for equality and for inequality."""
     found: dict[ModeLabel, tuple[dict[str, None], dict[str, None]]] = {}
     for condition in conditions:
         if not isinstance(condition, ModeValueCondition) or condition.label is None or condition.value is None:

@@ -1,4 +1,4 @@
-"""Mean of a Gauss distribution of whole numbers that is outside of its bounds."""
+"""Mean outside the bounds of a discrete Gauss distribution."""
 
 from __future__ import annotations
 
@@ -17,13 +17,12 @@ def _check(element: DiscreteValueGaussDistribution, context: Context) -> Iterato
 
 RULE = ModelRule(
     id="TA-Basic-DiscreteValueGaussDistribution-mean",
-    title="mean outside of the bounds",
+    title="mean outside the bounds of a discrete Gauss distribution",
     severity=Severity.ERROR,
     target=DiscreteValueGaussDistribution,
     check=_check,
-    rationale="A distribution that is cut off beside its peak is hardly what was measured. APP4MC reports it when it validates "
-    "the model.",
-    remedy="Put the mean between the bounds.",
+    rationale="A distribution that is truncated beside its peak rarely matches measured values. APP4MC's validation also reports it.",
+    remedy="Choose a mean between the bounds.",
     fails="""
 <swModel>
   <runnables name="R">

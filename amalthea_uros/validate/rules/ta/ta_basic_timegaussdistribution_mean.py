@@ -1,4 +1,4 @@
-"""Mean of a Gauss distribution of times that is outside of its bounds."""
+"""Mean outside the bounds of a Gauss distribution of times."""
 
 from __future__ import annotations
 
@@ -17,13 +17,12 @@ def _check(element: TimeGaussDistribution, context: Context) -> Iterator[str]:
 
 RULE = ModelRule(
     id="TA-Basic-TimeGaussDistribution-mean",
-    title="mean outside of the bounds",
+    title="mean outside the bounds of a Gauss distribution of times",
     severity=Severity.ERROR,
     target=TimeGaussDistribution,
     check=_check,
-    rationale="A distribution that is cut off beside its peak is hardly what was measured. APP4MC reports it when it validates "
-    "the model.",
-    remedy="Put the mean between the bounds.",
+    rationale="A distribution that is truncated beside its peak rarely matches measured values. APP4MC's validation also reports it.",
+    remedy="Choose a mean between the bounds.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicStimulus" name="S">

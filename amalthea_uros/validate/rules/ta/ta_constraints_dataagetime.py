@@ -1,4 +1,4 @@
-"""Data that would have to be older than they may be."""
+"""Minimum data age above the maximum."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def _check(element: DataAgeTime, context: Context) -> Iterator[str]:
 
 RULE = ModelRule(
     id="TA-Constraints-DataAgeTime",
-    title="least age above the greatest",
+    title="minimum data age above the maximum",
     severity=Severity.ERROR,
     target=DataAgeTime,
     check=_check,
-    rationale="No data are of such an age. APP4MC reports it when it validates the model.",
-    remedy="Swap the two, or correct one of them.",
+    rationale="No age can satisfy the constraint, so it is always violated. APP4MC's validation also reports it.",
+    remedy="Swap the two values, or correct one of them.",
     fails="""
 <constraintsModel>
   <dataAgeConstraints name="D">

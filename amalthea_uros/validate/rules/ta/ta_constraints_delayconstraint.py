@@ -1,4 +1,4 @@
-"""Delay that would have to be longer than it may be."""
+"""Minimum delay above the maximum."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def _check(element: DelayConstraint, context: Context) -> Iterator[str]:
 
 RULE = ModelRule(
     id="TA-Constraints-DelayConstraint",
-    title="least delay above the greatest",
+    title="minimum delay above the maximum",
     severity=Severity.ERROR,
     target=DelayConstraint,
     check=_check,
-    rationale="No delay is like that; the constraint is always broken. APP4MC reports it when it validates the model.",
-    remedy="Swap the two, or correct one of them.",
+    rationale="No delay can satisfy the constraint, so it is always violated. APP4MC's validation also reports it.",
+    remedy="Swap the two values, or correct one of them.",
     fails="""
 <constraintsModel>
   <timingConstraints xsi:type="am:DelayConstraint" name="D">

@@ -1,4 +1,4 @@
-"""Latency that would have to be longer than it may be."""
+"""Minimum event chain latency above the maximum."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def _check(element: EventChainLatencyConstraint, context: Context) -> Iterator[s
 
 RULE = ModelRule(
     id="TA-Constraints-ECLConstraint",
-    title="least latency above the greatest",
+    title="minimum event chain latency above the maximum",
     severity=Severity.ERROR,
     target=EventChainLatencyConstraint,
     check=_check,
-    rationale="No latency is like that; the constraint is always broken. APP4MC reports it when it validates the model.",
-    remedy="Swap the two, or correct one of them.",
+    rationale="No latency can satisfy the constraint, so it is always violated. APP4MC's validation also reports it.",
+    remedy="Swap the two values, or correct one of them.",
     fails="""
 <constraintsModel>
   <timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L" type="Reaction">

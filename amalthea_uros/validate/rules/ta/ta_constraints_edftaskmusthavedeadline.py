@@ -1,4 +1,4 @@
-"""Task without a deadline where the earliest one decides."""
+"""Missing deadline of an EDF task."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from amalthea_uros.validate.scheduling import policy
 
 def _check(element: Task, context: Context) -> Iterator[str]:
     if element in context.once(_by_deadline) and element not in context.once(_limited):
-        yield f"{element.name!r} is scheduled by deadlines, and no requirement limits its response time"
+        yield f"{element.name!r} is scheduled by EDF, but no requirement limits its response time"
 
 
 def _by_deadline(context: Context) -> set[Task]:
@@ -34,7 +34,7 @@ def _by_deadline(context: Context) -> set[Task]:
 
 
 def _limited(context: Context) -> set[AbstractProcess]:
-    # A deadline that is stated as a scheduling parameter does not count here: the rule is older than those.
+    # Deadlines in scheduling parameters do not count: APP4MC's rule is older than these parameters.
     return {
         requirement.process
         for requirement in context.all(ProcessRequirement)
@@ -47,12 +47,12 @@ def _limited(context: Context) -> set[AbstractProcess]:
 
 RULE = ModelRule(
     id="TA-Constraints-EDFTaskMustHaveDeadline",
-    title="task without a deadline where the earliest one decides",
+    title="missing deadline of an EDF task",
     severity=Severity.ERROR,
     target=Task,
     check=_check,
-    rationale="Without a deadline nothing says when it is its turn. APP4MC reports it when it validates the model.",
-    remedy="Add a requirement with an upper limit of its response time.",
+    rationale="Without a deadline, the scheduling order of the task is undefined. APP4MC's validation also reports it.",
+    remedy="Add a requirement with an upper limit for the response time of the task.",
     fails="""
 <osModel>
   <schedulerDefinitions name="EarliestDeadlineFirst"/>

@@ -1,4 +1,4 @@
-"""Distance of repetitions that would have to be longer than it may be."""
+"""Minimum repetition distance above the maximum."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def _check(element: RepetitionConstraint, context: Context) -> Iterator[str]:
 
 RULE = ModelRule(
     id="TA-Constraints-RepetitionConstraint",
-    title="least distance above the greatest",
+    title="minimum repetition distance above the maximum",
     severity=Severity.ERROR,
     target=RepetitionConstraint,
     check=_check,
-    rationale="No distance is like that; the constraint is always broken. APP4MC reports it when it validates the model.",
-    remedy="Swap the two, or correct one of them.",
+    rationale="No distance can satisfy the constraint, so it is always violated. APP4MC's validation also reports it.",
+    remedy="Swap the two values, or correct one of them.",
     fails="""
 <constraintsModel>
   <timingConstraints xsi:type="am:RepetitionConstraint" name="R" span="1">

@@ -1,4 +1,4 @@
-"""Limit of a response time that is not above zero."""
+"""Response time limit of zero or less."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: TimeRequirementLimit, context: Context) -> Iterator[str]:
     limit = element.limit_value
     if element.metric is TimeMetric.RESPONSE_TIME and limit is not None and (limit.value or 0) <= 0:
-        yield f"the response time is limited by {limit.value or 0}"
+        yield f"the response time limit is {limit.value or 0}, but must be greater than 0"
 
 
 RULE = ModelRule(
     id="TA-Constraints-RTLimitMustBePositive",
-    title="limit of a response time that is not above zero",
+    title="response time limit of zero or less",
     severity=Severity.ERROR,
     target=TimeRequirementLimit,
     check=_check,
-    rationale="Nothing responds in no time. APP4MC reports it when it validates the model.",
-    remedy="State a limit above 0.",
+    rationale="Every response takes time, so a limit of 0 or less is meaningless. APP4MC's validation also reports it.",
+    remedy="Set a limit greater than 0.",
     fails="""
 <constraintsModel>
   <requirements xsi:type="am:ProcessRequirement" name="deadline" process="T?type=Task">

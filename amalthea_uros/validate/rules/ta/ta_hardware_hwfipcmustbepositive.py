@@ -1,4 +1,4 @@
-"""Processing unit type that never gets on."""
+"""Instructions per cycle (IPC) of zero or less."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from amalthea_uros.validate.rules.ta._instructions import is_per_cycle
 def _check(element: HwFeature, context: Context) -> Iterator[str]:
     value: float = element.effective("value")
     if is_per_cycle(element) and isfinite(value) and value <= 0:
-        yield f"{element.name!r} is {value}"
+        yield f"the IPC {element.name!r} is {value}, but must be greater than 0"
 
 
 RULE = ModelRule(
     id="TA-Hardware-HWFIPCMustBePositive",
-    title="instructions per cycle that are not above zero",
+    title="instructions per cycle (IPC) of zero or less",
     severity=Severity.ERROR,
     target=HwFeature,
     check=_check,
-    rationale="A core that executes no instruction in a cycle never ends anything. APP4MC reports it when it validates the model.",
-    remedy="State how many instructions a cycle executes.",
+    rationale="With an IPC of 0 no job would ever finish. APP4MC's validation also reports it.",
+    remedy="Set the number of instructions per cycle to a value greater than 0.",
     fails="""
 <hwModel>
   <featureCategories name="Instructions">

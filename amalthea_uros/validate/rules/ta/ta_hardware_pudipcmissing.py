@@ -1,4 +1,4 @@
-"""Processor type of which the instructions per cycle are not certain."""
+"""Missing or ambiguous instructions per cycle (IPC)."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from amalthea_uros.validate.rules.ta._instructions import is_per_cycle
 def _check(element: ProcessingUnitDefinition, context: Context) -> Iterator[str]:
     count = sum(is_per_cycle(feature) for feature in element.features)
     if element.pu_type is PuType.CPU and count == 0:
-        yield f"{element.name!r} has no instructions per cycle, 1.0 is taken"
+        yield f"IPC of {element.name!r} is not defined; assuming 1.0"
     elif element.pu_type is PuType.CPU and count > 1:
-        yield f"{element.name!r} has {count} values of instructions per cycle, the first one is taken"
+        yield f"IPC of {element.name!r} is defined {count} times; using the first value"
 
 
 RULE = ModelRule(
     id="TA-Hardware-PUDIPCMissing",
-    title="instructions per cycle that are not certain",
+    title="missing or ambiguous instructions per cycle (IPC)",
     severity=Severity.INFO,
     target=ProcessingUnitDefinition,
     check=_check,
-    rationale="Execution needs in instructions become times by them. APP4MC reports it when it validates the model.",
-    remedy="Refer to one feature whose name starts with IPC_, of the category Instructions.",
+    rationale="The IPC converts execution needs in instructions into times. APP4MC's validation also reports it.",
+    remedy="Refer to exactly one feature of the category Instructions whose name starts with IPC_.",
     fails="""
 <hwModel>
   <definitions xsi:type="am:ProcessingUnitDefinition" name="D" puType="CPU"/>

@@ -1,4 +1,4 @@
-"""Semaphore whose numbers do not fit."""
+"""Inconsistent semaphore values."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: Semaphore, context: Context) -> Iterator[str]:
     initial, most = element.effective("initial_value"), element.effective("max_value")
     if initial < 0:
-        yield f"{element.name!r} has {initial} users at the start"
+        yield f"the initial value of {element.name!r} is {initial}, but must be 0 or more"
     if most <= 0:
-        yield f"{element.name!r} has room for {most} users"
+        yield f"the maximum value of {element.name!r} is {most}, but must be greater than 0"
     if most < initial:
-        yield f"{element.name!r} has {initial} users at the start, and room for {most}"
+        yield f"the initial value {initial} of {element.name!r} is above the maximum value {most}"
 
 
 RULE = ModelRule(
     id="TA-Misc-Semaphore",
-    title="semaphore whose numbers do not fit",
+    title="inconsistent semaphore values",
     severity=Severity.ERROR,
     target=Semaphore,
     check=_check,
-    rationale="Who requests it waits forever, or it keeps nobody away. APP4MC reports it when it validates the model.",
-    remedy="State room for one user or more, and at the start between 0 and as many users.",
+    rationale="Either every request waits forever, or the semaphore protects nothing. APP4MC's validation also reports it.",
+    remedy="Set the maximum value to 1 or more, and the initial value from 0 to the maximum.",
     fails="""
 <osModel>
   <semaphores name="S" initialValue="2" maxValue="1"/>

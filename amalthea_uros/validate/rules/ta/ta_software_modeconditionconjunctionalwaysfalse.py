@@ -1,4 +1,4 @@
-"""Conditions that cannot all be true."""
+"""Mode condition that is never true."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from amalthea_uros.validate.wording import joined
 def _check(element: ConditionConjunction | ModeConditionConjunction, context: Context) -> Iterator[str]:
     for label, (required, excluded) in by_label(element.entries).items():
         if len(required) > 1:
-            yield f"{label.name!r} is required to be {joined(map(repr, required))} at once"
+            yield f"{label.name!r} must equal {joined(map(repr, required))} at the same time"
         if len(excluded) > 1:
-            # With a third literal this can be true; APP4MC reports it all the same.
-            yield f"{label.name!r} is required not to be {joined(map(repr, excluded))}"
+            # With a third literal this can be true, but APP4MC reports it anyway.
+            yield f"{label.name!r} must differ from {joined(map(repr, excluded))}"
         for literal in required:
             if literal in excluded:
-                yield f"{label.name!r} is required both to be and not to be {literal!r}"
+                yield f"{label.name!r} must both equal and differ from {literal!r}"
 
 
 RULE = ModelRule(
     id="TA-Software-ModeConditionConjunctionAlwaysFalse",
-    title="conditions that cannot all be true",
+    title="mode condition that is never true",
     severity=Severity.WARNING,
     target=(ConditionConjunction, ModeConditionConjunction),
     check=_check,
-    rationale="What depends on it never happens. APP4MC reports it when it validates the model.",
-    remedy="Require one literal of each mode label.",
+    rationale="Whatever depends on the condition never executes. APP4MC's validation also reports it.",
+    remedy="Require at most one literal for each mode label.",
     fails="""
 <swModel>
   <runnables name="R">

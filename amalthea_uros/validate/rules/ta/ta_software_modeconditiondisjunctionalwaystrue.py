@@ -1,4 +1,4 @@
-"""Conditions of which one is always true."""
+"""Mode condition that is always true."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ def _check(element: ConditionDisjunction | ModeConditionDisjunction, context: Co
     for label, (accepted, rejected) in by_label(element.entries).items():
         literals = _literals(label)
         if literals and literals <= set(accepted):
-            yield f"{label.name!r} may be any of its literals"
+            yield f"{label.name!r} may have any of its literals"
         for literal in accepted:
             if literal in rejected:
-                yield f"{label.name!r} may be {literal!r}, and anything else"
+                yield f"{label.name!r} may equal {literal!r} or differ from it"
 
 
 def _literals(label: ModeLabel) -> set[str | None]:
@@ -28,12 +28,12 @@ def _literals(label: ModeLabel) -> set[str | None]:
 
 RULE = ModelRule(
     id="TA-Software-ModeConditionDisjunctionAlwaysTrue",
-    title="conditions of which one is always true",
+    title="mode condition that is always true",
     severity=Severity.WARNING,
     target=(ConditionDisjunction, ModeConditionDisjunction),
     check=_check,
-    rationale="What depends on it always happens. APP4MC reports it when it validates the model.",
-    remedy="Leave the condition away, or require less.",
+    rationale="The condition has no effect. APP4MC's validation also reports it.",
+    remedy="Remove the condition, or accept fewer literals.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Runnable that calls itself at once."""
+"""Runnable that calls itself directly."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ def _check(element: RunnableCall, context: Context) -> Iterator[str]:
 
 RULE = ModelRule(
     id="TA-Software-RunnableCall",
-    title="runnable that calls itself at once",
+    title="runnable that calls itself directly",
     severity=Severity.ERROR,
     target=RunnableCall,
     check=_check,
-    rationale="Its execution time has no end. APP4MC reports it when it validates the model.",
-    remedy="Call something else, or nothing.",
+    rationale="The execution time of the runnable is unbounded. APP4MC's validation also reports it.",
+    remedy="Remove the call, or call another runnable.",
     fails="""
 <swModel>
   <runnables name="R">

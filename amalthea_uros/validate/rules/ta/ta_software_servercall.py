@@ -1,4 +1,4 @@
-"""Runnable that is its own server."""
+"""Server call of a runnable to itself."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ def _check(element: ServerCall, context: Context) -> Iterator[str]:
 
 RULE = ModelRule(
     id="TA-Software-ServerCall",
-    title="runnable that is its own server",
+    title="server call of a runnable to itself",
     severity=Severity.ERROR,
     target=ServerCall,
     check=_check,
-    rationale="It waits for its own end, or has no end. APP4MC reports it when it validates the model.",
-    remedy="Call another runnable.",
+    rationale="A synchronous call waits for itself forever, and an asynchronous call is repeated forever. APP4MC's validation "
+    "also reports it.",
+    remedy="Remove the call, or call another runnable.",
     fails="""
 <swModel>
   <runnables name="R">

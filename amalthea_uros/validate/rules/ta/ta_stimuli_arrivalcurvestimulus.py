@@ -1,4 +1,4 @@
-"""Event of the operating system that is never set."""
+"""Waiting for an event that is never set."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: OsEvent, context: Context) -> Iterator[str]:
-    # The id is that of APP4MC, where it speaks of something else.
+    # APP4MC uses this id for the rule, although it names another subject.
     if element in context.once(_awaited) and element not in context.once(_set):
-        yield f"{element.name!r} is waited for, and nothing sets it"
+        yield f"{element.name!r} is waited for, but never set"
 
 
 def _awaited(context: Context) -> set[OsEvent]:
@@ -30,12 +30,12 @@ def _in_masks(masks: Iterable[EventMask | None]) -> set[OsEvent]:
 
 RULE = ModelRule(
     id="TA-Stimuli-ArrivalCurveStimulus",
-    title="event that is waited for and never set",
+    title="waiting for an event that is never set",
     severity=Severity.ERROR,
     target=OsEvent,
     check=_check,
-    rationale="Who waits for it waits forever. APP4MC reports it when it validates the model.",
-    remedy="Set the event somewhere, or do not wait for it.",
+    rationale="A process that waits for the event is blocked forever. APP4MC's validation also reports it.",
+    remedy="Set the event in another process, or do not wait for it.",
     fails="""
 <swModel>
   <tasks name="T">

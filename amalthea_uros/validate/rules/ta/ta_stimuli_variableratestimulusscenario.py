@@ -1,4 +1,4 @@
-"""Stimulus of a varying rate that nothing drives."""
+"""Variable-rate stimulus without a scenario."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def _check(element: VariableRateStimulus, context: Context) -> Iterator[str]:
 
 RULE = ModelRule(
     id="TA-Stimuli-VariableRateStimulusScenario",
-    title="varying rate without a scenario",
+    title="variable-rate stimulus without a scenario",
     severity=Severity.ERROR,
     target=VariableRateStimulus,
     check=_check,
-    rationale="It is not known when it occurs, only how often. APP4MC reports it when it validates the model.",
-    remedy="Give it a scenario with a clock.",
+    rationale="The rate is known, but not the points in time at which the stimulus occurs. APP4MC's validation also reports it.",
+    remedy="Add a scenario with a clock.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:VariableRateStimulus" name="S">

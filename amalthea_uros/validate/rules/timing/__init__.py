@@ -1,1 +1,1 @@
-"""What makes a model impossible to analyse, or its figures misleading."""
+"""Problems that make a model impossible to analyse, or its results misleading."""

@@ -1,4 +1,4 @@
-"""Process whose place is not known."""
+"""Process without a unique allocation."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def _check(element: Process, context: Context) -> Iterator[str]:
         return
     times = context.once(_allocations)[element]
     if times == 0:
-        yield f"{element.name!r} is allocated to no scheduler and no interrupt controller"
+        yield f"{element.name!r} is not allocated to a scheduler or an interrupt controller"
     elif times > 1:
         yield f"{element.name!r} is allocated {times} times"
 
@@ -30,13 +30,13 @@ def _allocations(context: Context) -> Counter[Process]:
 
 RULE = ModelRule(
     id="TIM-ALLOCATION",
-    title="process whose place is not known",
+    title="process without a unique allocation",
     severity=Severity.WARNING,
     target=Process,
     check=_check,
-    rationale="It is not known which core serves it, and by which policy; its load is missing everywhere, or counted in one of several "
-    "places.",
-    remedy="Allocate it to one task scheduler or interrupt controller.",
+    rationale="The core and the scheduling policy of the process are unknown. Its load is missing, or counted for only one of "
+    "several cores.",
+    remedy="Allocate the process to exactly one task scheduler or interrupt controller.",
     fails="""
 <swModel>
   <tasks name="T"/>

@@ -23,8 +23,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=IDiscreteValueDeviation,
     check=_check,
-    rationale="Without an upper bound there is no worst case, without a lower bound no best case: what it belongs to stays unknown.",
-    remedy="State the lower and the upper bound.",
+    rationale="Without an upper bound there is no worst case; without a lower bound there is no best case.",
+    remedy="Set the lower and the upper bound.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Processing unit whose clock is not known."""
+"""Processing unit without a clock frequency."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: ProcessingUnit, context: Context) -> Iterator[str]:
     if clock(element) is None:
-        yield f"the clock of {element.name!r} is not known"
+        yield f"the clock frequency of {element.name!r} is unknown"
 
 
 RULE = ModelRule(
     id="TIM-CLOCK",
-    title="processing unit whose clock is not known",
+    title="processing unit without a clock frequency",
     severity=Severity.WARNING,
     target=ProcessingUnit,
     check=_check,
-    rationale="Without a frequency no tick becomes a time, and nothing on this processing unit can be analysed.",
-    remedy="Give it a frequency domain with a default value and a unit, or state the clock with --frequency.",
+    rationale="Ticks cannot be converted into times, so nothing on this processing unit can be analysed.",
+    remedy="Add a frequency domain with a default value and a unit, or set the frequency with --frequency.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock">

@@ -1,4 +1,4 @@
-"""Process that takes no time."""
+"""Process without an execution time."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Process, context: Context) -> Iterator[str]:
     if isinstance(element, Task | ISR) and element not in context.once(_demanding):
-        yield f"neither {element.name!r} nor a runnable that it calls has an execution time"
+        yield f"{element.name!r} has no execution time, and neither have the runnables that it calls"
 
 
 def _demanding(context: Context) -> set[IExecutable]:
-    """The processes and runnables that take time, themselves or by what they call."""
+    """The processes and runnables that take time, directly or through the runnables that they call."""
     ticks = (item for item in context.all(Ticks) if item.default is not None or item.extended)
     needs = (item for item in context.all(ExecutionNeed) if item.needs)
     holders = (item.enclosing(IExecutable) for item in (*ticks, *needs))
@@ -27,12 +27,12 @@ def _demanding(context: Context) -> set[IExecutable]:
 
 RULE = ModelRule(
     id="TIM-DEMAND",
-    title="process that takes no time",
+    title="process without an execution time",
     severity=Severity.WARNING,
     target=Process,
     check=_check,
-    rationale="Without Ticks or execution needs its execution time is 0, and so is its share of the load.",
-    remedy="State the execution time in the runnables that it calls.",
+    rationale="Without ticks or execution needs, the execution time and the load of the process are 0.",
+    remedy="Add ticks or execution needs to the process, or to the runnables that it calls.",
     fails="""
 <swModel>
   <tasks name="T"/>

@@ -1,4 +1,4 @@
-"""Estimators that no Weibull distribution has."""
+"""Invalid parameters of a Weibull distribution."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ def _check(element: DiscreteValueWeibullEstimatorsDistribution, context: Context
     names = ("lower_bound", "average", "upper_bound", "p_remain_promille")
     lower, average, upper, remaining = (element.effective(name) for name in names)
     if not lower < average < upper:
-        yield f"the average {average} does not lie strictly between {lower} and {upper}"
+        yield f"the average {average} is not strictly between the bounds {lower} and {upper}"
     if not 0 < remaining < 1000:
-        yield f"the probability of more than the upper bound is {remaining} per mille"
+        yield f"the probability of exceeding the upper bound is {remaining} per mille, but must be greater than 0 and less than 1000"
 
 
 RULE = ModelRule(
     id="TIM-DISTRIBUTION",
-    title="estimators that no Weibull distribution has",
+    title="invalid parameters of a Weibull distribution",
     severity=Severity.WARNING,
     target=DiscreteValueWeibullEstimatorsDistribution,
     check=_check,
-    rationale="A simulator draws something else, or nothing, so that its figures do not fit to those that are computed from the "
-    "average and the bounds.",
-    remedy="State an average strictly between the bounds, and a probability above 0 and below 1000 per mille.",
+    rationale="A simulator has to replace the distribution, so its results do not match those computed from the average and "
+    "the bounds.",
+    remedy="Set an average strictly between the bounds, and a probability greater than 0 and less than 1000 per mille.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Loop without a bound."""
+"""Unbounded loop."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: WhileLoop, context: Context) -> Iterator[str]:
-    yield "nothing says how often the loop is repeated at most"
+    yield "the maximum number of iterations is unknown"
 
 
 RULE = ModelRule(
     id="TIM-LOOP",
-    title="loop without a bound",
+    title="unbounded loop",
     severity=Severity.WARNING,
     target=WhileLoop,
     check=_check,
-    rationale="Nothing says how often it is repeated at most, so that there is no worst case.",
-    remedy="Unroll it, or state the repetitions as calls with a statistic.",
+    rationale="Without a maximum number of iterations there is no worst-case execution time.",
+    remedy="Unroll the loop, or replace it by a call with a statistic of the number of iterations.",
     fails="""
 <swModel>
   <runnables name="R">

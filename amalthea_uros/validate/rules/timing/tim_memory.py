@@ -1,4 +1,4 @@
-"""Memory that is too small."""
+"""Insufficient memory size."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ def _check(element: Memory, context: Context) -> Iterator[str]:
     mapped = context.once(_mapped).get(element, {})
     needed = sum(bits(part.size) or 0 for part in mapped)
     if size is not None and needed > size:
-        yield f"what is mapped into {element.name!r} needs {size_text(needed)}, and it has {size_text(size)}"
+        yield f"{element.name!r} has a size of {size_text(size)}, but the objects mapped to it need {size_text(needed)}"
 
 
 def _mapped(context: Context) -> dict[Memory, dict[AbstractMemoryElement, None]]:
-    """What lies in each memory; each thing once, by whatever it was put there."""
+    """The objects mapped to each memory, each of them once, even if it is mapped in several ways."""
     sections: dict[Section, list[AbstractMemoryElement]] = {}
     candidates: tuple[Label | Runnable, ...] = (*context.all(Label), *context.all(Runnable))
     for part in candidates:
@@ -48,13 +48,12 @@ def _mapped(context: Context) -> dict[Memory, dict[AbstractMemoryElement, None]]
 
 RULE = ModelRule(
     id="TIM-MEMORY",
-    title="memory that is too small for what is mapped into it",
+    title="insufficient memory size",
     severity=Severity.WARNING,
     target=Memory,
     check=_check,
-    rationale="Not all of it can lie there. What moves elsewhere has other access times, so that those computed with this mapping "
-    "are wrong.",
-    remedy="Map some of it elsewhere, or correct the sizes.",
+    rationale="Some of the objects must be moved. Their access times change, so times computed with this mapping are wrong.",
+    remedy="Map some of the objects to another memory, or correct the sizes.",
     fails="""
 <swModel>
   <labels name="L">

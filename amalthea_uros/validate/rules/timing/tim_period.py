@@ -1,4 +1,4 @@
-"""Stimulus without a distance between its occurrences."""
+"""Stimulus without a minimum interarrival time."""
 
 from __future__ import annotations
 
@@ -26,35 +26,35 @@ def _check(element: Stimulus, context: Context) -> Iterator[str]:
     match element:
         case PeriodicStimulus() | PeriodicSyntheticStimulus() | PeriodicBurstStimulus():
             if not (picoseconds(element.recurrence) or 0) > 0:
-                yield f"the stimulus {element.name!r} has no recurrence above zero with a unit"
+                yield f"stimulus {element.name!r} has no positive recurrence with a unit"
             if isinstance(element, PeriodicStimulus) and element.jitter is not None and None in bounds(element.jitter):
-                yield f"the jitter of the stimulus {element.name!r} lacks a bound"
+                yield f"the jitter of stimulus {element.name!r} has no lower or no upper bound"
         case RelativePeriodicStimulus():
             if not (bounds(element.next_occurrence)[0] or 0) > 0:
-                yield f"the stimulus {element.name!r} has no least distance above zero with a unit"
+                yield f"stimulus {element.name!r} has no positive minimum distance with a unit"
         case ArrivalCurveStimulus():
             if not any(_limits(entry) for entry in element.entries):
-                yield f"no entry of {element.name!r} has a lower border above zero with a unit for two or more occurrences"
+                yield f"stimulus {element.name!r} has no positive lower time border with a unit for two or more occurrences"
         case VariableRateStimulus(scenario=None):
             if not (picoseconds(element.step) or 0) > 0 or not (bounds(element.occurrences_per_step)[1] or 0) > 0:
-                yield f"nothing says how often the stimulus {element.name!r} occurs at most in a step"
+                yield f"the maximum number of occurrences per step of stimulus {element.name!r} is unknown"
         case CustomStimulus():
-            yield f"nothing says how often the custom stimulus {element.name!r} occurs"
+            yield f"the activation pattern of custom stimulus {element.name!r} is unknown"
 
 
 def _limits(entry: ArrivalCurveEntry) -> bool:
-    """Whether an entry says how close occurrences are at most."""
+    """Whether an entry defines a minimum time between occurrences."""
     return entry.effective("number_of_occurrences") > 1 and (picoseconds(entry.lower_time_border) or 0) > 0
 
 
 RULE = ModelRule(
     id="TIM-PERIOD",
-    title="stimulus without a distance between its occurrences",
+    title="stimulus without a minimum interarrival time",
     severity=Severity.WARNING,
     target=Stimulus,
     check=_check,
-    rationale="Nothing bounds how often it occurs, and with it the load.",
-    remedy="State a recurrence or a least distance above zero, with its unit.",
+    rationale="The number of activations is unbounded, and so is the load.",
+    remedy="Set a positive recurrence or minimum distance, with its unit.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicStimulus" name="S"/>

@@ -13,7 +13,7 @@ from amalthea_uros.validate.scheduling import policy
 
 def _check(element: TaskScheduler, context: Context) -> Iterator[str]:
     if policy(element) is None and context.uses(TaskAllocation, "scheduler")[element]:
-        yield f"{element.name!r} has tasks and names no policy"
+        yield f"scheduler {element.name!r} has tasks, but no policy"
 
 
 RULE = ModelRule(
@@ -22,7 +22,7 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=TaskScheduler,
     check=_check,
-    rationale="Who is served first is a guess: fixed priorities with preemption are taken.",
+    rationale="The scheduling order is unknown; preemptive fixed priorities are assumed.",
     remedy="Refer to a scheduler definition, such as FixedPriorityPreemptive.",
     fails="""
 <osModel>

@@ -13,7 +13,7 @@ from amalthea_uros.validate.scheduling import deciding, is_by_priority, priority
 
 def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
     if element.task is not None and is_by_priority(deciding(element.scheduler)) and priority(element) is None:
-        yield f"the task {element.task.name!r} has no priority"
+        yield f"task {element.task.name!r} has no priority"
 
 
 RULE = ModelRule(
@@ -22,8 +22,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=TaskAllocation,
     check=_check,
-    rationale="Where priorities decide, it is not known who is served first.",
-    remedy="Give its allocation the scheduling parameter priority.",
+    rationale="The scheduling order of the task is unknown.",
+    remedy="Add the scheduling parameter 'priority' to the task allocation.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock">

@@ -1,4 +1,4 @@
-"""Runnable that calls itself."""
+"""Recursive runnable."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from amalthea_uros.validate.execution import waited_for
 from amalthea_uros.validate.graphs import circles
 from amalthea_uros.validate.rule import ModelRule
 
-#: Longer ways are not told in full.
+#: Longer call paths are shortened.
 _MOST = 12
 
 
@@ -19,7 +19,7 @@ def _check(element: Runnable, context: Context) -> Iterator[str]:
     circle = context.once(_circles).get(element)
     if circle is None:
         return
-    # Who called whom first on the way from this runnable.
+    # The first caller of each runnable in a search from this one.
     first: dict[Runnable, Runnable] = {}
     pending = [element]
     while element not in first:
@@ -44,12 +44,12 @@ def _circles(context: Context) -> dict[Runnable, set[Runnable]]:
 
 RULE = ModelRule(
     id="TIM-RECURSION",
-    title="runnable that calls itself",
+    title="recursive runnable",
     severity=Severity.ERROR,
     target=Runnable,
     check=_check,
-    rationale="Its execution time has no end.",
-    remedy="Break the circle of calls.",
+    rationale="The execution time of the runnable is unbounded.",
+    remedy="Break the cycle of calls.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Process that nothing activates."""
+"""Process without an activation."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from amalthea_uros.validate.wording import listed
 def _check(element: Process, context: Context) -> Iterator[str]:
     if isinstance(element, Task | ISR) and not any(_occurs(stimulus, context) for stimulus in element.stimuli):
         if element.stimuli:
-            yield f"nothing activates {element.name!r}: nothing triggers {listed(element.stimuli)}"
+            yield f"{element.name!r} is never activated: nothing triggers {listed(element.stimuli)}"
         else:
-            yield f"nothing activates {element.name!r}"
+            yield f"{element.name!r} is never activated: it has no stimulus"
 
 
 def _occurs(stimulus: Stimulus, context: Context) -> bool:
-    """Whether a stimulus comes from outside, or something in the model triggers it."""
+    """Whether a stimulus comes from the environment, or is triggered by the model."""
     match stimulus:
         case InterProcessStimulus(unresolved=None):
             return stimulus in context.once(_triggered)
@@ -46,12 +46,12 @@ def _triggered(context: Context) -> set[Stimulus]:
 
 RULE = ModelRule(
     id="TIM-STIMULUS",
-    title="process that nothing activates",
+    title="process without an activation",
     severity=Severity.WARNING,
     target=Process,
     check=_check,
-    rationale="It never runs, so that neither its response time nor its load means anything.",
-    remedy="Give it a stimulus, trigger the one that it has, or remove it.",
+    rationale="The process never runs, so its response time and its load are meaningless.",
+    remedy="Add a stimulus, trigger the existing one, or remove the process.",
     fails="""
 <swModel>
   <tasks name="T"/>

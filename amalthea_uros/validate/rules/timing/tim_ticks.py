@@ -28,8 +28,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=Ticks,
     check=_check,
-    rationale="Where they have no value they take no time, or the demand of what executes them is not known.",
-    remedy="State a default, or a value for each processing unit definition on which they are executed.",
+    rationale="Ticks without a value take no time, or leave the execution time of everything that executes them unknown.",
+    remedy="Set a default, or a value for each processing unit definition that executes the ticks.",
     fails="""
 <swModel>
   <runnables name="R">

@@ -1,4 +1,4 @@
-"""Execution need that is no time."""
+"""Execution need in an unknown unit."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ def _check(element: ExecutionNeed, context: Context) -> Iterator[str]:
     types = context.once(_types)
     for key in (entry.key or "" for entry in element.needs):
         if types and all(ticks_per_unit(kind, key) is None for kind in types):
-            yield f"the need {key!r} is no feature category of any processing unit in use"
+            yield f"need {key!r} is not a feature category of any processing unit in use"
         elif missing := [unit for unit in units(element, context) if ticks_per_unit(unit.definition, key) is None]:
-            yield f"nothing says what the need {key!r} takes on {listed(missing)}"
+            yield f"the cost of need {key!r} is not defined for {listed(missing)}"
 
 
 def _types(context: Context) -> set[ProcessingUnitDefinition | None]:
@@ -28,13 +28,14 @@ def _types(context: Context) -> set[ProcessingUnitDefinition | None]:
 
 RULE = ModelRule(
     id="TIM-UNIT",
-    title="execution need in a unit that a processing unit does not know",
+    title="execution need in an unknown unit",
     severity=Severity.WARNING,
     target=ExecutionNeed,
     check=_check,
-    rationale="There it becomes no time, so that neither the demand nor the response times of what executes it are known.",
-    remedy="Name a feature category in the need, and give each processing unit definition on which it is executed a feature of "
-    "it that is not 0.",
+    rationale="The need cannot be converted into a time, so the load and the response times of everything that executes it "
+    "are unknown.",
+    remedy="Use a feature category as the key of the need, and give each processing unit definition that executes it a "
+    "nonzero feature of this category.",
     fails="""
 <swModel>
   <runnables name="R">

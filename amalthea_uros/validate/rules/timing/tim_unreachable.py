@@ -1,4 +1,4 @@
-"""Runnable that no process executes."""
+"""Unreachable runnable."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Runnable, context: Context) -> Iterator[str]:
     if element not in context.once(_executed):
-        yield f"no process executes the runnable {element.name!r}"
+        yield f"runnable {element.name!r} is not executed by any process"
 
 
 def _executed(context: Context) -> set[IExecutable]:
-    """What processes execute, and what they make others execute."""
+    """Everything that processes execute or cause to be executed."""
     caused: dict[IExecutable | None, list[Runnable | None]] = {}
     for call in context.all(ServerCall):
         caused.setdefault(call.enclosing(IExecutable), []).append(call.server_runnable)
@@ -44,12 +44,12 @@ def _executed(context: Context) -> set[IExecutable]:
 
 RULE = ModelRule(
     id="TIM-UNREACHABLE",
-    title="runnable that no process executes",
+    title="unreachable runnable",
     severity=Severity.INFO,
     target=Runnable,
     check=_check,
-    rationale="It never runs; if it should, its time is missing in the load.",
-    remedy="Call it in a task, directly or by way of other runnables, or remove it.",
+    rationale="The runnable never runs. If it should, its execution time is missing from the load.",
+    remedy="Call it from a task, directly or through other runnables, or remove it.",
     fails="""
 <swModel>
   <runnables name="R"/>

@@ -1,4 +1,4 @@
-"""Waiting without a bound."""
+"""Unbounded waiting time."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from amalthea_uros.validate.wording import listed
 def _check(element: WaitEvent, context: Context) -> Iterator[str]:
     events = element.event_mask.events if element.event_mask is not None else []
     what = f" for {listed(events)}" if events else ""
-    yield f"nothing says how long it waits{what} at most"
+    yield f"the maximum waiting time{what} is unknown"
 
 
 RULE = ModelRule(
     id="TIM-WAIT",
-    title="waiting without a bound",
+    title="unbounded waiting time",
     severity=Severity.WARNING,
     target=WaitEvent,
     check=_check,
-    rationale="The process has no worst case, so that its response time is not known, nor are those of the less urgent ones "
-    "beside it.",
-    remedy="Let what sets the event activate a process of its own instead.",
+    rationale="The process has no worst case, so its response time is unknown, and so are those of lower-priority processes "
+    "on the same core.",
+    remedy="Trigger a separate task instead of waiting for the event.",
     fails="""
 <swModel>
   <tasks name="T">

@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: ProbabilitySwitch, context: Context) -> Iterator[str]:
     if element.entries and not any((entry.probability or 0) > 0 for entry in element.entries):
-        yield "no branch has a probability above 0"
+        yield "no branch has a probability greater than 0"
 
 
 RULE = ModelRule(
@@ -21,8 +21,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=ProbabilitySwitch,
     check=_check,
-    rationale="With weights that are all 0 no branch can be chosen.",
-    remedy="Give at least one branch a probability above 0.",
+    rationale="If all probabilities are 0, no branch can be chosen.",
+    remedy="Give at least one branch a probability greater than 0.",
     fails="""
 <swModel>
   <runnables name="R">
