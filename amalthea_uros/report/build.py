@@ -27,7 +27,7 @@ def write_text(built: Built, path: Path, description: Path, stream: IO[str]) -> 
     _isrs(terminal, assembly.system)
     _traffic(terminal, assembly)
     if assembly.initialisation is not None:
-        terminal.heading("Start of the middleware")
+        terminal.heading("Initialisation of the middleware")
         terminal.line(f"  {start_text(assembly.initialisation)}")
     _pools(terminal, assembly)
 
@@ -43,7 +43,7 @@ def _tasks(terminal: Terminal, assembly: Assembly) -> None:
         rows.append((task.name, when, allocation.priority, ", ".join(scheduler.cores), reasons.get(task.name, "")))
     if rows:
         terminal.heading(f"Tasks ({len(rows)})")
-        terminal.table(("task", "activated", "priority", "core", "why"), rows, right=(2,))
+        terminal.table(("task", "activated", "priority", "core", "reason"), rows, right=(2,))
 
 
 def _isrs(terminal: Terminal, system: System) -> None:
@@ -73,10 +73,10 @@ def activation_text(stimulus: Stimulus) -> str:
 
 
 def _traffic(terminal: Terminal, assembly: Assembly) -> None:
-    if not assembly.traffic:
+    if not assembly.messages:
         return
-    share = float(sum(item.share for item in assembly.traffic))
-    terminal.heading(f"Messages on the CAN bus ({share:.1%} of it at most)")
+    load = float(sum(item.bus_load for item in assembly.messages))
+    terminal.heading(f"Messages on the CAN bus (bus load at most {100 * load:.1f} %)")
     rows = [
         (
             item.message.topic,
@@ -84,20 +84,21 @@ def _traffic(terminal: Terminal, assembly: Assembly) -> None:
             time_text(item.message.interval),
             f"{item.length} B",
             item.frames,
-            time_text(item.bus_time),
+            time_text(item.transmission_time),
         )
-        for item in assembly.traffic
+        for item in assembly.messages
     ]
-    headings = ("topic", "way", "every", "with headers", "frames", "bus time")
+    headings = ("topic", "direction", "interval", "with headers", "frames", "transmission time")
     terminal.table(headings, rows, right=(2, 3, 4, 5))
 
 
 def start_text(start: Initialisation) -> str:
-    """How the middleware starts, in a sentence."""
-    text = f"{len(start.entities)} entities one after the other, {start.least_cycles} cycles ({time_text(start.least_time)}) or more"
-    if start.most_cycles is None or start.most_time is None:
+    """The initialisation of the middleware, in a sentence."""
+    count = f"{len(start.entities)} entities, created one after the other"
+    text = f"{count}: at least {start.min_cycles} cycles ({time_text(start.min_time)})"
+    if start.max_cycles is None or start.max_time is None:
         return text
-    return f"{text}, {start.most_cycles} cycles ({time_text(start.most_time)}) at most"
+    return f"{text}, at most {start.max_cycles} cycles ({time_text(start.max_time)})"
 
 
 def _pools(terminal: Terminal, assembly: Assembly) -> None:
@@ -105,7 +106,7 @@ def _pools(terminal: Terminal, assembly: Assembly) -> None:
     if not used:
         return
     terminal.heading("Static pools")
-    rows = [(pool.option, pool.needed, pool.available, "" if pool.stated else "default") for pool in used]
+    rows = [(pool.option, pool.needed, pool.available, "" if pool.configured else "default") for pool in used]
     terminal.table(("option", "needed", "available", ""), rows, right=(1, 2))
 
 
@@ -126,20 +127,21 @@ def write_json(built: Built, path: Path, description: Path, stream: IO[str]) -> 
                 "interval_ps": item.message.interval,
                 "bytes": item.length,
                 "frames": item.frames,
-                "bus_time_ps": item.bus_time,
+                "transmission_time_ps": item.transmission_time,
             }
-            for item in assembly.traffic
+            for item in assembly.messages
         ],
         "initialisation": start
         and {
             "entities": [{"kind": entity.kind, "name": entity.name} for entity in start.entities],
-            "least_cycles": start.least_cycles,
-            "most_cycles": start.most_cycles,
-            "least_time_ps": start.least_time,
-            "most_time_ps": start.most_time,
+            "min_cycles": start.min_cycles,
+            "max_cycles": start.max_cycles,
+            "min_time_ps": start.min_time,
+            "max_time_ps": start.max_time,
         },
         "pools": [
-            {"option": p.option, "needed": p.needed, "available": p.available, "stated": p.stated} for p in assembly.pools
+            {"option": p.option, "needed": p.needed, "available": p.available, "configured": p.configured}
+            for p in assembly.pools
         ],
         "findings": [finding_json(finding) for finding in assembly.findings],
     }

@@ -1,4 +1,4 @@
-"""The application: its callbacks in tasks of their own or inside the executor, and the interrupt that receives their messages."""
+"""The application: its callbacks in their own tasks or in the executor, and the interrupt that receives their messages."""
 
 from __future__ import annotations
 
@@ -7,93 +7,108 @@ from collections.abc import Sequence
 from amalthea_uros.perf.software import Call, Runnable
 from amalthea_uros.spec.middleware import Interrupt
 from amalthea_uros.units import Time
-from amalthea_uros.uros.callbacks import Callback, in_order
-from amalthea_uros.uros.executor import Costs, Part, in_executor_parts, message_cost, occurrences, own_task_parts, timers
-from amalthea_uros.uros.periods import Choice, check_inside, choose, choose_executor, offer_of
-from amalthea_uros.uros.steps import steps
+from amalthea_uros.uros.activities import activity_sequence
+from amalthea_uros.uros.bus_messages import BusMessage, bus_of, receive_stimulus
+from amalthea_uros.uros.callbacks import Callback, registration_order
+from amalthea_uros.uros.context import AssemblyContext
+from amalthea_uros.uros.executor import (
+    ExecutorRunnables,
+    PlannedCall,
+    call_counter,
+    in_executor_calls,
+    message_cost,
+    own_task_calls,
+    timer_count,
+)
+from amalthea_uros.uros.periods import (
+    PeriodChoice,
+    check_callbacks_in_executor,
+    choose_executor_period,
+    choose_task_period,
+    period_candidates,
+)
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
-from amalthea_uros.uros.work import Work
-from amalthea_uros.uros.xrce import Traffic, bus_of, receive_stimulus
 
 
-def add_callbacks(work: Work, callbacks: Sequence[Callback]) -> tuple[Choice, ...]:
-    """Add the executor and the tasks of callbacks, and give the periods that were chosen, that of the executor first."""
-    executor, offer = work.description.middleware.executor, offer_of(work.description.middleware)
+def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tuple[PeriodChoice, ...]:
+    """Add the executor and the callbacks' own tasks, and return the choice of their periods, that of the executor first."""
+    middleware, converter, notes = context.description.middleware, context.converter, context.notes
+    executor, candidates = middleware.executor, period_candidates(middleware)
     outside = [callback for callback in callbacks if not callback.in_executor]
-    inside = in_order((callback for callback in callbacks if callback.in_executor), executor, work.notes)
-    own = [choice for callback in outside if (choice := choose(callback, offer, work.profile, work.notes)) is not None]
-    check_inside(inside, work.profile, work.notes)
-    if not own and not inside:
+    inside = registration_order((callback for callback in callbacks if callback.in_executor), executor, notes)
+    choices = [
+        choice for callback in outside if (choice := choose_task_period(callback, candidates, converter, notes)) is not None
+    ]
+    check_callbacks_in_executor(inside, converter, notes)
+    if not choices and not inside:
         return ()
-    chosen = choose_executor(executor, offer, own, inside, work.notes)
+    chosen = choose_executor_period(executor, candidates, choices, inside, notes)
     if chosen is None:
         return ()
-    core = work.core(executor.core, executor.location("core"))
-    bodies = {callback.name: _body(work, callback, core) for callback in callbacks}
-    _add_executor(work, _parts(work, outside, inside, bodies, chosen.period, core), chosen.period, core)
-    periods = {choice.task: choice.period for choice in own}
+    core = context.core(executor.core, executor.location("core"))
+    bodies = {callback.name: _body(context, callback, core) for callback in callbacks}
+    _add_executor(context, _executor_calls(context, outside, inside, bodies, chosen.period, core), chosen.period, core)
+    periods = {choice.task: choice.period for choice in choices}
     for callback in outside:
         if callback.name in periods:
-            _add_own_task(work, callback, periods[callback.name], bodies[callback.name])
-    return (chosen, *own)
+            _add_own_task(context, callback, periods[callback.name], bodies[callback.name])
+    return (chosen, *choices)
 
 
-def _parts(
-    work: Work,
+def _executor_calls(
+    context: AssemblyContext,
     outside: Sequence[Callback],
     inside: Sequence[Callback],
     bodies: dict[str, Runnable],
     period: Time,
     core: str,
-) -> list[Part]:
-    """What the executor calls."""
-    costs = Costs(middleware=work.description.middleware, profile=work.profile, core=core)
+) -> list[PlannedCall]:
+    runnables = ExecutorRunnables(middleware=context.description.middleware, converter=context.converter, core=core)
     return [
-        Part(runnable=costs.spin(timers((*outside, *inside)))),
-        *own_task_parts(outside, costs, period),
-        *in_executor_parts(inside, bodies, costs, period),
+        PlannedCall(runnable=runnables.spin(timer_count((*outside, *inside)))),
+        *own_task_calls(outside, runnables, period),
+        *in_executor_calls(inside, bodies, runnables, period),
     ]
 
 
-def _add_executor(work: Work, parts: Sequence[Part], period: Time, core: str) -> None:
-    executor = work.description.middleware.executor
-    work.runnables |= {part.runnable.name: part.runnable for part in parts}
-    work.tasks.append(
+def _add_executor(context: AssemblyContext, calls: Sequence[PlannedCall], period: Time, core: str) -> None:
+    executor = context.description.middleware.executor
+    context.runnables |= {call.runnable.name: call.runnable for call in calls}
+    context.tasks.append(
         PlannedTask(
             name=executor.name,
             core=core,
-            stimuli=(work.pool.periodic(period, executor.offset, executor.location()),),
-            activities=tuple(part.call for part in parts),
+            stimuli=(context.stimuli.periodic(period, executor.offset, executor.location()),),
+            activities=tuple(call.call for call in calls),
             period=period,
             priority=executor.priority,
             deadline=executor.deadline,
-            outranks=True,
+            wins_ties=True,
             origin=executor.location(),
         )
     )
 
 
-def _core(work: Work, callback: Callback, executor_core: str) -> str:
-    """Where a callback runs."""
+def _core(context: AssemblyContext, callback: Callback, executor_core: str) -> str:
+    """The core of a callback."""
     section, node = callback.section, callback.node
     if callback.in_executor:
         if section.core is not None and section.core != executor_core:
-            message = f"{callback.name!r} runs inside the executor, on {executor_core}"
-            advice = "Leave 'core' out, or let it run in a task of its own: 'runs_in: own-task'."
-            work.notes.error("UR104", message, section.location("core"), advice)
+            message = f"{callback.name!r} runs in the executor on {executor_core!r}, not on {section.core!r}"
+            context.notes.error("UR104", message, section.location("core"), "Remove 'core', or set 'runs_in: own-task'.")
         return executor_core
     if section.core is not None:
-        return work.core(section.core, section.location("core"))
-    return work.core(node.core, node.location("core"))
+        return context.core(section.core, section.location("core"))
+    return context.core(node.core, node.location("core"))
 
 
-def _body(work: Work, callback: Callback, executor_core: str) -> Runnable:
-    """The callback itself: it reads, computes and publishes, and writes."""
-    section, publish = callback.section, work.description.middleware.publish
+def _body(context: AssemblyContext, callback: Callback, executor_core: str) -> Runnable:
+    """The runnable of a callback: it reads, computes and publishes, and writes."""
+    section, publish = callback.section, context.description.middleware.publish
     sending = [cost for message in callback.outgoing for cost in message_cost(publish, message.size)]
-    core = _core(work, callback, executor_core)
-    activities = steps(
-        work.profile.execute([section.execution_time, *sending], core, section.location("execution_time")),
+    core = _core(context, callback, executor_core)
+    activities = activity_sequence(
+        context.converter.execute([section.execution_time, *sending], core, section.location("execution_time")),
         reads=dict.fromkeys([*([callback.buffer] if callback.buffer else []), *section.reads]),
         writes=dict.fromkeys(section.writes),
     )
@@ -101,20 +116,20 @@ def _body(work: Work, callback: Callback, executor_core: str) -> Runnable:
 
 
 def body_name(callback: Callback) -> str:
-    """The name of the function of a callback."""
+    """The name of the runnable of a callback."""
     return f"{callback.name}_Callback"
 
 
-def _add_own_task(work: Work, callback: Callback, period: Time, body: Runnable) -> None:
-    """Add the task of a callback; where it is activated more often than the callback is due, it calls every n-th time."""
+def _add_own_task(context: AssemblyContext, callback: Callback, period: Time, body: Runnable) -> None:
+    """Add the task of a callback; if it is activated more often than the callback is due, it calls it every n-th time."""
     section = callback.section
-    work.runnables[body.name] = body
-    work.tasks.append(
+    context.runnables[body.name] = body
+    context.tasks.append(
         PlannedTask(
             name=callback.name,
-            core=_core(work, callback, work.controller.first_core),
-            stimuli=(work.pool.periodic(period, section.offset, callback.origin),),
-            activities=(Call(runnable=body.name, counter=occurrences(callback.interval, period)),),
+            core=_core(context, callback, context.controller.first_core),
+            stimuli=(context.stimuli.periodic(period, section.offset, callback.origin),),
+            activities=(Call(runnable=body.name, counter=call_counter(callback.interval, period)),),
             period=period,
             priority=section.priority,
             deadline=section.deadline,
@@ -123,27 +138,24 @@ def _add_own_task(work: Work, callback: Callback, period: Time, body: Runnable) 
     )
 
 
-def add_interrupt(work: Work, traffic: Sequence[Traffic]) -> None:
+def add_interrupt(context: AssemblyContext, messages: Sequence[BusMessage]) -> None:
     """Add the interrupt service routine that receives frames, if it is described."""
-    can = work.description.middleware.transport.can
-    incoming = [item for item in traffic if item.incoming]
+    can = context.description.middleware.transport.can
+    incoming = [message for message in messages if message.incoming]
     if can is None or can.interrupt is None or not incoming:
         return
     bus = bus_of(can)
-    stimuli = [work.pool.add(receive_stimulus(item, bus)) for item in incoming]
-    _add_isr(work, can.interrupt, tuple(stimuli))
+    stimuli = [context.stimuli.add(receive_stimulus(message, bus)) for message in incoming]
+    _add_isr(context, can.interrupt, tuple(stimuli))
 
 
-def _add_isr(work: Work, interrupt: Interrupt, stimuli: tuple[str, ...]) -> None:
-    executor = work.description.middleware.executor
-    stated, place = (
-        (interrupt.core, interrupt.location("core")) if interrupt.core else (executor.core, executor.location("core"))
-    )
-    core = work.core(stated, place)
-    activities = steps(work.profile.execute([interrupt.execution_time], core, interrupt.location()))
+def _add_isr(context: AssemblyContext, interrupt: Interrupt, stimuli: tuple[str, ...]) -> None:
+    section = interrupt if interrupt.core else context.description.middleware.executor
+    core = context.core(section.core, section.location("core"))
+    activities = activity_sequence(context.converter.execute([interrupt.execution_time], core, interrupt.location()))
     handler = Runnable(name=f"{interrupt.name}_Frame", activities=activities, origin=interrupt.location())
-    work.runnables[handler.name] = handler
-    work.isrs.append(
+    context.runnables[handler.name] = handler
+    context.isrs.append(
         PlannedIsr(
             name=interrupt.name,
             core=core,

@@ -1,4 +1,4 @@
-"""Description -> system: everything of this room put together."""
+"""From a description to a system."""
 
 from __future__ import annotations
 
@@ -16,41 +16,41 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import Hardware
 from amalthea_uros.uros.application import add_callbacks, add_interrupt
+from amalthea_uros.uros.background_tasks import add_background_tasks
+from amalthea_uros.uros.bus_messages import BusMessage, bus_messages, check_bus_load
 from amalthea_uros.uros.callbacks import Callback, callbacks_of
+from amalthea_uros.uros.chain_elements import chain_elements
 from amalthea_uros.uros.chains import Chains
-from amalthea_uros.uros.hardware import controller
+from amalthea_uros.uros.context import AssemblyContext
+from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.importers import note_losses
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
-from amalthea_uros.uros.load import add_load
-from amalthea_uros.uros.members import members_of
-from amalthea_uros.uros.memory import labels_of, note_slips, placements
-from amalthea_uros.uros.names import check_names
+from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
+from amalthea_uros.uros.names import check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
-from amalthea_uros.uros.periods import Choice
-from amalthea_uros.uros.pools import Pool, check, pools_of
+from amalthea_uros.uros.periods import PeriodChoice
+from amalthea_uros.uros.pools import Pool, check_pools, pools_of
 from amalthea_uros.uros.requirements import requirements
 from amalthea_uros.uros.streams import check_streams
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
-from amalthea_uros.uros.work import Work
-from amalthea_uros.uros.xrce import Traffic, note_traffic, traffic_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Assembly:
-    """A system, and what was decided and found out on the way.
+    """A system, and the decisions and findings of its assembly.
 
     Attributes
     ----------
     choices : the periods of the executor and of the callbacks' tasks, with reasons
-    traffic : the messages on the CAN bus
+    messages : on the CAN bus
     pools : static pools of the middleware
-    findings : warnings and notes
+    findings : of severity warning and info
     """
 
     system: System
-    choices: tuple[Choice, ...]
-    traffic: tuple[Traffic, ...]
+    choices: tuple[PeriodChoice, ...]
+    messages: tuple[BusMessage, ...]
     initialisation: Initialisation | None
     pools: tuple[Pool, ...]
     findings: tuple[Finding, ...]
@@ -61,76 +61,79 @@ def assemble(description: Description, hardware: Hardware, platform: str | None)
 
     Parameters
     ----------
-    hardware : that of the description, completed by its platform
-    platform : the name of that platform, by which execution times refer to it
+    hardware : of the description, completed by its platform
+    platform : the name that execution times use for the hardware; None if it has none
 
     Raises
     ------
-    ReadError : the description contradicts itself, or something in it is impossible; carries all findings.
+    ReadError : the description is contradictory or cannot be implemented; carries all findings.
     """
     notes = Notes()
-    check_names(description, notes)
-    ground = controller(description.name, hardware, platform, notes)
-    if ground is None:
+    check_unique_names(description, notes)
+    target = controller_of(description.name, hardware, platform, notes)
+    if target is None:
         raise ReadError(notes.findings)
-    assembly = _assembly(Work(description=description, controller=ground, notes=notes))
+    assembly = _assembly(AssemblyContext(description=description, controller=target, notes=notes))
     if notes.has_errors:
         raise ReadError(notes.findings)
     return assembly
 
 
-def _assembly(work: Work) -> Assembly:
-    application, middleware = work.description.application, work.description.middleware
-    callbacks = callbacks_of(application, middleware.executor, work.notes)
-    traffic = traffic_of(callbacks, middleware.transport)
-    note_traffic(traffic, middleware.transport, work.notes)
+def _assembly(context: AssemblyContext) -> Assembly:
+    application, middleware = context.description.application, context.description.middleware
+    callbacks = callbacks_of(application, middleware.executor, context.notes)
+    messages = bus_messages(callbacks, middleware.transport)
+    check_bus_load(messages, middleware.transport, context.notes)
     pools = pools_of(application, middleware)
-    check(pools, callbacks, middleware, work.notes)
-    check_streams(callbacks, middleware, work.notes)
-    choices = add_callbacks(work, callbacks)
-    add_interrupt(work, traffic)
-    add_load(work)
-    if not work.tasks and not work.isrs and not work.notes.has_errors:
-        advice = "Give callbacks under 'application', or 'tasks'."
-        work.notes.error("APP009", "there is nothing that runs", work.description.location(), advice)
-    system = _system(work, callbacks)
-    note_losses(system, work.notes)
+    check_pools(pools, callbacks, middleware, context.notes)
+    check_streams(callbacks, middleware, context.notes)
+    choices = add_callbacks(context, callbacks)
+    add_interrupt(context, messages)
+    add_background_tasks(context)
+    if not context.tasks and not context.isrs and not context.notes.has_errors:
+        advice = "Define callbacks under 'application', or tasks under 'tasks'."
+        message = "no callback, task or interrupt service routine is defined"
+        context.notes.error("APP009", message, context.description.location(), advice)
+    system = _system(context, callbacks)
+    note_losses(system, context.notes)
     response_time = middleware.initialisation.response_time
     return Assembly(
         system=system,
         choices=choices,
-        traffic=traffic,
+        messages=messages,
         initialisation=initialisation(application, choices[0].period, response_time) if choices else None,
         pools=pools,
-        findings=tuple(work.notes.findings),
+        findings=tuple(context.notes.findings),
     )
 
 
-def _system(work: Work, callbacks: Sequence[Callback]) -> System:
-    """The system of everything that came together."""
-    description, notes = work.description, work.notes
-    note_slips(description, work.runnables, notes)
-    labels = labels_of(description, callbacks, work.runnables)
-    members = members_of(work, callbacks)
-    chains = Chains(members, frozenset(label.name for label in labels), notes)
+def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
+    """The system of all that has been added to the context."""
+    description, notes = context.description, context.notes
+    check_misspelled_labels(description, context.runnables, notes)
+    labels = labels_of(description, callbacks, context.runnables)
+    elements = chain_elements(context, callbacks)
+    chains = Chains(elements, frozenset(label.name for label in labels), notes)
     limits = chains.add_all(description.chains)
     return System(
-        hardware=work.controller.hardware,
-        os=os_of(work),
-        stimuli=Stimuli(stimuli=work.pool.stimuli),
+        hardware=context.controller.hardware,
+        os=os_of(context),
+        stimuli=Stimuli(stimuli=context.stimuli.stimuli),
         software=Software(
-            tasks=tuple(map(_task, work.tasks)),
-            isrs=tuple(map(_isr, work.isrs)),
-            runnables=tuple(work.runnables.values()),
+            tasks=tuple(map(_task, context.tasks)),
+            isrs=tuple(map(_isr, context.isrs)),
+            runnables=tuple(context.runnables.values()),
             labels=labels,
         ),
         mapping=Mapping(
-            tasks=tuple(task_allocations(work)),
-            isrs=tuple(isr_allocations(work)),
-            placements=tuple(placements(labels, description, work.controller, notes)),
+            tasks=tuple(task_allocations(context)),
+            isrs=tuple(isr_allocations(context)),
+            placements=tuple(placements(labels, description, context.controller, notes)),
         ),
         events=Events(events=tuple(chains.events.values()), chains=tuple(chains.chains.values())),
-        constraints=Constraints(constraints=limits, requirements=tuple(requirements(description.requirements, members, notes))),
+        constraints=Constraints(
+            constraints=limits, requirements=tuple(requirements(description.requirements, elements, notes))
+        ),
     )
 
 

@@ -1,4 +1,4 @@
-"""The callbacks of an application, all kinds alike: how often they run, which message makes them ready, what they send."""
+"""The callbacks of an application in one form for all kinds: their interval, the message that makes them ready, what they send."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from amalthea_uros.units import SECOND, DataSize, Frequency, Time
 from amalthea_uros.uros.notes import Notes
 
 
-class Kind(StrEnum):
-    """What a callback belongs to."""
+class CallbackKind(StrEnum):
+    """The kind of entity that a callback belongs to."""
 
     SUBSCRIPTION = "subscription"
     TIMER = "timer"
@@ -25,14 +25,14 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Message:
-    """A message that leaves or reaches the controller.
+    """A message that the controller sends or receives.
 
     Attributes
     ----------
-    callback : who receives it or sends it
+    callback : the callback that receives or sends it
     topic : or the service, for requests and responses
     size : without headers
-    interval : least time between two of them
+    interval : minimum time between two messages
     """
 
     callback: str
@@ -49,14 +49,14 @@ class Callback:
 
     Attributes
     ----------
-    interval : least time between two executions that are due
+    interval : minimum time between two executions
     incoming : the message that makes it ready; None for timers
-    outgoing : messages that an execution sends
-    buffer : label by which the executor hands the message over
+    outgoing : messages that each execution sends
+    buffer : the label in which the executor leaves the message; None for timers
     """
 
     section: Section
-    kind: Kind
+    kind: CallbackKind
     node: Node
     interval: Time
     in_executor: bool
@@ -71,12 +71,12 @@ class Callback:
 
     @property
     def origin(self) -> Location | None:
-        """Where the callback stands."""
+        """Where the callback is described."""
         return self.section.location()
 
 
 def callbacks_of(application: Application, executor: Executor, notes: Notes) -> tuple[Callback, ...]:
-    """All callbacks in the order of the file, as far as they are sound; notes tell of the others."""
+    """All valid callbacks in the order of the file; the others get a finding."""
     found = [
         callback
         for node in application.nodes
@@ -86,17 +86,17 @@ def callbacks_of(application: Application, executor: Executor, notes: Notes) -> 
     return tuple(found)
 
 
-def _sections(node: Node) -> Iterator[tuple[Kind, Section]]:
+def _sections(node: Node) -> Iterator[tuple[CallbackKind, Section]]:
     for kind, sections in (
-        (Kind.SUBSCRIPTION, node.subscriptions),
-        (Kind.TIMER, node.timers),
-        (Kind.SERVICE, node.services),
-        (Kind.CLIENT, node.clients),
+        (CallbackKind.SUBSCRIPTION, node.subscriptions),
+        (CallbackKind.TIMER, node.timers),
+        (CallbackKind.SERVICE, node.services),
+        (CallbackKind.CLIENT, node.clients),
     ):
         yield from ((kind, section) for section in sections)
 
 
-def _callback(kind: Kind, section: Section, node: Node, executor: Executor, notes: Notes) -> Callback | None:
+def _callback(kind: CallbackKind, section: Section, node: Node, executor: Executor, notes: Notes) -> Callback | None:
     interval = _interval(section, notes)
     outgoing = tuple(_outgoing(section, node, interval or SECOND, notes))
     if interval is None:
@@ -114,25 +114,26 @@ def _callback(kind: Kind, section: Section, node: Node, executor: Executor, note
 
 
 def interval_of_rate(rate: Frequency) -> Time:
-    """The time between two occurrences, rounded down: a bound must not be less dense than the truth."""
+    """The time between two occurrences, rounded down so that it is a lower bound."""
     return int(SECOND / rate)
 
 
 def _interval(section: Section, notes: Notes) -> Time | None:
     key = "period" if isinstance(section, Timer) else "interval"
-    stated: Time | None = getattr(section, key)
+    given: Time | None = getattr(section, key)
     rate: Frequency | None = getattr(section, "rate", None)
-    if stated is None and rate is None:
+    if given is None and rate is None:
         message = f"{section.name!r} has neither {key!r} nor 'rate'"
-        notes.error("APP003", message, section.location(), f"Give '{key}: 20 ms', or 'rate: 50 Hz'.")
+        notes.error("APP003", message, section.location(), f"Set '{key}: 20 ms' or 'rate: 50 Hz'.")
         return None
     by_rate = None if rate is None else interval_of_rate(rate)
-    if stated is not None and by_rate is not None and stated != by_rate:
+    if given is not None and by_rate is not None and given != by_rate:
         message = f"{key!r} and 'rate' of {section.name!r} contradict each other"
-        notes.error("APP003", message, section.location("rate"), "Keep one of the two.")
-    interval = stated if stated is not None else by_rate
+        notes.error("APP003", message, section.location("rate"), "Remove one of them.")
+    interval = given if given is not None else by_rate
     if not interval:
-        notes.error("APP003", f"'rate' of {section.name!r} is beyond one per picosecond", section.location("rate"))
+        message = f"'rate' of {section.name!r} is above the maximum of 1 THz"
+        notes.error("APP003", message, section.location("rate"), "Set a lower rate.")
         return None
     return interval
 
@@ -162,25 +163,25 @@ def _outgoing(section: Section, node: Node, interval: Time, notes: Notes) -> Ite
         publisher = next((publisher for publisher in node.publishers if publisher.topic == topic), None)
         if publisher is None:
             topics = [publisher.topic for publisher in node.publishers]
-            notes.unknown(f"publisher of node {node.name!r}", topic, topics, section.location("publishes", index))
+            notes.undefined("publisher", topic, topics, section.location("publishes", index), owner=f"node {node.name!r}")
         else:
             yield message(topic, publisher.message_size, publisher.reliability == "reliable", publisher.location())
     for index, name in enumerate(section.requests):
         client = next((client for client in node.clients if client.name == name), None)
         if client is None:
             names = [client.name for client in node.clients]
-            notes.unknown(f"client of node {node.name!r}", name, names, section.location("requests", index))
+            notes.undefined("client", name, names, section.location("requests", index), owner=f"node {node.name!r}")
         else:
             yield message(client.service, client.request_size, True, client.location())
     if isinstance(section, Service):
         yield message(section.name, section.response_size, True, section.location())
 
 
-def in_order(callbacks: Iterable[Callback], executor: Executor, notes: Notes) -> tuple[Callback, ...]:
-    """Callbacks in the order in which they were added to the executor."""
+def registration_order(callbacks: Iterable[Callback], executor: Executor, notes: Notes) -> tuple[Callback, ...]:
+    """Callbacks in the order in which they are added to the executor."""
     by_name = {callback.name: callback for callback in callbacks}
     for index, name in enumerate(executor.order):
         if name not in by_name:
-            notes.unknown("callback", name, by_name, executor.location("order", index))
+            notes.undefined("callback", name, by_name, executor.location("order", index))
     names = [name for name in executor.order if name in by_name]
     return tuple(by_name[name] for name in dict.fromkeys([*names, *by_name]))

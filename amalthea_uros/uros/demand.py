@@ -1,4 +1,4 @@
-"""Execution times of a description as execution demand in ticks of the core that executes."""
+"""Execution times of a description as demands in ticks of the core that executes."""
 
 from __future__ import annotations
 
@@ -28,42 +28,42 @@ from amalthea_uros.uros.hardware import Controller
 from amalthea_uros.uros.notes import Notes
 
 
-def times_of(stated: ExecutionTime) -> Distribution[int]:
+def times_of(execution_time: ExecutionTime) -> Distribution[int]:
     """The distribution of an execution time that is not given per platform, in picoseconds."""
-    if stated.histogram is not None:
-        return Histogram(tuple(Bucket(lower=b.min, upper=b.max, occurrences=b.count) for b in stated.histogram))
-    lower, upper, average = stated.min, stated.max, stated.avg
+    if execution_time.histogram is not None:
+        return Histogram(tuple(Bucket(lower=b.min, upper=b.max, occurrences=b.count) for b in execution_time.histogram))
+    lower, upper, average = execution_time.min, execution_time.max, execution_time.avg
     assert lower is not None
     assert upper is not None
-    match stated.distribution:
+    match execution_time.distribution:
         case "uniform":
             return Uniform(lower=lower, upper=upper)
         case "gauss":
             assert average is not None
-            assert stated.deviation is not None
-            return Gauss(mean=average, deviation=stated.deviation, lower=lower, upper=upper)
+            assert execution_time.deviation is not None
+            return Gauss(mean=average, deviation=execution_time.deviation, lower=lower, upper=upper)
         case "beta":
-            assert stated.alpha is not None
-            assert stated.beta is not None
-            return Beta(alpha=stated.alpha, beta=stated.beta, lower=lower, upper=upper)
+            assert execution_time.alpha is not None
+            assert execution_time.beta is not None
+            return Beta(alpha=execution_time.alpha, beta=execution_time.beta, lower=lower, upper=upper)
         case "weibull":
             assert average is not None
-            return Weibull(lower=lower, average=average, upper=upper, exceeding=stated.exceeding or 1.0)
+            return Weibull(lower=lower, average=average, upper=upper, exceeding=execution_time.exceeding or 1.0)
     if average is not None:
         return Statistics(lower=lower, average=average, upper=upper)
     return Constant(lower) if lower == upper else Boundaries(lower=lower, upper=upper, sampling=Sampling.UNIFORM)
 
 
 def in_ticks(times: Distribution[int], frequency: Frequency) -> Distribution[int]:
-    """A distribution of times as one of ticks: least values are rounded down, greatest values and constants up."""
+    """A distribution of times as one of ticks: lower bounds are rounded down, upper bounds and constants up."""
 
     def exact(time: float) -> Fraction:
         return ticks_of_time(1, frequency) * Fraction(time)
 
-    def least(time: Time) -> int:
+    def lower_bound(time: Time) -> int:
         return down(exact(time))
 
-    def most(time: Time) -> int:
+    def upper_bound(time: Time) -> int:
         return up(exact(time))
 
     def mean(time: float) -> float:
@@ -71,94 +71,94 @@ def in_ticks(times: Distribution[int], frequency: Frequency) -> Distribution[int
 
     match times:
         case Constant(value):
-            return Constant(most(value))
+            return Constant(upper_bound(value))
         case Histogram(buckets):
             return Histogram(
-                tuple(Bucket(lower=least(b.lower), upper=most(b.upper), occurrences=b.occurrences) for b in buckets)
+                tuple(
+                    Bucket(lower=lower_bound(b.lower), upper=upper_bound(b.upper), occurrences=b.occurrences) for b in buckets
+                )
             )
         case Uniform(lower=lower, upper=upper):
-            return Uniform(lower=least(lower), upper=most(upper))
+            return Uniform(lower=lower_bound(lower), upper=upper_bound(upper))
         case Boundaries(lower=lower, upper=upper, sampling=sampling):
-            return Boundaries(lower=least(lower), upper=most(upper), sampling=sampling)
+            return Boundaries(lower=lower_bound(lower), upper=upper_bound(upper), sampling=sampling)
         case Statistics(lower=lower, average=average, upper=upper):
-            return Statistics(lower=least(lower), average=mean(average), upper=most(upper))
+            return Statistics(lower=lower_bound(lower), average=mean(average), upper=upper_bound(upper))
         case Weibull(lower=lower, average=average, upper=upper, exceeding=exceeding):
-            return Weibull(lower=least(lower), average=mean(average), upper=most(upper), exceeding=exceeding)
+            return Weibull(lower=lower_bound(lower), average=mean(average), upper=upper_bound(upper), exceeding=exceeding)
         case Beta(alpha=alpha, beta=beta, lower=lower, upper=upper):
-            return Beta(alpha=alpha, beta=beta, lower=least(lower), upper=most(upper))
+            return Beta(alpha=alpha, beta=beta, lower=lower_bound(lower), upper=upper_bound(upper))
         case Gauss(mean=average, deviation=deviation, lower=low, upper=high):
             return Gauss(
                 mean=mean(average),
                 deviation=mean(deviation),
-                lower=None if low is None else least(low),
-                upper=None if high is None else most(high),
+                lower=None if low is None else lower_bound(low),
+                upper=None if high is None else upper_bound(high),
             )
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
-    """Execution times as they apply on a controller."""
+class DemandConverter:
+    """Converts execution times of a description to demands on the cores of a controller."""
 
     controller: Controller
     notes: Notes
 
-    def on_platform(self, stated: ExecutionTime) -> ExecutionTime | None:
-        """What applies to the platform; None, with a note, if nothing does. Core types are left to `demand`."""
-        if stated.on is None:
-            return stated
+    def on_platform(self, execution_time: ExecutionTime) -> ExecutionTime | None:
+        """The execution time on the platform; None, with a finding, if there is none. Core types are left to `demand`."""
+        if execution_time.on is None:
+            return execution_time
         named = self.controller.platform
-        if named is not None and named in stated.on:
-            return self.on_platform(stated.on[named])
-        if "default" in stated.on:
-            return self.on_platform(stated.on["default"])
-        here = f"platform {named!r}" if named else "this hardware, which names no platform"
-        message = f"there is no execution time for {here}"
-        self.notes.error(
-            "APP006", message, stated.location(), f"Add {named or 'default'!r} below 'on', or 'default' for all others."
-        )
+        if named is not None and named in execution_time.on:
+            return self.on_platform(execution_time.on[named])
+        if "default" in execution_time.on:
+            return self.on_platform(execution_time.on["default"])
+        target = f"platform {named!r}" if named else "hardware without a platform name"
+        choices = f"{named!r} or 'default'" if named else "'default'"
+        self.notes.error("APP006", f"no execution time for {target}", execution_time.location(), f"Add {choices} under 'on'.")
         return None
 
-    def _types(self, stated: ExecutionTime) -> dict[str, ExecutionTime]:
+    def _types(self, execution_time: ExecutionTime) -> dict[str, ExecutionTime]:
         types = self.controller.core_types.values()
-        return {name: time for name, time in (stated.on or {}).items() if name in types}
+        return {name: time for name, time in (execution_time.on or {}).items() if name in types}
 
-    def longest(self, stated: ExecutionTime) -> Time:
-        """The worst-case execution time on any core; 0 where it is not known."""
-        types = self._types(stated)
-        times = list(types.values()) if types else filter(None, [self.on_platform(stated)])
+    def wcet(self, execution_time: ExecutionTime) -> Time:
+        """The worst-case execution time on any core; 0 if it is unknown."""
+        types = self._types(execution_time)
+        times = list(types.values()) if types else filter(None, [self.on_platform(execution_time)])
         return max((highest(times_of(time)) or 0 for time in times), default=0)
 
-    def demand(self, stated: ExecutionTime, core: str) -> Demand | None:
-        """The demand on a core, or on any core of the types that are named; None if nothing applies."""
-        types = self._types(stated)
+    def demand(self, execution_time: ExecutionTime, core: str) -> Demand | None:
+        """The demand on a core, by core type if the execution time depends on it; None if it has no value for the core."""
+        types = self._types(execution_time)
         if not types:
-            times = self.on_platform(stated)
+            times = self.on_platform(execution_time)
             return None if times is None else Demand(self._ticks(times, core))
         cores = {kind: name for name, kind in self.controller.core_types.items()}
         by_type = tuple((kind, self._ticks(time, cores[kind])) for kind, time in types.items())
-        default = (stated.on or {}).get("default")
+        default = (execution_time.on or {}).get("default")
         return Demand(None if default is None else self._ticks(default, core), by_type)
 
-    def _ticks(self, stated: ExecutionTime, core: str) -> Distribution[int]:
-        times, frequency = times_of(stated), self.controller.frequencies[core]
+    def _ticks(self, execution_time: ExecutionTime, core: str) -> Distribution[int]:
+        times, frequency = times_of(execution_time), self.controller.frequencies[core]
         if isinstance(times, Constant):
-            self._note_rounding(times.value, core, stated.location())
+            self._check_rounding(times.value, core, execution_time.location())
         return in_ticks(times, frequency)
 
-    def _note_rounding(self, time: Time, core: str, location: Location | None) -> None:
+    def _check_rounding(self, time: Time, core: str, location: Location | None) -> None:
         ticks = ticks_of_time(time, self.controller.frequencies[core])
         if ticks.denominator != 1:
-            message = f"{time_text(time)} is {float(ticks):.6g} ticks on {core}, {up(ticks)} are taken"
+            message = f"{time_text(time)} is {float(ticks):.6g} ticks on {core!r}, rounded up to {up(ticks)}"
             self.notes.info("APP007", message, location)
 
     def execute(
         self, parts: Iterable[ExecutionTime | Time | None], core: str, location: Location | None
     ) -> tuple[Execute, ...]:
-        """Computation that consists of parts: what is constant in one, the rest one by one.
+        """Computation that consists of parts: the sum of all constant ones first, then the others one by one.
 
         Parameters
         ----------
-        location : what a note about the sum points to
+        location : of findings about the sum
         """
         constant: Time = 0
         varying: list[Demand] = []
@@ -175,6 +175,6 @@ class Profile:
                 demand = self.demand(part, core)
                 if demand is not None:
                     varying.append(demand)
-        self._note_rounding(constant, core, location)
+        self._check_rounding(constant, core, location)
         fixed = [Demand(in_ticks(Constant(constant), self.controller.frequencies[core]))] if constant else []
         return tuple(Execute(demand=demand) for demand in (*fixed, *varying))

@@ -1,4 +1,4 @@
-"""The hardware model of a description as the hardware of a system."""
+"""The hardware section of a description as the hardware of a system."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from amalthea_uros.uros.notes import Notes
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Controller:
-    """The hardware, and what the software has to know of it.
+    """The hardware, and its properties that the software depends on.
 
     Attributes
     ----------
-    platform : name by which execution times refer to it; None if it was described inline
+    platform : the name that execution times use for it; None if it is described inline
     frequencies : by core, in the order of the cores
     core_types : by core
-    label_memory : where labels lie that do not state it
+    label_memory : of labels without a memory of their own
     """
 
     hardware: Hardware
@@ -46,39 +46,41 @@ class Controller:
 
     @property
     def first_core(self) -> str:
-        """The core of everything that does not state one."""
+        """The default core."""
         return next(iter(self.frequencies))
 
 
-def controller(name: str, stated: spec.Hardware, platform: str | None, notes: Notes) -> Controller | None:
-    """The controller; None, with a note, if too little is said about it.
+def controller_of(name: str, section: spec.Hardware, platform: str | None, notes: Notes) -> Controller | None:
+    """The controller; None, with findings, if its description is invalid.
 
     Parameters
     ----------
-    name : of the application, which names the system
-    stated : the hardware, completed by its platform
+    name : of the application, which becomes the name of the system
+    section : the hardware, completed by its platform
     """
-    cores = stated.cores or [spec.Core(name="Core_0")]
+    cores = section.cores or [spec.Core(name="Core_0")]
     frequencies: dict[str, Frequency] = {}
     for core in cores:
-        frequency = core.frequency or stated.frequency
+        frequency = core.frequency or section.frequency
         if frequency is None:
-            advice = "Give 'frequency: 300 MHz' for all cores, or name a platform."
-            notes.error("APP005", f"the clock of core {core.name!r} is not known", _place(core, stated), advice)
+            advice = "Set a frequency, e.g. 'frequency: 300 MHz', or name a platform."
+            notes.error("APP005", f"the frequency of core {core.name!r} is unknown", _origin(core, section), advice)
         elif core.name in frequencies:
-            notes.error("APP002", f"there are two cores named {core.name!r}", _place(core, stated))
+            first = next(other for other in cores if other.name == core.name)
+            notes.duplicate("core", core.name, _origin(core, section), _origin(first, section))
         else:
             frequencies[core.name] = frequency
-    memories = stated.memories or []
-    for index, memory in enumerate(memories):
-        if any(memory.name == other.name for other in memories[:index]):
-            notes.error("APP002", f"there are two memories named {memory.name!r}", memory.location("name"))
-    label_memory = _label_memory(stated, notes)
+    memories = section.memories or []
+    for memory in memories:
+        first_memory = next(other for other in memories if other.name == memory.name)
+        if memory is not first_memory:
+            notes.duplicate("memory", memory.name, memory.location("name"), first_memory.location("name"))
+    label_memory = _label_memory(section, notes)
     if notes.has_errors:
         return None
-    default_type = stated.core_type or "Core"
+    default_type = section.core_type or "Core"
     return Controller(
-        hardware=_hardware(name, stated, cores, frequencies, default_type),
+        hardware=_hardware(name, section, cores, frequencies, default_type),
         platform=platform,
         frequencies=frequencies,
         core_types={core.name: core.type or default_type for core in cores},
@@ -87,27 +89,27 @@ def controller(name: str, stated: spec.Hardware, platform: str | None, notes: No
     )
 
 
-def _place(core: spec.Core, stated: spec.Hardware) -> Location | None:
-    return core.location() or stated.location()
+def _origin(core: spec.Core, section: spec.Hardware) -> Location | None:
+    return core.location() or section.location()
 
 
-def _label_memory(stated: spec.Hardware, notes: Notes) -> str | None:
-    names = [memory.name for memory in stated.memories or ()]
-    if stated.label_memory is not None:
-        if stated.label_memory not in names:
-            notes.unknown("memory", stated.label_memory, names, stated.location("label_memory"))
-        return stated.label_memory
-    return next((memory.name for memory in stated.memories or () if memory.kind in ("SRAM", "DRAM")), None)
+def _label_memory(section: spec.Hardware, notes: Notes) -> str | None:
+    names = [memory.name for memory in section.memories or ()]
+    if section.label_memory is not None:
+        if section.label_memory not in names:
+            notes.undefined("memory", section.label_memory, names, section.location("label_memory"))
+        return section.label_memory
+    return next((memory.name for memory in section.memories or () if memory.kind in ("SRAM", "DRAM")), None)
 
 
 def _hardware(
-    name: str, stated: spec.Hardware, cores: list[spec.Core], frequencies: Mapping[str, Frequency], default_type: str
+    name: str, section: spec.Hardware, cores: list[spec.Core], frequencies: Mapping[str, Frequency], default_type: str
 ) -> Hardware:
     clocks = _clocks(frequencies)
     types = dict.fromkeys(core.type or default_type for core in cores)
-    accesses = tuple(access for memory in stated.memories or () for access in _accesses(memory))
+    accesses = tuple(access for memory in section.memories or () for access in _accesses(memory))
     microcontroller = Structure(
-        name=stated.microcontroller or "Controller",
+        name=section.microcontroller or "Controller",
         kind=StructureKind.MICROCONTROLLER,
         cores=tuple(
             Core(
@@ -115,20 +117,20 @@ def _hardware(
                 type=core.type or default_type,
                 clock=clocks[frequencies[core.name]].name,
                 accesses=accesses,
-                origin=_place(core, stated),
+                origin=_origin(core, section),
             )
             for core in cores
         ),
-        memories=tuple(_memory(memory) for memory in stated.memories or ()),
-        origin=stated.location(),
+        memories=tuple(_memory(memory) for memory in section.memories or ()),
+        origin=section.location(),
     )
     inner = microcontroller
-    if stated.title is not None:
-        inner = Structure(name=stated.title, kind=StructureKind.ECU, structures=(microcontroller,), origin=stated.location())
+    if section.title is not None:
+        inner = Structure(name=section.title, kind=StructureKind.ECU, structures=(microcontroller,), origin=section.location())
     return Hardware(
         clocks=tuple(clocks.values()),
-        core_types=tuple(CoreType(name=name, kind=CoreKind.CPU, origin=stated.location()) for name in types),
-        structures=(Structure(name=name, kind=StructureKind.SYSTEM, structures=(inner,), origin=stated.location()),),
+        core_types=tuple(CoreType(name=name, kind=CoreKind.CPU, origin=section.location()) for name in types),
+        structures=(Structure(name=name, kind=StructureKind.SYSTEM, structures=(inner,), origin=section.location()),),
     )
 
 

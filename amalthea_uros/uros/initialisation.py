@@ -1,7 +1,7 @@
-"""The start of the middleware as a state machine.
+"""The initialisation of the middleware as a state machine.
 
-Entities are created one after the other, each by two states: in one cycle of the task the request is sent, in the following cycles the
-response is looked for; the next request is sent in the cycle after the one that found it. Nothing blocks. After S. R. Bappanadu,
+Entities are created one after the other, each in two states: one cycle of the task sends the request, and the following cycles check
+for the response. The next request is sent in the cycle after the one that received the response. Nothing blocks. See S. R. Bappanadu,
 "Modeling and Timing Analysis of Micro-ROS Application on an Off-Road Vehicle Control Unit", University of Stuttgart, 2022, section 4.2.
 """
 
@@ -17,7 +17,7 @@ from amalthea_uros.units import Time
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entity:
-    """Something that the agent creates on request."""
+    """An XRCE-DDS entity that the agent creates on request."""
 
     kind: str
     name: str
@@ -25,33 +25,33 @@ class Entity:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Initialisation:
-    """How the middleware starts.
+    """The initialisation of the middleware.
 
     Attributes
     ----------
     entities : in the order of their creation
     period : of the task that creates them
-    least_cycles, most_cycles : activations of that task from the first request to the last response; most: None if not known
+    min_cycles, max_cycles : activations of that task from the first request to the last response; the maximum is None if unknown
     """
 
     entities: tuple[Entity, ...]
     period: Time
-    least_cycles: int
-    most_cycles: int | None
+    min_cycles: int
+    max_cycles: int | None
 
     @property
-    def least_time(self) -> Time:
-        """Least time from the first request to the activation that finds the last response."""
-        return max(0, self.least_cycles - 1) * self.period
+    def min_time(self) -> Time:
+        """Minimum time from the first request to the activation that receives the last response."""
+        return max(0, self.min_cycles - 1) * self.period
 
     @property
-    def most_time(self) -> Time | None:
-        """Most time from the first request to the activation that finds the last response; None if not known."""
-        return None if self.most_cycles is None else max(0, self.most_cycles - 1) * self.period
+    def max_time(self) -> Time | None:
+        """Maximum time from the first request to the activation that receives the last response; None if unknown."""
+        return None if self.max_cycles is None else max(0, self.max_cycles - 1) * self.period
 
 
 def entities_of(application: Application) -> tuple[Entity, ...]:
-    """All entities in the order of their creation: the session, then each node with what belongs to it."""
+    """All entities in the order of their creation: the session, then each node with its entities."""
     if not application.nodes:
         return ()
     return (Entity(kind="session", name="client"), *(entity for node in application.nodes for entity in _of_node(node)))
@@ -75,18 +75,24 @@ def _of_topic(topic: str, *kinds: str) -> Iterator[Entity]:
 
 
 def initialisation(application: Application, period: Time, response_time: ResponseTime | None) -> Initialisation:
-    """The start of an application whose middleware runs with a period."""
+    """The initialisation of an application.
+
+    Parameters
+    ----------
+    period : of the executor
+    response_time : of the agent; None if unknown
+    """
     entities = entities_of(application)
     fastest = response_cycles(response_time.min, period) if response_time else 1
     slowest = response_cycles(response_time.max, period) if response_time else None
     return Initialisation(
         entities=entities,
         period=period,
-        least_cycles=len(entities) * (1 + fastest),
-        most_cycles=None if slowest is None else len(entities) * (1 + slowest),
+        min_cycles=len(entities) * (1 + fastest),
+        max_cycles=None if slowest is None else len(entities) * (1 + slowest),
     )
 
 
 def response_cycles(response_time: Time, period: Time) -> int:
-    """In how many cycles the response is looked for until it is found; the first look is one cycle after the request."""
+    """The number of cycles that check for a response; the first is one cycle after the request."""
     return max(1, -(-response_time // period))

@@ -9,8 +9,8 @@ from amalthea_uros.spec.description import Description
 from amalthea_uros.uros.notes import Notes
 
 
-def check_names(description: Description, notes: Notes) -> None:
-    """Note processes, callbacks and nodes that share a name."""
+def check_unique_names(description: Description, notes: Notes) -> None:
+    """Report processes, callbacks and nodes that share a name."""
     nodes = description.application.nodes
     _check("node", ((node.name, node.location("name")) for node in nodes), notes)
     _check("process", _processes(description), notes)
@@ -32,13 +32,11 @@ def _processes(description: Description) -> Iterable[tuple[str, Location | None]
 
 
 def _check(kind: str, names: Iterable[tuple[str, Location | None]], notes: Notes) -> None:
-    seen: dict[str, Location | None] = {}
+    first: dict[str, Location | None] = {}
     for name, location in sorted(names, key=lambda item: _line(item[1])):
-        if name in seen:
-            first = seen[name]
-            where = f", the first one stands in line {first.line}" if first and first.line else ""
-            notes.error("APP002", f"the {kind} name {name!r} is used twice{where}", location, "Give one of them another name.")
-        seen.setdefault(name, location)
+        if name in first:
+            notes.duplicate(kind, name, location, first[name])
+        first.setdefault(name, location)
 
 
 def _line(location: Location | None) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""The findings of one run, as they come up."""
+"""Collects the findings of one run."""
 
 from __future__ import annotations
 
@@ -7,15 +7,17 @@ from difflib import get_close_matches
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
 
+_LONGEST_LIST = 12
+
 
 class Notes:
     """Collects findings.
 
-    The same mistake may be met on several ways; it is told once.
+    The same mistake can be found on several paths; it is reported once.
 
     Attributes
     ----------
-    findings : in the order in which they came up
+    findings : in the order in which they were found
     """
 
     def __init__(self) -> None:
@@ -28,25 +30,54 @@ class Notes:
             self.findings.append(finding)
 
     def error(self, rule: str, message: str, location: Location | None, help_text: str = "") -> None:
-        """Something that makes a model impossible."""
+        """Add a finding that prevents a model."""
         self._add(Finding(rule, Severity.ERROR, message, location, help_text))
 
     def warning(self, rule: str, message: str, location: Location | None, help_text: str = "") -> None:
-        """Something that the author has to think about."""
+        """Add a finding that is probably a mistake."""
         self._add(Finding(rule, Severity.WARNING, message, location, help_text))
 
     def info(self, rule: str, message: str, location: Location | None, help_text: str = "") -> None:
-        """Something worth knowing."""
+        """Add a finding that needs no action."""
         self._add(Finding(rule, Severity.INFO, message, location, help_text))
 
-    def unknown(self, kind: str, name: str, known: Iterable[str], location: Location | None) -> None:
-        """A name that nothing has."""
-        names = sorted(set(known))
-        near = get_close_matches(name, names, n=1)
-        some = f"There are: {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}." if names else f"There is no {kind}."
-        self.error("APP001", f"there is no {kind} named {name!r}", location, f"Did you mean {near[0]!r}?" if near else some)
+    def undefined(self, kind: str, name: str, defined: Iterable[str], location: Location | None, *, owner: str = "") -> None:
+        """Add an error about a name that is not defined.
+
+        Parameters
+        ----------
+        defined : the names that are, for a suggestion
+        owner : what the name would have to be defined in, e.g. "node 'n'"; "" for the file
+        """
+        scope = f" in {owner}" if owner else ""
+        self.error("APP001", f"undefined {kind} {name!r}{scope}", location, _suggestion(kind, name, sorted(set(defined))))
+
+    def duplicate(self, kind: str, name: str, location: Location | None, first: Location | None) -> None:
+        """Add an error about a name that is defined twice.
+
+        Parameters
+        ----------
+        first : the first definition
+        """
+        message = f"duplicate {kind} name {name!r}{first_defined(first)}"
+        self.error("APP002", message, location, "Rename one of them.")
 
     @property
     def has_errors(self) -> bool:
-        """Whether a model is impossible."""
+        """Whether a finding prevents a model."""
         return any(finding.severity is Severity.ERROR for finding in self.findings)
+
+
+def first_defined(first: Location | None) -> str:
+    """A reference to the first definition, to be appended to a message."""
+    return f" (first defined on line {first.line})" if first and first.line else ""
+
+
+def _suggestion(kind: str, name: str, defined: list[str]) -> str:
+    if not defined:
+        return f"Define it: there is no {kind} yet."
+    near = get_close_matches(name, defined, n=1)
+    if near:
+        return f"Did you mean {near[0]!r}?"
+    more = f" and {len(defined) - _LONGEST_LIST} more" if len(defined) > _LONGEST_LIST else ""
+    return f"Use one of: {', '.join(defined[:_LONGEST_LIST])}{more}."

@@ -1,4 +1,4 @@
-"""One operating system: schedulers, interrupt controllers, resources, and which task is served where with which priority."""
+"""The operating system: schedulers, interrupt controllers, resources, and the allocation of processes with their priorities."""
 
 from __future__ import annotations
 
@@ -7,40 +7,40 @@ from collections.abc import Iterator, Sequence
 from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
 from amalthea_uros.perf.os import InterruptController, OperatingSystem, Os, Scheduler, Semaphore, SemaphoreKind
 from amalthea_uros.perf.software import SemaphoreAccess
+from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.priorities import priorities
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
-from amalthea_uros.uros.work import Work
 
 
-def os_of(work: Work) -> Os:
-    """The operating system, with a scheduler for each core that has tasks, and what dispatches interrupts."""
-    middleware = work.description.middleware
-    place = middleware.location("policy")
+def os_of(context: AssemblyContext) -> Os:
+    """The operating system, with a scheduler for each core that has tasks, and an interrupt controller for each that has ISRs."""
+    middleware = context.description.middleware
+    origin = middleware.location("policy")
     system = OperatingSystem(
         name="OS",
         schedulers=tuple(
-            Scheduler(name=name, policy=middleware.policy, cores=(core,), executing_core=core, origin=place)
-            for core, name in _by_core("Scheduler", work, work.tasks).items()
+            Scheduler(name=name, policy=middleware.policy, cores=(core,), executing_core=core, origin=origin)
+            for core, name in _by_core("Scheduler", context, context.tasks).items()
         ),
         interrupt_controllers=tuple(
             InterruptController(name=name, cores=(core,), executing_core=core)
-            for core, name in _by_core("Interrupts", work, work.isrs).items()
+            for core, name in _by_core("Interrupts", context, context.isrs).items()
         ),
     )
-    return Os(systems=(system,), semaphores=tuple(_resources(work)))
+    return Os(systems=(system,), semaphores=tuple(_resources(context)))
 
 
-def _by_core(base: str, work: Work, processes: Sequence[PlannedTask | PlannedIsr]) -> dict[str, str]:
-    """A name for each core that has processes; the plain one if only one core has."""
+def _by_core(base: str, context: AssemblyContext, processes: Sequence[PlannedTask | PlannedIsr]) -> dict[str, str]:
+    """A name for each core that has processes; without the core if there is only one."""
     used = {process.core for process in processes}
-    cores = [core for core in work.controller.frequencies if core in used]
+    cores = [core for core in context.controller.frequencies if core in used]
     return {core: base if len(cores) == 1 else f"{base}_{core}" for core in cores}
 
 
-def _resources(work: Work) -> Iterator[Semaphore]:
+def _resources(context: AssemblyContext) -> Iterator[Semaphore]:
     origins = {
         activity.semaphore: runnable.origin
-        for runnable in work.runnables.values()
+        for runnable in context.runnables.values()
         for activity in runnable.activities
         if isinstance(activity, SemaphoreAccess)
     }
@@ -48,18 +48,18 @@ def _resources(work: Work) -> Iterator[Semaphore]:
         yield Semaphore(name=name, kind=SemaphoreKind.RESOURCE, ceiling=True, origin=origin)
 
 
-def task_allocations(work: Work) -> Iterator[TaskAllocation]:
+def task_allocations(context: AssemblyContext) -> Iterator[TaskAllocation]:
     """Each task on the scheduler of its core, with its priority."""
-    schedulers = _by_core("Scheduler", work, work.tasks)
+    schedulers = _by_core("Scheduler", context, context.tasks)
     ranks: dict[str, int] = {}
     for core in schedulers:
-        ranks |= priorities([task for task in work.tasks if task.core == core], work.notes)
-    for task in work.tasks:
+        ranks |= priorities([task for task in context.tasks if task.core == core], context.notes)
+    for task in context.tasks:
         yield TaskAllocation(task=task.name, scheduler=schedulers[task.core], priority=ranks[task.name], deadline=task.deadline)
 
 
-def isr_allocations(work: Work) -> Iterator[IsrAllocation]:
+def isr_allocations(context: AssemblyContext) -> Iterator[IsrAllocation]:
     """Each interrupt service routine on the interrupt controller of its core."""
-    controllers = _by_core("Interrupts", work, work.isrs)
-    for isr in work.isrs:
+    controllers = _by_core("Interrupts", context, context.isrs)
+    for isr in context.isrs:
         yield IsrAllocation(isr=isr.name, controller=controllers[isr.core], priority=isr.priority)

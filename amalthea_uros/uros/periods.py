@@ -1,9 +1,9 @@
-"""Event-driven callbacks mapped to periodic tasks.
+"""The periods of the tasks to which event-driven callbacks are mapped.
 
 The rules are those of S. R. Bappanadu, "Modeling and Timing Analysis of Micro-ROS Application on an Off-Road Vehicle Control Unit",
-University of Stuttgart, 2022, section 4.3: the task of a callback runs at least as often as messages come, so that none is lost; its
-period is greater than the execution time, so that a job ends within its period; and the executor runs at least as often as the
-fastest of these tasks. Among the periods that satisfy the rules the longest one costs least.
+University of Stuttgart, 2022, section 4.3: the task of a callback runs at least as often as messages arrive, so that none is lost; its
+period is longer than the execution time, so that a job ends within its period; and the executor runs at least as often as the fastest
+of these tasks. Of the periods that satisfy the rules, the longest one costs least.
 """
 
 from __future__ import annotations
@@ -13,14 +13,16 @@ from dataclasses import dataclass
 
 from amalthea_uros.spec.middleware import Executor, Middleware
 from amalthea_uros.units import Time, time_text
-from amalthea_uros.uros.callbacks import Callback, Kind
-from amalthea_uros.uros.demand import Profile
+from amalthea_uros.uros.callbacks import Callback, CallbackKind
+from amalthea_uros.uros.demand import DemandConverter
 from amalthea_uros.uros.notes import Notes
+
+_SET_BY_USER = "set in app.yaml"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Choice:
-    """The period of a task, and why it is that one."""
+class PeriodChoice:
+    """The period of a task, and the reason for it."""
 
     task: str
     period: Time
@@ -28,101 +30,118 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True)
-class Offer:
-    """The task periods on offer.
+class PeriodCandidates:
+    """The task periods to choose from.
 
     Attributes
     ----------
-    periods : longest first; empty: every period
-    fastest : period of the executor, if the author states it; no task may be faster
+    periods : longest first; empty if any period is allowed
+    executor_period : if it is set; no task may have a shorter period
     """
 
     periods: tuple[Time, ...]
-    fastest: Time | None
+    executor_period: Time | None
 
-    def candidates(self, callback: Callback) -> Sequence[Time]:
-        """Periods to try for a callback, longest first."""
+    def for_callback(self, callback: Callback) -> Sequence[Time]:
+        """The periods to try for a callback, longest first."""
         return self.periods or (callback.interval,)
 
 
-def offer_of(middleware: Middleware) -> Offer:
-    """What the middleware offers."""
-    return Offer(tuple(sorted(set(middleware.task_periods), reverse=True)), middleware.executor.period)
+def period_candidates(middleware: Middleware) -> PeriodCandidates:
+    """The task periods that the middleware allows."""
+    return PeriodCandidates(tuple(sorted(set(middleware.task_periods), reverse=True)), middleware.executor.period)
 
 
-def objection(callback: Callback, period: Time, execution_time: Time, offer: Offer) -> str | None:
-    """Why a callback cannot run in a task of a period; None if it can."""
+def violated_rule(callback: Callback, period: Time, wcet: Time, candidates: PeriodCandidates) -> str | None:
+    """What is wrong with a task period, to be read after "it is"; None if it satisfies all rules."""
+    is_timer = callback.kind is CallbackKind.TIMER
+    due = f"{'timer period' if is_timer else 'message interval'} of {time_text(callback.interval)}"
     if period > callback.interval:
-        what = "the timer expires" if callback.kind is Kind.TIMER else "a message comes"
-        return f"{what} every {time_text(callback.interval)}"
-    if period <= execution_time:
-        return f"it executes for up to {time_text(execution_time)}"
-    if callback.kind is Kind.TIMER and callback.interval % period:
-        return f"it does not divide the timer's {time_text(callback.interval)}"
-    if offer.fastest is not None and period < offer.fastest:
-        return f"the executor runs every {time_text(offer.fastest)} only"
+        return f"longer than the {due}"
+    if period <= wcet:
+        return f"not longer than the execution time of {time_text(wcet)}"
+    if is_timer and callback.interval % period:
+        return f"not a divisor of the {due}"
+    if candidates.executor_period is not None and period < candidates.executor_period:
+        return f"shorter than the executor period of {time_text(candidates.executor_period)}"
     return None
 
 
-def choose(callback: Callback, offer: Offer, profile: Profile, notes: Notes) -> Choice | None:
-    """The period of a callback's own task; None, with a note, if there is none."""
-    execution_time = profile.longest(callback.section.execution_time)
+def choose_task_period(
+    callback: Callback, candidates: PeriodCandidates, converter: DemandConverter, notes: Notes
+) -> PeriodChoice | None:
+    """The period of a callback's own task; None, with a finding, if no candidate satisfies the rules."""
+    wcet = converter.wcet(callback.section.execution_time)
     if callback.section.task_period is not None:
-        return _check(callback, callback.section.task_period, execution_time, offer, notes)
-    candidates = offer.candidates(callback)
-    for period in candidates:
-        if objection(callback, period, execution_time, offer) is None:
-            return Choice(task=callback.name, period=period, reason=_reason(callback, period, offer))
-    tried = "; ".join(f"not {time_text(p)}: {objection(callback, p, execution_time, offer)}" for p in candidates)
-    message = f"no task period on offer fits {callback.name!r}: {tried}"
-    notes.error("UR101", message, callback.origin, "Offer another one in 'task_periods', or change the callback.")
+        return _check_task_period(callback, callback.section.task_period, wcet, candidates, notes)
+    violations: dict[str, list[str]] = {}
+    for period in candidates.for_callback(callback):
+        violation = violated_rule(callback, period, wcet, candidates)
+        if violation is None:
+            return PeriodChoice(task=callback.name, period=period, reason=_reason(callback, candidates))
+        violations.setdefault(violation, []).append(time_text(period))
+    reasons = "; ".join(f"{', '.join(periods)} ({violation})" for violation, periods in violations.items())
+    message = f"no available task period fits {callback.name!r}: {reasons}"
+    notes.error("UR101", message, callback.origin, "Add a period that fits to 'task_periods', or change the callback.")
     return None
 
 
-def _check(callback: Callback, period: Time, execution_time: Time, offer: Offer, notes: Notes) -> Choice:
-    """The period that the author chose, with notes on what speaks against it."""
-    place = callback.section.location("task_period")
-    reason = objection(callback, period, execution_time, offer)
-    if offer.periods and period not in offer.periods:
-        on_offer = ", ".join(map(time_text, reversed(offer.periods)))
-        notes.error("UR102", f"the task period {time_text(period)} is not on offer", place, f"On offer are {on_offer}.")
-    elif reason is not None:
-        notes.error("UR102", f"{callback.name!r} cannot run in a task of {time_text(period)}: {reason}", place)
-    return Choice(task=callback.name, period=period, reason="chosen by the author")
+def _check_task_period(
+    callback: Callback, period: Time, wcet: Time, candidates: PeriodCandidates, notes: Notes
+) -> PeriodChoice:
+    """The period that is set for a callback's own task, with findings about the rules that it violates."""
+    location = callback.section.location("task_period")
+    subject = f"the task period {time_text(period)} of {callback.name!r}"
+    violation = violated_rule(callback, period, wcet, candidates)
+    if candidates.periods and period not in candidates.periods:
+        available = ", ".join(map(time_text, reversed(candidates.periods)))
+        advice = f"Use one of {available}; or add {time_text(period)} to 'task_periods'."
+        notes.error("UR102", f"{subject} is not one of 'task_periods'", location, advice)
+    elif violation is not None:
+        advice = "Set another period, or remove 'task_period' to have one chosen."
+        notes.error("UR102", f"{subject} is {violation}", location, advice)
+    return PeriodChoice(task=callback.name, period=period, reason=_SET_BY_USER)
 
 
-def _reason(callback: Callback, period: Time, offer: Offer) -> str:
-    what = "timer" if callback.kind is Kind.TIMER else "messages"
-    every = f"{what} every {time_text(callback.interval)}"
-    return f"{every}, longest period on offer that fits" if offer.periods else every
+def _reason(callback: Callback, candidates: PeriodCandidates) -> str:
+    source = "the timer period of" if callback.kind is CallbackKind.TIMER else "messages every"
+    reason = f"keeps up with {source} {time_text(callback.interval)}"
+    return f"longest available period that {reason}" if candidates.periods else reason
 
 
-def check_inside(callbacks: Iterable[Callback], profile: Profile, notes: Notes) -> None:
-    """Note callbacks inside the executor that take as long as the time until they are due again."""
+def check_callbacks_in_executor(callbacks: Iterable[Callback], converter: DemandConverter, notes: Notes) -> None:
+    """Report callbacks in the executor whose execution time is not shorter than their interval."""
     for callback in callbacks:
-        execution_time = profile.longest(callback.section.execution_time)
-        if execution_time >= callback.interval:
-            due = f"is due every {time_text(callback.interval)}"
-            message = f"{callback.name!r} {due}, but executes for up to {time_text(execution_time)}"
-            place = callback.section.location("execution_time")
-            notes.error("UR107", message, place, "Shorten it, or let it be due less often.")
+        wcet = converter.wcet(callback.section.execution_time)
+        if wcet >= callback.interval:
+            message = f"{callback.name!r} is due every {time_text(callback.interval)}, but executes for up to {time_text(wcet)}"
+            location = callback.section.location("execution_time")
+            notes.error("UR107", message, location, "Reduce its execution time, or run it less often.")
 
 
-def choose_executor(
-    executor: Executor, offer: Offer, own_tasks: Iterable[Choice], inside: Iterable[Callback], notes: Notes
-) -> Choice | None:
-    """The period of the executor: no task that gets work from it may be faster."""
-    limits = [(choice.period, f"the task of {choice.task}") for choice in own_tasks]
+def choose_executor_period(
+    executor: Executor, candidates: PeriodCandidates, tasks: Iterable[PeriodChoice], inside: Iterable[Callback], notes: Notes
+) -> PeriodChoice | None:
+    """The period of the executor; it may not exceed the period of any task that it notifies or callback that it runs.
+
+    Parameters
+    ----------
+    tasks : the callbacks' own tasks
+    inside : the callbacks that run in the executor
+    """
+    limits = [(choice.period, f"the task of {choice.task}") for choice in tasks]
     limits += [(callback.interval, callback.name) for callback in inside]
-    least, who = min(limits)
+    shortest, fastest = min(limits)
     if executor.period is not None:
-        if executor.period > least:
-            message = f"the executor runs every {time_text(executor.period)}, slower than {who} with {time_text(least)}"
-            notes.error("UR103", message, executor.location("period"), f"Give it a period of {time_text(least)} or less.")
-        return Choice(task=executor.name, period=executor.period, reason="chosen by the author")
-    period = next((period for period in offer.periods or (least,) if period <= least), None)
+        if executor.period > shortest:
+            message = f"the executor period {time_text(executor.period)} is longer than the {time_text(shortest)} of {fastest}"
+            advice = f"Set a period of {time_text(shortest)} or less."
+            notes.error("UR103", message, executor.location("period"), advice)
+        return PeriodChoice(task=executor.name, period=executor.period, reason=_SET_BY_USER)
+    period = next((period for period in candidates.periods or (shortest,) if period <= shortest), None)
     if period is None:
-        message = f"no task period on offer is short enough for the executor: {who} needs {time_text(least)} or less"
-        notes.error("UR103", message, executor.location(), "Offer a shorter one in 'task_periods'.")
+        message = f"no available task period is short enough for the executor: {fastest} needs {time_text(shortest)} or less"
+        advice = f"Add a period of {time_text(shortest)} or less to 'task_periods'."
+        notes.error("UR103", message, executor.location(), advice)
         return None
-    return Choice(task=executor.name, period=period, reason=f"as fast as {who}")
+    return PeriodChoice(task=executor.name, period=period, reason=f"keeps up with {fastest}")

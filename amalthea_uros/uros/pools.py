@@ -1,4 +1,4 @@
-"""Static pools of rmw_microxrcedds: what an application needs against what was compiled in."""
+"""Static pools of rmw_microxrcedds: their sizes compared with the needs of the application."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from amalthea_uros.uros.callbacks import Callback, Message
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.streams import DEFAULT_STREAM_HISTORY
 
-#: Values of the build options that are not set, from the table in the README of micro-ROS/rmw_microxrcedds.
+#: Default values of the build options, from the table in the README of micro-ROS/rmw_microxrcedds.
 DEFAULTS: Mapping[str, int] = {
     "RMW_UXRCE_MAX_SESSIONS": 1,
     "RMW_UXRCE_MAX_NODES": 4,
@@ -31,22 +31,22 @@ class Pool:
     Attributes
     ----------
     option : the build option that sets its size
-    stated : whether the author states the size; otherwise it is the default
+    configured : whether the description sets the size; otherwise it is the default
     """
 
     option: str
     needed: int
     available: int
-    stated: bool
+    configured: bool
 
     @property
     def is_exceeded(self) -> bool:
-        """Whether more is needed than there is."""
+        """Whether the application needs more than is available."""
         return self.needed > self.available
 
 
 def needs(application: Application) -> dict[str, int]:
-    """How many places of each pool an application takes."""
+    """The number of elements of each pool that an application needs."""
     nodes = application.nodes
     publishers = sum(len(node.publishers) for node in nodes)
     subscriptions = sum(len(node.subscriptions) for node in nodes)
@@ -62,35 +62,32 @@ def needs(application: Application) -> dict[str, int]:
 
 
 def pools_of(application: Application, middleware: Middleware) -> tuple[Pool, ...]:
-    """All pools with what is needed and available."""
+    """All pools with their needed and available sizes."""
     limits = middleware.limits
     found = []
     for option, needed in needs(application).items():
-        stated: int | None = getattr(limits, option)
-        available = DEFAULTS[option] if stated is None else stated
-        # -1 stands for as many as there are of everything that has a topic.
-        found.append(
-            Pool(option=option, needed=needed, available=needed if available < 0 else available, stated=stated is not None)
-        )
+        configured: int | None = getattr(limits, option)
+        size = DEFAULTS[option] if configured is None else configured
+        # -1 makes the pool as large as all entities with a topic need.
+        available = needed if size < 0 else size
+        found.append(Pool(option=option, needed=needed, available=available, configured=configured is not None))
     return tuple(found)
 
 
-def check(pools: tuple[Pool, ...], callbacks: tuple[Callback, ...], middleware: Middleware, notes: Notes) -> None:
-    """Note what is too small."""
+def check_pools(pools: tuple[Pool, ...], callbacks: tuple[Callback, ...], middleware: Middleware, notes: Notes) -> None:
+    """Report pools that are too small, and messages that do not fit into their buffers."""
     for pool in filter(lambda pool: pool.is_exceeded, pools):
-        message = f"the application needs {pool.needed} of {pool.option}, which is {pool.available}"
-        advice = f"Set {pool.option} to {pool.needed} or more in the build, and state it under 'limits'."
-        place = middleware.limits.location(pool.option)
-        if pool.stated:
-            notes.error("UR120", message, place, advice)
-        else:
-            notes.warning("UR120", f"{message} by default", place, advice)
+        default = "" if pool.configured else " by default"
+        message = f"{pool.option} is {pool.available}{default}, but the application needs {pool.needed}"
+        advice = f"Set {pool.option} to {pool.needed} or more in the build and under 'limits'."
+        report = notes.error if pool.configured else notes.warning
+        report("UR120", message, middleware.limits.location(pool.option), advice)
     for sent in _messages(callbacks):
         _check_size(sent, middleware, notes)
 
 
 def _messages(callbacks: tuple[Callback, ...]) -> Iterator[Message]:
-    """Each message once, although several callbacks may send it."""
+    """Each message once, even if several callbacks send it."""
     seen = set()
     for callback in callbacks:
         for message in (callback.incoming, *callback.outgoing):
@@ -100,14 +97,18 @@ def _messages(callbacks: tuple[Callback, ...]) -> Iterator[Message]:
 
 
 def _check_size(message: Message, middleware: Middleware, notes: Notes) -> None:
-    """A best-effort message has to fit into the MTU; a reliable one is split over the buffers of its stream."""
+    """Report a best-effort message larger than the MTU, or a reliable one larger than all buffers of its stream."""
     limits = middleware.limits
     if limits.RMW_UXRCE_MTU is None:
         return
     history = limits.RMW_UXRCE_STREAM_HISTORY or DEFAULT_STREAM_HISTORY
-    room = limits.RMW_UXRCE_MTU * (history if message.reliable else 1)
+    capacity = limits.RMW_UXRCE_MTU * (history if message.reliable else 1)
     size = message.size + middleware.transport.overhead
-    if size > room:
-        what = f"RMW_UXRCE_MTU times RMW_UXRCE_STREAM_HISTORY ({history})" if message.reliable else "RMW_UXRCE_MTU"
-        text = f"a message of {message.topic!r} takes {data_size_text(size)} with headers, more than {data_size_text(room)}"
-        notes.error("UR121", f"{text}, which is {what}", message.origin, "Enlarge it, or send smaller messages.")
+    if size > capacity:
+        source, options = "RMW_UXRCE_MTU", "RMW_UXRCE_MTU"
+        if message.reliable:
+            source = f"RMW_UXRCE_MTU times RMW_UXRCE_STREAM_HISTORY ({history})"
+            options = "RMW_UXRCE_MTU or RMW_UXRCE_STREAM_HISTORY"
+        needed, limit = data_size_text(size), data_size_text(capacity)
+        text = f"a message of {message.topic!r} needs {needed} with headers, but the limit is {limit}: {source}"
+        notes.error("UR121", text, message.origin, f"Increase {options}, or reduce the size of the message.")

@@ -1,4 +1,4 @@
-"""Requirements on processes and functions."""
+"""Requirements on processes and runnables."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from amalthea_uros.perf.constraints import Bound, Requirement, Severity, TimeLimit, TimeMetric
 from amalthea_uros.spec import demands as spec
-from amalthea_uros.uros.chains import Member
+from amalthea_uros.uros.chain_elements import ChainElement
 from amalthea_uros.uros.notes import Notes
 
 _METRICS = {
@@ -19,29 +19,31 @@ _METRICS = {
 }
 
 
-def requirements(sections: Iterable[spec.Requirement], members: Mapping[str, Member], notes: Notes) -> Iterator[Requirement]:
-    """The requirements of the file, one for each limit."""
+def requirements(
+    sections: Iterable[spec.Requirement], elements: Mapping[str, ChainElement], notes: Notes
+) -> Iterator[Requirement]:
+    """The requirements of the description, one for each limit."""
     for section in sections:
-        member = members.get(section.process)
-        if member is None:
-            notes.unknown("process or function", section.process, members, section.location("process"))
+        element = elements.get(section.process)
+        if element is None:
+            notes.undefined("process or runnable", section.process, elements, section.location("process"))
             continue
-        yield from _limits(section, member)
+        yield from _limits(section, element)
 
 
-def _limits(section: spec.Requirement, member: Member) -> Iterator[Requirement]:
+def _limits(section: spec.Requirement, element: ChainElement) -> Iterator[Requirement]:
     for key, metric in _METRICS.items():
         limits: spec.Limits | None = getattr(section, key)
         if limits is None:
             continue
         for bound, value in ((Bound.UPPER, limits.max), (Bound.LOWER, limits.min)):
             if value is not None:
-                # The same name may be given to several limits of one requirement.
+                # All limits of one requirement can have the same name.
                 name = section.name or f"{section.process}_{key}"
                 yield Requirement(
                     name=name if bound is Bound.UPPER else f"{name}_least",
-                    process=member.process if member.runnable is None else None,
-                    runnable=member.runnable,
+                    process=element.process if element.runnable is None else None,
+                    runnable=element.runnable,
                     limit=TimeLimit(metric=metric, value=value, bound=bound),
                     severity=Severity(section.severity) if section.severity else None,
                     origin=limits.location(),

@@ -9,22 +9,21 @@ from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.callbacks import Callback, Message
 from amalthea_uros.uros.notes import Notes
 
-#: Buffers of a stream that the author does not state, from the table in the README of micro-ROS/rmw_microxrcedds.
+#: Default number of buffers of a stream, from the table in the README of micro-ROS/rmw_microxrcedds.
 DEFAULT_STREAM_HISTORY = 4
 
 
 def check_streams(callbacks: Iterable[Callback], middleware: Middleware, notes: Notes) -> None:
-    """Note reliable messages without a time of acknowledgement, and more of them under way than there are buffers."""
+    """Report reliable messages if the acknowledgement time is unknown, or if they need more buffers than the stream has."""
     sent = [message for callback in callbacks for message in callback.outgoing if message.reliable]
     acknowledgement = middleware.transport.acknowledgement
     if acknowledgement is not None:
         _check_history(sent, acknowledgement, middleware, notes)
         return
     for message in sent:
-        text = f"{message.topic!r} is sent reliably, and it is not stated how long the acknowledgement takes"
-        notes.warning(
-            "UR122", text, message.origin, "State 'transport.acknowledgement', or send with 'reliability: best-effort'."
-        )
+        text = f"{message.topic!r} is sent reliably, but the acknowledgement time is not specified"
+        advice = "Set 'acknowledgement' under 'transport', or use 'reliability: best-effort'."
+        notes.warning("UR122", text, message.origin, advice)
 
 
 def _check_history(sent: Iterable[Message], acknowledgement: Time, middleware: Middleware, notes: Notes) -> None:
@@ -32,12 +31,12 @@ def _check_history(sent: Iterable[Message], acknowledgement: Time, middleware: M
     history = limits.RMW_UXRCE_STREAM_HISTORY or DEFAULT_STREAM_HISTORY
     buffers = sum(_buffers(message, middleware) * -(-acknowledgement // message.interval) for message in sent)
     if buffers > history:
-        text = f"up to {buffers} buffers wait for their acknowledgement at a time, and the reliable stream has {history}"
-        advice = f"Set RMW_UXRCE_STREAM_HISTORY to {buffers} or more, or send less within {time_text(acknowledgement)}."
+        text = f"up to {buffers} buffers wait for acknowledgement at the same time, but the reliable stream has only {history}"
+        advice = f"Set RMW_UXRCE_STREAM_HISTORY to {buffers} or more, or send less data per {time_text(acknowledgement)}."
         notes.warning("UR123", text, middleware.transport.location("acknowledgement"), advice)
 
 
 def _buffers(message: Message, middleware: Middleware) -> int:
-    """How many buffers a message takes; one if their size is not known."""
+    """The number of buffers that a message occupies; one if the MTU is unknown."""
     mtu = middleware.limits.RMW_UXRCE_MTU
     return 1 if mtu is None else -(-(message.size + middleware.transport.overhead) // mtu)

@@ -1,4 +1,4 @@
-"""What becomes a task or an interrupt service routine, before priorities are known."""
+"""Tasks and interrupt service routines before their priorities are assigned."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class PlannedTask:
     Attributes
     ----------
     stimuli : names
-    period : least time between two activations; None where it is not known
-    priority : what the author states
-    outranks : whether it comes before other tasks of the same period
+    period : minimum time between two activations; None if unknown
+    priority : as set in the description; None to assign one
+    wins_ties : whether it gets a higher priority than other tasks of the same period
     """
 
     name: str
@@ -30,7 +30,7 @@ class PlannedTask:
     deadline: Time | None = None
     preemption: Preemption = Preemption.PREEMPTIVE
     activation_limit: int = 1
-    outranks: bool = False
+    wins_ties: bool = False
     origin: Location | None = None
 
 

@@ -68,9 +68,10 @@ def test_the_samples_are_what_their_descriptions_say(sample, tmp_path):
 def test_what_was_decided_is_shown(advanced):
     run = amuros("build", advanced)
     assert (
-        "Message_Factor    every 20 ms         1  Core_0  messages every 20 ms, longest period on offer that fits" in run.stdout
+        "Message_Factor    every 20 ms         1  Core_0  longest available period that keeps up with messages every 20 ms"
+        in run.stdout
     )
-    assert "factor  in   20 ms          16 B       3   1.62 ms" in run.stdout
+    assert "factor  in            20 ms          16 B       3            1.62 ms" in run.stdout
     assert "INC-CO-KIND info" in run.stderr
     assert advanced.with_suffix(".amxmi").exists()
 
@@ -80,7 +81,7 @@ def test_the_same_for_programs(advanced, tmp_path):
     assert run.returncode == 0
     built = json.loads((tmp_path / "built.json").read_text())
     assert built["choices"][1]["period_ps"] == 20 * 10**9
-    assert built["messages"][0]["bus_time_ps"] == 3 * 135 * 4_000_000
+    assert built["messages"][0]["transmission_time_ps"] == 3 * 135 * 4_000_000
     assert built["findings"][0]["line"] == 21
 
 
@@ -102,7 +103,7 @@ def test_an_older_file_stays_when_there_are_mistakes(advanced, tmp_path):
     advanced.write_text(advanced.read_text().replace("Message_Factor, Control_Function]", "Mesage_Factor]"))
     run = amuros("build", advanced, "-o", out)
     assert run.returncode == 2
-    assert "there is no process, function or label named 'Mesage_Factor'" in run.stderr
+    assert "undefined process, runnable or label 'Mesage_Factor'" in run.stderr
     assert "Did you mean 'Message_Factor'?" in run.stderr
     assert out.read_text() == "precious"
 

@@ -1,4 +1,4 @@
-"""Descriptions as text, and the systems that they become."""
+"""Descriptions as text, and the systems assembled from them."""
 
 import textwrap
 
@@ -9,7 +9,7 @@ from amalthea_uros.errors import ReadError
 
 
 class Author:
-    """Writes an app.yaml and has it assembled."""
+    """Writes an app.yaml and assembles it."""
 
     def __init__(self, folder):
         self.path = folder / "app.yaml"
@@ -19,7 +19,7 @@ class Author:
         return pipeline.describe(self.path, platform)
 
     def findings(self, text):
-        """What is told of a description that is refused: (line, rule, message) each."""
+        """The errors of an invalid description: (line, rule, message) each."""
         with pytest.raises(ReadError) as caught:
             self.describe(text)
         return [(f.location.line, f.rule, f.message) for f in caught.value.findings if f.severity == "error"]

@@ -1,4 +1,4 @@
-"""Whatever an author writes: a sound model, or findings; never anything else."""
+"""Any description results in a valid model or in findings, never in anything else."""
 
 import random
 
@@ -63,7 +63,7 @@ PROCESSES = ACTIVATIONS.flatmap(
 
 @st.composite
 def applications(draw):
-    """A description; names are unique, everything else is as it comes."""
+    """A description with unique names; everything else is random."""
     counter = iter(range(1000))
 
     def named(prefix, strategy, most=3):
@@ -101,7 +101,7 @@ def file(tmp_path_factory):
 
 
 def built_or_refused(file):
-    """The model, or why there is none."""
+    """The model, or the findings that prevent it."""
     try:
         return pipeline.build(file), ()
     except ReadError as error:
@@ -118,8 +118,8 @@ def test_a_random_application(file, description):
         return
     found = [problem for problem in problems(built.model) if problem[1] != "I"]
     assert [problem for problem in found if problem[1] == "E"] == []
-    told = {finding.rule for finding in built.assembly.findings}
-    assert {rule for rule, _, _ in found} <= told
+    reported = {finding.rule for finding in built.assembly.findings}
+    assert {rule for rule, _, _ in found} <= reported
     assert validate(document_text(built.model.documents[0]).encode(), "3.3.0") == []
 
 

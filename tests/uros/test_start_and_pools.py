@@ -1,4 +1,4 @@
-"""The start of the middleware, and its static pools."""
+"""The initialisation of the middleware, and its static pools."""
 
 import pytest
 
@@ -38,7 +38,7 @@ def app(limits="", size="4 B", reliability="reliable"):
     # Response times that were measured on the controller (thesis, section 4.2), at a task cycle of 1 ms.
     [("97.258 ms", 98), ("101.150 ms", 102), ("9.304 ms", 10), ("0.4 ms", 1), ("1 ms", 1)],
 )
-def test_the_response_is_looked_for_in_each_cycle(response, cycles):
+def test_each_cycle_checks_for_the_response(response, cycles):
     assert response_cycles(parse_time(response), MS) == cycles
 
 
@@ -61,9 +61,9 @@ def test_entities_in_the_order_of_creation(author):
             ("replier", "Ask"),
         ]
     )
-    # A cycle for each request, then 10 to 102 in which the response is looked for.
-    assert (start.least_cycles, start.most_cycles) == (12 * 11, 12 * 103)
-    assert start.most_time == (12 * 103 - 1) * MS
+    # A cycle for each request, then 10 to 102 that check for the response.
+    assert (start.min_cycles, start.max_cycles) == (12 * 11, 12 * 103)
+    assert start.max_time == (12 * 103 - 1) * MS
 
 
 def test_what_the_application_needs(author):
@@ -81,7 +81,7 @@ def test_what_the_application_needs(author):
 
 def test_a_pool_that_is_too_small(author):
     assert author.findings(app("RMW_UXRCE_MAX_SUBSCRIPTIONS: 1")) == [
-        (7, "UR120", "the application needs 2 of RMW_UXRCE_MAX_SUBSCRIPTIONS, which is 1")
+        (7, "UR120", "RMW_UXRCE_MAX_SUBSCRIPTIONS is 1, but the application needs 2")
     ]
 
 

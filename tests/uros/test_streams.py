@@ -1,4 +1,4 @@
-"""Reliable streams: messages under way until they are acknowledged, against the buffers of the stream."""
+"""Reliable streams: messages occupy the buffers of the stream until they are acknowledged."""
 
 import pytest
 
@@ -19,16 +19,16 @@ application:
 """
 
 
-def told(author, transport="acknowledgement: 20 ms", limits="", size="8 B", reliability="reliable"):
+def reported(author, transport="acknowledgement: 20 ms", limits="", size="8 B", reliability="reliable"):
     assembly = author.describe(TEXT.format(transport=transport, limits=limits, size=size, reliability=reliability))
     return [(finding.rule, finding.message) for finding in assembly.findings if finding.rule in ("UR122", "UR123")]
 
 
-def test_reliable_messages_need_a_time_of_acknowledgement(author):
-    expected = "'state' is sent reliably, and it is not stated how long the acknowledgement takes"
-    assert told(author, transport="") == [("UR122", expected)]
-    assert told(author, transport="", reliability="best-effort") == []
-    assert told(author) == []
+def test_reliable_messages_need_an_acknowledgement_time(author):
+    expected = "'state' is sent reliably, but the acknowledgement time is not specified"
+    assert reported(author, transport="") == [("UR122", expected)]
+    assert reported(author, transport="", reliability="best-effort") == []
+    assert reported(author) == []
 
 
 @pytest.mark.parametrize(
@@ -43,11 +43,11 @@ def test_reliable_messages_need_a_time_of_acknowledgement(author):
         ("21 ms", "RMW_UXRCE_MTU: 512 B", "1000 B", 6, 4),
     ],
 )
-def test_messages_under_way_fit_into_the_stream(author, acknowledgement, limits, size, buffers, history):
-    found = told(author, transport=f"acknowledgement: {acknowledgement}", limits=limits, size=size)
-    message = f"up to {buffers} buffers wait for their acknowledgement at a time, and the reliable stream has {history}"
+def test_unacknowledged_messages_fit_into_the_stream(author, acknowledgement, limits, size, buffers, history):
+    found = reported(author, transport=f"acknowledgement: {acknowledgement}", limits=limits, size=size)
+    message = f"up to {buffers} buffers wait for acknowledgement at the same time, but the reliable stream has only {history}"
     assert found == ([("UR123", message)] if buffers > history else [])
 
 
-def test_best_effort_waits_for_nothing(author):
-    assert told(author, transport="acknowledgement: 1 s", reliability="best-effort") == []
+def test_best_effort_needs_no_acknowledgement(author):
+    assert reported(author, transport="acknowledgement: 1 s", reliability="best-effort") == []

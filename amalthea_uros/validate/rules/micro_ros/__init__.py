@@ -1,1 +1,1 @@
-"""What makes an application impossible or fragile on micro-ROS; found while its description becomes a system."""
+"""Findings about micro-ROS applications that fail or are fragile; reported while a description is assembled."""

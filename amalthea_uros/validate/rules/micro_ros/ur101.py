@@ -1,4 +1,4 @@
-"""Callback without a fitting period."""
+"""No task period for a callback."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR101",
-    title="callback that fits no task period on offer",
+    title="callback without a suitable task period",
     severity=Severity.ERROR,
     rationale=(
-        "Its task has to run as often as the callback is due, and its period has to be longer than the callback "
-        "executes (S. R. Bappanadu 2022, section 4.3); otherwise messages are lost, or jobs do not end in time."
+        "The task of a callback must run at least as often as the callback is due, and its period must be longer than "
+        "the execution time of the callback (S. R. Bappanadu 2022, section 4.3). Otherwise messages are lost, or jobs do "
+        "not finish within their period."
     ),
-    remedy="Offer another period, or change the callback.",
+    remedy="Add a suitable period to 'task_periods', or change the interval or the execution time of the callback.",
     fails="""
 amuros: 1
 name: app

@@ -1,4 +1,4 @@
-"""Period of the author."""
+"""Task period that violates the execution mapping."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR102",
-    title="stated task period that breaks the execution mapping",
+    title="task period that violates the execution mapping",
     severity=Severity.ERROR,
     rationale=(
-        "A task that runs less often than messages come loses some, and one whose period is not longer than its "
-        "callback executes does not end in time (S. R. Bappanadu 2022, section 4.3)."
+        "A task that runs less often than messages arrive loses messages, and a job whose execution time is not shorter "
+        "than the period does not finish in time (S. R. Bappanadu 2022, section 4.3)."
     ),
     remedy=(
-        "State a period that is on offer, at most as long as the interval of the callback, and longer than its execution time."
+        "Set a period from 'task_periods' that is not longer than the interval of the callback and longer than its "
+        "execution time, e.g. 'task_period: 20 ms'."
     ),
     fails="""
 amuros: 1

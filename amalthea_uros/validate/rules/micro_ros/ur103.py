@@ -1,4 +1,4 @@
-"""Slow executor."""
+"""Executor period that is too long."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR103",
-    title="executor that is slower than a callback",
+    title="executor that runs less often than a callback",
     severity=Severity.ERROR,
     rationale=(
-        "The executor hands messages over to the tasks of the callbacks; it has to run at least as often as the fastest "
-        "of them (S. R. Bappanadu 2022, section 4.3)."
+        "The executor passes messages to the tasks of the callbacks, so it must run at least as often as the fastest of "
+        "them (S. R. Bappanadu 2022, section 4.3)."
     ),
-    remedy="Give the executor a period that is not longer than that of any callback.",
+    remedy="Set an executor period that is not longer than the period of any callback.",
     fails="""
 amuros: 1
 name: app

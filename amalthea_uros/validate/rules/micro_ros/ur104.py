@@ -1,4 +1,4 @@
-"""Callback on another core."""
+"""Callback in the executor with another core."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR104",
-    title="callback inside the executor, but on another core",
+    title="callback in the executor that is assigned to another core",
     severity=Severity.ERROR,
-    rationale="What runs inside the executor runs on its core.",
-    remedy="Leave the core out, or let the callback run in a task of its own.",
+    rationale="A callback in the executor runs on the core of the executor.",
+    remedy="Remove 'core', or set 'runs_in: own-task'.",
     fails="""
 amuros: 1
 name: app

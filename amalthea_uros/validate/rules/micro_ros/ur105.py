@@ -1,4 +1,4 @@
-"""Priority without room."""
+"""No gap between preset priorities."""
 
 from __future__ import annotations
 
@@ -7,10 +7,13 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR105",
-    title="rate-monotonic priority that does not fit between stated ones",
+    title="rate-monotonic priority that does not fit between preset priorities",
     severity=Severity.WARNING,
-    rationale="A task gets a higher priority than one that is more frequent, or that was stated to come first.",
-    remedy="State its priority, too, or leave room between the stated ones.",
+    rationale=(
+        "The preset priorities leave no number for the task, so its priority becomes higher than that of a task with a "
+        "shorter or equal period."
+    ),
+    remedy="Set the priority of this task as well, or leave gaps between the preset priorities.",
     fails="""
 amuros: 1
 name: app

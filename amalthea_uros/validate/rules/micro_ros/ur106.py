@@ -1,4 +1,4 @@
-"""Same priority."""
+"""Equal preset priorities."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR106",
-    title="two tasks of a core with the same stated priority",
+    title="two tasks of a core with the same preset priority",
     severity=Severity.WARNING,
-    rationale="They are served in the order of their activation, so that each may have to wait for the other.",
-    remedy="Give each a priority of its own.",
+    rationale="Tasks of equal priority run in the order of their activation, so each of them may have to wait for the other.",
+    remedy="Set different priorities.",
     fails="""
 amuros: 1
 name: app

@@ -1,4 +1,4 @@
-"""Callback longer than its period."""
+"""Callback in the executor that takes too long."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR107",
-    title="callback inside the executor that is longer than its period",
+    title="callback in the executor that takes longer than its interval",
     severity=Severity.ERROR,
-    rationale="It is due again before it has ended, and holds up all others inside the executor.",
-    remedy="Shorten it, or let it be due less often.",
+    rationale="The callback is due again before it has finished, and it delays all other callbacks in the executor.",
+    remedy="Reduce its execution time, or run it less often.",
     fails="""
 amuros: 1
 name: app

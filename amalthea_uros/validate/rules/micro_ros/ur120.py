@@ -1,4 +1,4 @@
-"""Static pool."""
+"""Static pool that is too small."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ RULE = Rule(
     id="UR120",
     title="static pool of the middleware that is too small",
     severity=Severity.ERROR,
-    rationale="rmw_microxrcedds allocates nothing at run time; the creation of an entity beyond the size of its pool fails.",
-    remedy="Set the build option to what is needed, and state it under limits.",
+    rationale="rmw_microxrcedds does not allocate memory at run time: creating an entity fails when its pool is full.",
+    remedy="Set the build option to the number of entities that the application needs, and repeat it under 'limits'.",
     fails="""
 amuros: 1
 name: app

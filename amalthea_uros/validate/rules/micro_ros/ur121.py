@@ -1,4 +1,4 @@
-"""Message without room."""
+"""Message that is too large."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR121",
-    title="message that fits into no buffer of its stream",
+    title="message that does not fit into the buffers of its stream",
     severity=Severity.ERROR,
     rationale=(
-        "A best-effort message has to fit into the MTU, a reliable one into the buffers of its stream together; "
-        "otherwise it cannot be sent."
+        "A best-effort message must fit into the MTU, and a reliable one into all buffers of its stream together. "
+        "Otherwise it cannot be sent."
     ),
-    remedy="Enlarge the MTU or the history of the stream, or send smaller messages.",
+    remedy="Increase RMW_UXRCE_MTU or RMW_UXRCE_STREAM_HISTORY, or reduce the size of the message.",
     fails="""
 amuros: 1
 name: app

@@ -1,4 +1,4 @@
-"""Reliable message."""
+"""No acknowledgement time."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR122",
-    title="reliable message without a time of acknowledgement",
+    title="reliable message without an acknowledgement time",
     severity=Severity.WARNING,
     rationale=(
-        "It stays in the stream until the agent acknowledges it; without that time nothing is known of how long the "
-        "stream is occupied, nor of how long its sender may have to wait."
+        "A reliable message occupies the stream until the agent acknowledges it. Without the acknowledgement time, "
+        "neither the occupancy of the stream nor the blocking of the sender has an upper bound."
     ),
-    remedy="State how long an acknowledgement takes at most, or send with best effort.",
+    remedy="Set 'acknowledgement' under 'transport', or use 'reliability: best-effort'.",
     fails="""
 amuros: 1
 name: app

@@ -1,4 +1,4 @@
-"""Stream full of messages."""
+"""Too few stream buffers."""
 
 from __future__ import annotations
 
@@ -7,12 +7,10 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR123",
-    title="more reliable messages under way than their stream has buffers",
+    title="reliable stream with too few buffers for unacknowledged messages",
     severity=Severity.WARNING,
-    rationale=(
-        "While all buffers wait for their acknowledgement nothing more can be sent; the sender waits, or the message is lost."
-    ),
-    remedy="Enlarge the history of the stream, or send less often.",
+    rationale="When all buffers wait for acknowledgement, nothing more can be sent: the sender waits, or the message is lost.",
+    remedy="Increase RMW_UXRCE_STREAM_HISTORY, or send less often.",
     fails="""
 amuros: 1
 name: app

@@ -1,4 +1,4 @@
-"""Chain that nothing carries."""
+"""Chain without a data flow or trigger."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR130",
-    title="chain whose members have nothing in common",
+    title="chain element without a data flow or trigger from the one before it",
     severity=Severity.WARNING,
-    rationale="Nothing carries the effect from one member to the next, so that the latency of the chain means nothing.",
-    remedy="Name the label by which they communicate, and let the one write it and the other read it.",
+    rationale="No data flow or trigger connects the two elements, so the chain has no meaningful latency.",
+    remedy="Add the label by which they communicate: let the first element write it and the second one read it.",
     fails="""
 amuros: 1
 name: app

@@ -7,10 +7,10 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR131",
-    title="messages that need more than the CAN bus can carry",
+    title="overloaded CAN bus",
     severity=Severity.WARNING,
-    rationale="Messages queue up and are lost.",
-    remedy="Raise the bit rate, or send less often.",
+    rationale="The messages need more time than the bus has: they queue up and are lost.",
+    remedy="Increase the bit rate, or send fewer or smaller messages.",
     fails="""
 amuros: 1
 name: app

@@ -1,4 +1,4 @@
-"""Labels: those that are stated, the buffers of messages, and those that are only used."""
+"""Labels: those defined in the description, the buffers of messages, and those that are only accessed."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.hardware import Controller
 from amalthea_uros.uros.notes import Notes
 
-#: Size of a label that nobody states: a 32-bit word.
+#: Size of a label that is only accessed: a 32-bit word.
 DEFAULT_SIZE: DataSize = 32
 
 
 def labels_of(description: Description, callbacks: Iterable[Callback], runnables: Mapping[str, Runnable]) -> tuple[Label, ...]:
-    """All labels that are stated or accessed."""
+    """All labels that are defined or accessed."""
     sizes = {name: (label.size, label.location()) for name, label in description.labels.items()}
     for callback in callbacks:
         if callback.buffer is not None and callback.incoming is not None:
@@ -35,20 +35,20 @@ def _accesses(runnable: Runnable) -> list[LabelAccess]:
 
 
 def placements(labels: Iterable[Label], description: Description, controller: Controller, notes: Notes) -> list[Placement]:
-    """Which label lies in which memory."""
+    """The memory of each label."""
     found = []
     for label in labels:
-        stated = description.labels.get(label.name)
-        memory = stated.memory if stated and stated.memory else controller.label_memory
-        if stated and stated.memory and stated.memory not in controller.memories:
-            notes.unknown("memory", stated.memory, controller.memories, stated.location("memory"))
+        section = description.labels.get(label.name)
+        memory = section.memory if section and section.memory else controller.label_memory
+        if section and section.memory and section.memory not in controller.memories:
+            notes.undefined("memory", section.memory, controller.memories, section.location("memory"))
         elif memory is not None:
             found.append(Placement(element=label.name, memory=memory))
     return found
 
 
-def note_slips(description: Description, runnables: Mapping[str, Runnable], notes: Notes) -> None:
-    """Note labels that are only read and nearly named like one that is only written: most likely a slip of the pen."""
+def check_misspelled_labels(description: Description, runnables: Mapping[str, Runnable], notes: Notes) -> None:
+    """Report labels that are only read and whose name is similar to one that is only written: probably a typing error."""
     readers: dict[str, Location | None] = {}
     written = set()
     for runnable in runnables.values():
@@ -63,5 +63,5 @@ def note_slips(description: Description, runnables: Mapping[str, Runnable], note
             continue
         near = get_close_matches(name, unread, n=1, cutoff=0.8)
         if near:
-            message = f"nothing writes the label {name!r}, and nothing reads {near[0]!r}"
-            notes.warning("APP008", message, origin, f"Did you mean {near[0]!r}? State both under 'labels' if not.")
+            message = f"label {name!r} is read but never written, and {near[0]!r} is written but never read"
+            notes.warning("APP008", message, origin, f"Did you mean {near[0]!r}? If not, define both under 'labels'.")

@@ -1,4 +1,4 @@
-"""What a function does, as activities: locks, reads, computes, writes, triggers, unlocks."""
+"""The activities of a runnable: lock, read, compute, write, unlock, trigger."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from amalthea_uros.perf.software import (
 
 
 def trigger_name(task: str) -> str:
-    """The stimulus by which a task is triggered."""
+    """The name of the stimulus that triggers a task."""
     return f"trigger_of_{task}"
 
 
-def steps(
+def activity_sequence(
     execute: Iterable[Execute],
     *,
     reads: Iterable[str] = (),
@@ -29,7 +29,7 @@ def steps(
     triggers: Iterable[str] = (),
     locks: Iterable[str] = (),
 ) -> tuple[Activity, ...]:
-    """The activities of a function; what it locks it releases in the opposite order."""
+    """The activities of a runnable; locks are released in reverse order."""
     held = list(locks)
     return (
         *(_access(lock, SemaphoreOperation.REQUEST) for lock in held),

@@ -1,0 +1,46 @@
+"""The state of an assembly: the description, and the processes, runnables and stimuli created so far."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.software import Runnable
+from amalthea_uros.spec.description import Description
+from amalthea_uros.uros.demand import DemandConverter
+from amalthea_uros.uros.hardware import Controller
+from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.stimuli import StimulusRegistry
+from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
+
+
+@dataclass(slots=True, kw_only=True)
+class AssemblyContext:
+    """A description, and what has been created from it so far.
+
+    Attributes
+    ----------
+    runnables : by name, in the order of their creation
+    """
+
+    description: Description
+    controller: Controller
+    notes: Notes
+    stimuli: StimulusRegistry = field(default_factory=StimulusRegistry)
+    tasks: list[PlannedTask] = field(default_factory=list)
+    isrs: list[PlannedIsr] = field(default_factory=list)
+    runnables: dict[str, Runnable] = field(default_factory=dict)
+
+    @property
+    def converter(self) -> DemandConverter:
+        """Converts execution times to demands on the controller."""
+        return DemandConverter(self.controller, self.notes)
+
+    def core(self, name: str | None, location: Location | None) -> str:
+        """The core of a name; the first core if there is no name, or no core has it."""
+        if name is None:
+            return self.controller.first_core
+        if name not in self.controller.frequencies:
+            self.notes.undefined("core", name, self.controller.frequencies, location)
+            return self.controller.first_core
+        return name
