@@ -11,9 +11,9 @@ from amalthea_uros.diagnostics import Finding, by_place
 from amalthea_uros.garbage import paused_garbage_collection
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.engine import run
+from amalthea_uros.validate.engine import run, run_system
 from amalthea_uros.validate.repair import repair
-from amalthea_uros.validate.rule import ModelRule, Profile
+from amalthea_uros.validate.rule import ModelRule, Profile, SystemRule
 
 StrPath = str | PathLike[str]
 
@@ -41,7 +41,13 @@ def check(model: Model, rules: Iterable[str] | None = None) -> list[Finding]:
     """
     chosen = list(registry.ids() if rules is None else rules)
     with paused_garbage_collection():
-        findings = run(model, [rule for rule in map(registry.rule, chosen) if isinstance(rule, ModelRule)])
+        rules_chosen = [registry.rule(identifier) for identifier in chosen]
+        findings = run(model, [rule for rule in rules_chosen if isinstance(rule, ModelRule)])
+        system_rules = [rule for rule in rules_chosen if isinstance(rule, SystemRule)]
+        if system_rules:
+            from amalthea_uros.bridge.extract import extract
+
+            findings += run_system(extract(model).system, system_rules)
         if not set(chosen).isdisjoint(registry.ids([Profile.SCHEMA])):
             from amalthea_uros.xmi.schema_findings import schema_findings
 

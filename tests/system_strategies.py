@@ -49,6 +49,7 @@ KINDS = {
     "chain": [events.EventChain],
     "constraint": [*typing.get_args(constraints.Constraint), constraints.DataAgeConstraint, constraints.OrderConstraint],
     "requirement": [constraints.Requirement],
+    "data group": [constraints.DataGroup],
 }
 KIND_OF = {cls: kind for kind, classes in KINDS.items() for cls in classes}
 
@@ -92,6 +93,7 @@ REFERENCES = {
     (conditions.ModeLabelsAre, "first"): ["mode label"],
     (conditions.ModeLabelsAre, "second"): ["mode label"],
     (None, "channel"): ["channel"],
+    (constraints.DataGroup, "labels"): ["label"],
     (mapping.Placement, "element"): ["label", "channel"],
     (None, "mode"): ["mode"],
     (None, "events"): EVENTS,
@@ -193,8 +195,8 @@ class Drawing:
         if hint is Fraction:
             return self.draw(FREQUENCIES)
         if isinstance(hint, type) and issubclass(hint, Enum):
-            # A label has nothing to inherit its protection from.
-            literals = [x for x in hint if (cls, x) != (software.Label, software.Protection.INHERITED)]
+            # A label and an operating system have nothing to inherit their protection from.
+            literals = [x for x in hint if x is not software.Protection.INHERITED or cls is software.LabelAccess]
             return self.draw(st.sampled_from(literals))
         return self.part(origin or hint, name, depth, *arguments)
 
@@ -357,6 +359,7 @@ def _constraints(d):
         data_ages=tuple(map(_one_kind, ages)),
         orders=orders,
         requirements=tuple(map(_one_object, d.all("requirement"))),
+        data_groups=tuple(sorted(d.all("data group"), key=lambda group: group.kind)),
     )
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from amalthea_uros.bridge.context import Building
 from amalthea_uros.bridge.entries import Table
-from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDERS, build_requirement
+from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDERS, build_data_group, build_requirement
 from amalthea_uros.bridge.tables.events import CHAINS, EVENTS
 from amalthea_uros.bridge.tables.hardware import HardwareBuilder
 from amalthea_uros.bridge.tables.mapping import build_mapping
@@ -85,6 +85,12 @@ class _Build:
         software.type_definitions = types
         requirements = self.system.constraints.requirements
         constraints.requirements = [build_requirement(requirement, self.context) for requirement in requirements]
+        for group in self.system.constraints.data_groups:
+            built = build_data_group(group, self.context)
+            if isinstance(built, am.DataStabilityGroup):
+                constraints.data_stability_groups.append(built)
+            else:
+                constraints.data_coherency_groups.append(built)
         return am.Amalthea(
             sw_model=_unless_empty(software),
             hw_model=_unless_empty(hardware),

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from amalthea_uros.bridge.context import Extracting
-from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDERS, extract_requirement
+from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDERS, extract_data_group, extract_requirement
 from amalthea_uros.bridge.tables.events import CHAINS, EVENTS
 from amalthea_uros.bridge.tables.hardware import HardwareExtractor
 from amalthea_uros.bridge.tables.mapping import extract_mapping
@@ -152,8 +152,6 @@ class _Extract:
         context, parts = self.context, self.parts
         for feature in (
             "affinity_constraints",
-            "data_coherency_groups",
-            "data_stability_groups",
             "physical_section_constraints",
         ):
             for element in parts(am.ConstraintsModel, feature):
@@ -163,5 +161,10 @@ class _Extract:
             constraints=CONSTRAINTS.extract_all(parts(am.ConstraintsModel, "timing_constraints"), context),
             data_ages=DATA_AGES.extract_all(parts(am.ConstraintsModel, "data_age_constraints"), context),
             orders=ORDERS.extract_all(parts(am.ConstraintsModel, "runnable_sequencing_constraints"), context),
+            data_groups=tuple(
+                extract_data_group(group, context)
+                for feature in ("data_coherency_groups", "data_stability_groups")
+                for group in parts(am.ConstraintsModel, feature)
+            ),
             requirements=tuple(requirement for requirement in requirements if requirement is not None),
         )

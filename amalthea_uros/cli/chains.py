@@ -10,6 +10,7 @@ import click
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.pipeline import system_of
 from amalthea_uros.report.chains import write_paths
+from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.paths import Path as Way
 from amalthea_uros.timing.dataflow.paths import UnknownEndError, paths, with_chains
 
@@ -32,7 +33,7 @@ def command(model: Path, start: str, end: str, name: str | None, number: int, ou
     system, _ = system_of([model])
     try:
         found = paths(system, start, end)
-    except UnknownEndError as error:
+    except (UnknownEndError, UnresolvedError) as error:
         raise click.BadParameter(str(error)) from None
     if not found:
         click.echo(f"there is no path from {start} to {end}")

@@ -55,6 +55,20 @@ class Condition:
     alternatives: tuple[tuple[Comparison, ...], ...]
 
 
+def read_by(condition: Condition) -> tuple[str, ...]:
+    """The mode labels and channels on which a condition depends."""
+    found: list[str] = []
+    for comparison in (each for every in condition.alternatives for each in every):
+        match comparison:
+            case ModeValueIs(label=label):
+                found.append(label)
+            case ModeLabelsAre(first=first, second=second):
+                found += (first, second)
+            case ChannelFillIs(channel=channel):
+                found.append(channel)
+    return tuple(dict.fromkeys(found))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeAssignment:
     """A value that a mode label gets: a literal, or a number as text."""

@@ -119,6 +119,21 @@ class OrderConstraint(Named):
     processes: tuple[str, ...] = ()
 
 
+class DataGroupKind(StrEnum):
+    """Whether values belong together, or must not change while they are used."""
+
+    COHERENCY = "coherency"
+    STABILITY = "stability"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DataGroup(Named):
+    """Labels that have to be kept consistent; names may repeat."""
+
+    kind: DataGroupKind
+    labels: tuple[str, ...] = ()
+
+
 Constraint: TypeAlias = LatencyConstraint | DelayConstraint | RepetitionConstraint | EventSynchronization | ChainSynchronization
 
 
@@ -275,3 +290,4 @@ class Constraints:
     data_ages: tuple[DataAgeConstraint, ...] = ()
     orders: tuple[OrderConstraint, ...] = ()
     requirements: tuple[Requirement, ...] = ()
+    data_groups: tuple[DataGroup, ...] = ()

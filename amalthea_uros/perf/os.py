@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import TypeAlias
 
 from amalthea_uros.perf.named import Named
-from amalthea_uros.perf.software import Demand, Execute, LabelAccess
+from amalthea_uros.perf.software import Demand, Execute, LabelAccess, Protection
 from amalthea_uros.units import Time
 
 
@@ -146,11 +146,17 @@ class Overhead(Named):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OperatingSystem(Named):
-    """An operating system on some cores."""
+    """An operating system on some cores.
+
+    Attributes
+    ----------
+    protection : how it keeps labels consistent that state nothing themselves
+    """
 
     schedulers: tuple[Scheduler, ...] = ()
     interrupt_controllers: tuple[InterruptController, ...] = ()
     overhead: str | None = None
+    protection: Protection | None = None
 
 
 class SemaphoreKind(StrEnum):

@@ -10,7 +10,7 @@ from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, Runnab
 from amalthea_uros.perf.software import Process, Trigger
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.events import raises
+from amalthea_uros.timing.dataflow.events import UnresolvedError, raises
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.event_models import Downsampled, EventModel, Multiplied, aggregated
@@ -45,10 +45,15 @@ class Activations:
     system: System
     dataflow: Dataflow
     _positions: list[ActivityPosition] = field(default_factory=list)
+    _unfollowed: str = ""
     _triggers: dict[str, list[Cause]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self._positions = [position for position in self.dataflow.events.all_positions() if position.times > 0]
+        for name in self.system.processes:
+            try:
+                self._positions += [position for position in self.dataflow.events.positions(name) if position.times > 0]
+            except UnresolvedError as error:
+                self._unfollowed = str(error)
         for position in self._positions:
             if isinstance(position.activity, Trigger):
                 causes = self._triggers.setdefault(position.activity.stimulus, [])
@@ -84,6 +89,8 @@ class Activations:
             if found is None:
                 raise UnknownActivationError(f"nothing bounds how often {name!r} occurs")
             return found
+        if self._unfollowed:
+            raise UnknownActivationError(f"what triggers {name!r} is unknown: {self._unfollowed}")
         causes = self._triggers.get(name, []) if isinstance(stimulus, InterProcess) else self._causes(stimulus)
         if not causes:
             raise UnknownActivationError(f"nothing triggers {name!r}")

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from amalthea_uros.perf.software import Activity, Call, Process, SemaphoreAccess, SemaphoreOperation
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.dataflow.positions import ActivityPosition
 
 
 def critical_sections(process: Process, system: System) -> Iterator[tuple[str, Sequence[Activity]]]:
@@ -43,3 +44,21 @@ def _flat(activities: Sequence[Activity], system: System, above: tuple[str, ...]
 
 def _locks(activities: Sequence[Activity]) -> bool:
     return any(isinstance(activity, SemaphoreAccess) for activity in activities)
+
+
+def exclusively_held(positions: Sequence[ActivityPosition], system: System) -> Iterator[frozenset[str]]:
+    """The semaphores that keep all others away, held at each position of a process.
+
+    Activities are read from the start to the end: what is requested is held until it is released, whatever the branches are.
+    """
+    users = {semaphore.name: semaphore.users for semaphore in system.os.semaphores}
+    held: frozenset[str] = frozenset()
+    for position in positions:
+        yield held
+        access = position.activity
+        if isinstance(access, SemaphoreAccess):
+            if access.operation is SemaphoreOperation.RELEASE:
+                held -= {access.semaphore}
+            # With room for several users it keeps nobody away, unless it is requested exclusively.
+            elif access.operation is SemaphoreOperation.EXCLUSIVE or users.get(access.semaphore, 1) <= 1:
+                held |= {access.semaphore}

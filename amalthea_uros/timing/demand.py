@@ -9,10 +9,12 @@ jobs without it do not pay for it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import ceil, floor
 
+from amalthea_uros.graphs import bottom_up
 from amalthea_uros.perf.distributions import Distribution, highest, lowest
 from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import (
@@ -33,10 +35,11 @@ from amalthea_uros.perf.software import (
     ServerCall,
     Switch,
     WaitEvent,
+    walk,
 )
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.positions import positions
+from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH, TooComplexError, positions
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.timing.means import mean
 from amalthea_uros.timing.memory import MemoryAccess, count_of
@@ -61,6 +64,7 @@ class DemandModel:
     memory: MemoryAccess = field(init=False)
     overheads: Overheads = field(init=False)
     _of_runnables: dict[tuple[str, str], tuple[Frame, ...]] = field(default_factory=dict)
+    _in_preparation: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         self.memory = MemoryAccess(self.system, self.notes, self.frequency)
@@ -105,7 +109,10 @@ class DemandModel:
 
     def _copies(self, process: Process, core: str) -> list[Frame]:
         """Copies of all labels that a process reads, before it starts, and of those that it writes, at its end."""
-        here = (position.activity for position in positions(process, self.system))
+        try:
+            here = [position.activity for position in positions(process, self.system)]
+        except TooComplexError as error:
+            raise UnknownDemandError(str(error)) from None
         found = dict.fromkeys((access.label, access.kind) for access in here if isinstance(access, LabelAccess))
         self.notes.assume("each label is copied once at the start and once at the end of a job that reads or writes it")
         time_base = self.settings.scale * self.time_base(core)
@@ -176,6 +183,8 @@ class DemandModel:
             raise UnknownDemandError(f"the runnable {call.runnable!r} is not part of the model")
         if runnable.name in above:
             raise UnknownDemandError(f"the runnable {runnable.name!r} calls itself")
+        if len(above) > MAX_CALL_DEPTH:
+            raise UnknownDemandError(f"calls are nested deeper than {MAX_CALL_DEPTH} levels")
         frames = self._runnable(runnable, core, above)
         match runnable.condition and holds(runnable.condition, self.settings.modes):
             case False:
@@ -190,9 +199,29 @@ class DemandModel:
         """The frames of a runnable; counters within it are not known to fall on certain jobs."""
         key = (runnable.name, core)
         if key not in self._of_runnables:
+            self._prepare(runnable, core)
+        if key not in self._of_runnables:
             inner = self._frames(runnable.activities, core, (*above, runnable.name))
             self._of_runnables[key] = _summed([_any_time(frame) for frame in inner])
         return self._of_runnables[key]
+
+    def _prepare(self, runnable: Runnable, core: str) -> None:
+        """Look at what a runnable calls, the innermost first: nothing limits how deep calls are nested."""
+        if core in self._in_preparation:
+            return
+        self._in_preparation.add(core)
+        for name in bottom_up([runnable.name], self._called)[:-1]:
+            if (name, core) not in self._of_runnables:
+                with suppress(UnknownDemandError):
+                    frames = self._frames(self.system.runnables[name].activities, core, (name,))
+                    self._of_runnables[name, core] = _summed([_any_time(frame) for frame in frames])
+        self._in_preparation.remove(core)
+
+    def _called(self, runnable: str) -> list[str]:
+        """The runnables of the model that a runnable calls itself."""
+        activities = walk(self.system.runnables[runnable].activities)
+        called = (activity.runnable for activity in activities if isinstance(activity, Call))
+        return [name for name in called if name in self.system.runnables]
 
     def _time(self, ticks: Distribution[int], factor: Fraction, core: str) -> Frame:
         """The time_base that ticks take, or units of something that takes `factor` ticks each."""

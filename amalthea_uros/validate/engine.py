@@ -7,14 +7,35 @@ from collections.abc import Iterable, Iterator
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
+from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.system import System
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Downgraded, ModelRule
+from amalthea_uros.validate.rule import Downgraded, ModelRule, SystemRule
+from amalthea_uros.validate.system_context import SystemContext
 
 
 def run(model: Model, rules: Iterable[ModelRule]) -> list[Finding]:
     """The findings of rules; a rule that crashes is reported as a finding."""
     context = Context(model)
     return [finding for rule in rules for finding in _findings(rule, context)]
+
+
+def run_system(system: System, rules: Iterable[SystemRule]) -> list[Finding]:
+    """The findings of rules on a system. A rule that crashes is a finding, too."""
+    context = SystemContext(system)
+    return [finding for rule in rules for finding in _system_findings(rule, context)]
+
+
+def _system_findings(rule: SystemRule, context: SystemContext) -> Iterator[Finding]:
+    try:
+        problems = list(rule.check(context))
+    except Exception as error:
+        message = f"the rule {rule.id} failed: {type(error).__name__}: {error}"
+        yield Finding("CHK001", Severity.ERROR, message, help="Please report it, with the model if you can.")
+        return
+    for item, message, name, severity in problems:
+        object_name = name or (item.name if isinstance(item, Named) else "")
+        yield Finding(rule.id, severity or rule.severity, message, item.origin, rule.remedy, object_name)
 
 
 def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import ceil, isfinite
 
+from amalthea_uros.graphs import bottom_up
 from amalthea_uros.metamodel.classes import (
     IExecutable,
     MinAvgMaxStatistic,
@@ -16,7 +17,6 @@ from amalthea_uros.metamodel.classes import (
 )
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.graphs import bottom_up
 
 
 def calls(context: Context) -> Mapping[IExecutable, list[RunnableCall]]:

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from math import isfinite
 
+from amalthea_uros.graphs import bottom_up
 from amalthea_uros.metamodel.classes import (
     ActivityGraph,
     ActivityGraphItem,
@@ -45,7 +46,6 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.magnitudes import picoseconds
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.execution import executing, order, times
-from amalthea_uros.validate.graphs import bottom_up
 from amalthea_uros.validate.quantities import bounds, clock
 from amalthea_uros.validate.scheduling import cores
 

@@ -9,7 +9,9 @@ from typing import Any, NamedTuple
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.element import Element
+from amalthea_uros.perf.named import Located
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.system_context import SystemContext
 
 
 class Profile(StrEnum):
@@ -89,3 +91,24 @@ class ModelRule(Rule):
     until: str | None = None
     is_about_files: bool = False
     in_canonical_form: bool = False
+
+
+class Problem(NamedTuple):
+    """What is wrong with an object of a system."""
+
+    item: Located
+    message: str
+    object: str = ""
+    severity: Severity | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SystemRule(Rule):
+    """A rule about what a system means in time, whether it comes from a model or from a description.
+
+    Attributes
+    ----------
+    check : finds the problems of a system
+    """
+
+    check: Callable[[SystemContext], Iterator[Problem]]

@@ -50,7 +50,8 @@ from amalthea_uros.perf.software import (
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import UnresolvedError
-from amalthea_uros.timing.dataflow.links import LinkKind, Resolver
+from amalthea_uros.timing.dataflow.links import Dataflow, LinkKind
+from amalthea_uros.timing.dataflow.routes import routes
 from amalthea_uros.units import MILLISECOND as MS
 
 RULE = "TIM-CHAIN-CARRIED"
@@ -170,12 +171,12 @@ def systems(draw):
 
 @given(systems())
 def test_the_gaps_of_random_chains(system):
-    resolver = Resolver(system)
+    dataflow = Dataflow(system)
     found = told_by_rule(build_model(system))
     for chain in system.events.chains:
         first, then = (system.events_by_name[name] for name in (chain.stimulus, chain.response))
         try:
-            links = {link.kind for route in resolver.routes([first, then]) for link in route.links}
+            links = {link.kind for route in routes([first, then], dataflow) for link in route.links}
         except UnresolvedError:
             continue
         is_told = (chain.name, first.name, then.name) in found
@@ -253,7 +254,7 @@ SERVER = '<items xsi:type="am:{}" serverRunnable="R?type=Runnable"/>'
 SET_MODE = '<items xsi:type="am:ModeLabelAccess" data="K?type=ModeLabel" access="set" value="1"/>'
 IS_ONE = '<entries xsi:type="am:ModeValueCondition" label="K?type=ModeLabel" relation="EQUAL" value="1"/>'
 SWITCH = f'<items xsi:type="am:Switch"><entries name="one"><condition>{IS_ONE}</condition></entries></items>'
-GAP = ["nothing carries the effect from 'start of T' to 'end of U'"]
+GAP = ["no data flow or trigger connects 'start of T' to 'end of U'"]
 
 
 @pytest.mark.parametrize(
@@ -300,7 +301,7 @@ def test_what_carries(excerpt, expected, tmp_path):
 
 
 def gap(first, then):
-    return [f"nothing carries the effect from {first!r} to {then!r}"]
+    return [f"no data flow or trigger connects {first!r} to {then!r}"]
 
 
 @pytest.mark.parametrize(

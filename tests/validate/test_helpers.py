@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from amalthea_uros.graphs import bottom_up, circles
 from amalthea_uros.metamodel.classes import (
     DataSize,
     DataSizeUnit,
@@ -25,7 +26,6 @@ from amalthea_uros.metamodel.classes import (
     TimeHistogramEntry,
 )
 from amalthea_uros.metamodel.magnitudes import bits, picoseconds
-from amalthea_uros.validate.graphs import bottom_up, circles
 from amalthea_uros.validate.quantities import bounds, clock, size_text, time_text
 from amalthea_uros.validate.wording import counted, joined, listed
 

@@ -13,7 +13,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run
-from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.rule import Profile, SystemRule
 
 IDS = list(registry.ids())
 
@@ -54,9 +54,12 @@ def found_in(rule, example, folder):
         path = folder / "model.amxmi"
         path.write_text(example)
         return check(load(path), [rule.id])
-    version = rule.example_version if example == rule.fails else "3.3.0"
-    read = model(example, folder, version, rule.beside)
-    if not rule.is_about_files:
+    if isinstance(rule, SystemRule):
+        read = model(example, folder, "3.3.0")
+    else:
+        version = rule.example_version if example == rule.fails else "3.3.0"
+        read = model(example, folder, version, rule.beside)
+    if isinstance(rule, SystemRule) or not rule.is_about_files:
         # The examples are models of which everything is understood.
         assert not read.findings
     findings = check(read, [rule.id])

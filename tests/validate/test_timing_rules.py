@@ -1,13 +1,13 @@
 """The rules of the timing profile beyond their examples."""
 
 import pytest
-from amalthea_uros.timing.dataflow.occurrences import occurrences
 from support import corpus, hand_written
 from test_rules import model
 
 from amalthea_uros import check, extract, load
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.software import AccessKind, LabelAccess
+from amalthea_uros.timing.dataflow.links import Dataflow
 
 
 def found(rule, excerpt, folder, version="3.3.0"):
@@ -321,16 +321,25 @@ def test_stimuli_that_never_occur(stimuli, others, expected, tmp_path):
     assert found("TIM-STIMULUS", excerpt, tmp_path) == expected
 
 
+RECURRENCE = '<recurrence value="10" unit="ms"/>'
+BURST = RECURRENCE + '<burstLength value="1" unit="ms"/>'
+
+
 @pytest.mark.parametrize(
     ("kind", "attributes", "parts", "at_once"),
     [
-        ("PeriodicBurstStimulus", 'occurrenceCount="4"', "", 4),
-        ("PeriodicBurstStimulus", 'occurrenceCount="4"', '<occurrenceMinDistance value="0" unit="ms"/>', 4),
+        ("PeriodicBurstStimulus", 'occurrenceCount="4"', BURST, 4),
+        ("PeriodicBurstStimulus", 'occurrenceCount="4"', BURST + '<occurrenceMinDistance value="0" unit="ms"/>', 4),
         # Apart from each other they may each find the task idle.
-        ("PeriodicBurstStimulus", 'occurrenceCount="4"', '<occurrenceMinDistance value="1" unit="ns"/>', 1),
+        ("PeriodicBurstStimulus", 'occurrenceCount="4"', BURST + '<occurrenceMinDistance value="1" unit="ns"/>', 1),
         ("PeriodicBurstStimulus", "", "", 1),
-        ("PeriodicSyntheticStimulus", "", '<occurrenceTimes value="0" unit="ms"/>' * 3, 3),
-        ("PeriodicSyntheticStimulus", "", '<occurrenceTimes value="1" unit="ms"/><occurrenceTimes value="1000" unit="us"/>', 2),
+        ("PeriodicSyntheticStimulus", "", RECURRENCE + '<occurrenceTimes value="0" unit="ms"/>' * 3, 3),
+        (
+            "PeriodicSyntheticStimulus",
+            "",
+            RECURRENCE + '<occurrenceTimes value="1" unit="ms"/><occurrenceTimes value="1000" unit="us"/>',
+            2,
+        ),
         ("PeriodicSyntheticStimulus", "", '<occurrenceTimes value="0" unit="ms"/><occurrenceTimes value="1" unit="ms"/>', 1),
         # The second one meets the first one of the next round.
         (
@@ -348,7 +357,6 @@ def test_stimuli_that_never_occur(stimuli, others, expected, tmp_path):
             '<entries numberOfOccurrences="4"><lowerTimeBorder value="9" unit="ms"/></entries>',
             1,
         ),
-        ("ArrivalCurveStimulus", "", '<entries numberOfOccurrences="4"><lowerTimeBorder value="0" unit="ms"/></entries>', 4),
         ("ArrivalCurveStimulus", "", "", 1),
         ("InterProcessStimulus", "", "", 1),
         ("CustomStimulus", "", "", 1),
@@ -358,7 +366,7 @@ def test_activations_at_once(kind, attributes, parts, at_once, tmp_path):
     assert activations(kind, attributes, parts, at_once, tmp_path) == []
     if at_once > 1:
         limit = at_once - 1
-        expected = [f"'S' may activate 'T' {at_once} times at once, which takes {limit} at most"]
+        expected = [f"'S' may activate 'T' {at_once} times at once, but its activation limit is {limit}"]
         assert activations(kind, attributes, parts, limit, tmp_path) == expected
 
 
@@ -393,13 +401,13 @@ def test_activations_that_jitter_brings_together(parts, at_once, tmp_path):
 
 
 def test_the_limit_that_nobody_states_is_1(tmp_path):
-    excerpt = STIMULUS.format("PeriodicBurstStimulus", 'occurrenceCount="2"', "")
+    excerpt = STIMULUS.format("PeriodicBurstStimulus", 'occurrenceCount="2"', BURST)
     told = found(
         "TIM-ACTIVATION-LIMIT",
         excerpt + '<swModel><tasks name="T" stimuli="S?type=PeriodicBurstStimulus"/></swModel>',
         tmp_path,
     )
-    assert told == ["'S' may activate 'T' 2 times at once, which takes 1 at most"]
+    assert told == ["'S' may activate 'T' 2 times at once, but its activation limit is 1"]
 
 
 # Deadlines
@@ -438,10 +446,10 @@ def deadlines(stimuli, requirement=None, parameter=None, limit_type="UpperLimit"
     ("excerpt", "expected"),
     [
         (deadlines("P?type=PeriodicStimulus", 10, 10), []),
-        (deadlines("P?type=PeriodicStimulus", 11), ["'T' has 11 ms to respond, and is activated as often as every 10 ms"]),
+        (deadlines("P?type=PeriodicStimulus", 11), ["the deadline of 'T' is 11 ms, longer than the 10 ms between activations"]),
         (
             deadlines("P?type=PeriodicStimulus", None, 12),
-            ["'T' has 12 ms to respond, and is activated as often as every 10 ms"],
+            ["the deadline of 'T' is 12 ms, longer than the 10 ms between activations"],
         ),
         # Whoever keeps the shorter one is done before the next activation.
         (deadlines("P?type=PeriodicStimulus", 11, 9), []),
@@ -452,7 +460,7 @@ def deadlines(stimuli, requirement=None, parameter=None, limit_type="UpperLimit"
         # 5 activations in 40 ms.
         (
             deadlines("P?type=PeriodicStimulus Q?type=PeriodicStimulus", 9),
-            ["'T' has 9 ms to respond, and is activated as often as every 8 ms"],
+            ["the deadline of 'T' is 9 ms, longer than the 8 ms between activations"],
         ),
         (deadlines("O?type=SingleStimulus", 9), []),
         (deadlines("C?type=CustomStimulus", 9), []),
@@ -866,7 +874,7 @@ ALONE = semaphore("exclusive", "Z") + access() + semaphore("release", "Z")
 )
 def test_labels_that_several_cores_write(first, second, others, is_told, tmp_path):
     told = found("TIM-UNPROTECTED", shared(first, second, others=others), tmp_path)
-    expected = ["'L' is written by 'T' on core0 and 'U' on core1; no semaphore or stated protection keeps them apart"]
+    expected = ["'L' is written by 'T' on core0 and 'U' on core1 without a common semaphore or a stated protection"]
     assert told == (expected if is_told else [])
 
 
@@ -915,7 +923,7 @@ def test_tasks_that_move_between_cores_may_write_at_a_time(tmp_path):
     excerpt = shared("", access(), others=second, responsibility="core0?type=ProcessingUnit core1?type=ProcessingUnit")
     allocation = '<taskAllocation task="V?type=Task" scheduler="S1?type=TaskScheduler"/></mappingModel>'
     assert found("TIM-UNPROTECTED", excerpt.replace("</mappingModel>", allocation), tmp_path) == [
-        "'L' is written by 'U' on core0/core1 and 'V' on core0/core1; no semaphore or stated protection keeps them apart"
+        "'L' is written by 'U' on core0/core1 and 'V' on core0/core1 without a common semaphore or a stated protection"
     ]
     # A task alone does not meet itself.
     assert found("TIM-UNPROTECTED", excerpt, tmp_path) == []
@@ -933,7 +941,7 @@ def test_interrupts_write_too(tmp_path):
     allocation = '<isrAllocation isr="I?type=ISR" controller="C?type=InterruptController"/></mappingModel>'
     excerpt = shared(access(), "", others=isr).replace("</mappingModel>", allocation)
     assert found("TIM-UNPROTECTED", excerpt, tmp_path) == [
-        "'L' is written by 'I' on core1 and 'T' on core0; no semaphore or stated protection keeps them apart"
+        "'L' is written by 'T' on core0 and 'I' on core1 without a common semaphore or a stated protection"
     ]
 
 
@@ -947,7 +955,7 @@ def test_real_models_without_semaphores(path):
     system = extract(read).system
     places = {a.task: a.cores or system.schedulers[a.scheduler].cores for a in system.mapping.tasks}
     writers: dict[str, dict[str, set[str]]] = {}
-    for what in occurrences(system):
+    for what in Dataflow(system).events.all_positions():
         if isinstance(what.activity, LabelAccess) and what.activity.kind is AccessKind.WRITE:
             writers.setdefault(what.activity.label, {})[what.process.name] = set(places.get(what.process.name, ()))
     expected = {label for label, by in writers.items() if len(by) > 1 and len(set().union(*by.values())) > 1}

@@ -112,7 +112,7 @@ def build_job_chains(tracks: Sequence[ReadWriteTimes], steady_state_start: Time)
     steady_state_start : the time behind which all steps repeat
     """
     cycle, length = lcm(*(track.cycle for track in tracks)), reach(tracks)
-    # A cycle so far behind the steady_state_start time that chains which end in it, and those which end a little before, start behind that.
+    # A cycle so far after the start of the steady state that chains which end in it, or a little before it, start after that.
     start = steady_state_start + 2 * length
     until = start + cycle + 2 * length
     if sum(len(track.releases) * (until // track.until) for track in tracks) > MAX_JOBS:

@@ -2,8 +2,8 @@
 
 After O. Redell and M. Sanfridson, "Exact best-case response time analysis of fixed priority scheduled tasks", ECRTS 2002: from above,
 the greatest fixed point of R = C + sum over higher priorities of C_j * (ceil(R / T_j) - 1), the arrivals that cannot be avoided in R.
-EventModel that may stay away, or that jitter, are left out; then the value is a lower bound. It holds once all tasks have been released:
-the first jobs of a system may run before others have started.
+Activations that may be missing, or that jitter, are left out; then the value is a lower bound. It holds once all tasks have been
+released: the first jobs of a system may run before others have started.
 """
 
 from __future__ import annotations

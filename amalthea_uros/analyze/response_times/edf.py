@@ -1,7 +1,8 @@
-"""Response times under earliest deadline first, after M. Spuri, "Analysis of deadline scheduled real-time systems", INRIA, RR-2772, 1996.
+"""Response times under earliest deadline first.
 
-The worst response of a job that is activated `a` after the start of a busy window in which all others are activated as early as they can
-be; only those of them count whose deadline is not later. Tasks of higher priority come first.
+After M. Spuri, "Analysis of deadline scheduled real-time systems", INRIA, RR-2772, 1996: the
+worst response of a job that is activated `a` after the start of a busy window in which all others are activated as early as
+possible; only those of them count whose deadline is not later. Tasks of higher priority come first.
 
 The activations `a` to be considered are those at which the deadline of the job meets that of another one, or at which it is one of the
 earliest that its own task can have.

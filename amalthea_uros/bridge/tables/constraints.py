@@ -255,3 +255,30 @@ ORDERS = Table(
         Field("processes", "process_scope", references(Kind.PROCESS)),
     )
 )
+
+
+_DATA_GROUPS: dict[perf.DataGroupKind, type[am.DataCoherencyGroup | am.DataStabilityGroup]] = {
+    perf.DataGroupKind.COHERENCY: am.DataCoherencyGroup,
+    perf.DataGroupKind.STABILITY: am.DataStabilityGroup,
+}
+_LABELS = references(Kind.DATA)
+
+
+def build_data_group(group: perf.DataGroup, context: Building) -> am.DataCoherencyGroup | am.DataStabilityGroup:
+    """Labels that have to be kept consistent."""
+    context.at(group)
+    element = _DATA_GROUPS[group.kind](name=group.name, labels=_LABELS.build(group.labels, context))
+    if group.origin is not None:
+        context.origins[element] = group.origin
+    return element
+
+
+def extract_data_group(element: am.DataCoherencyGroup | am.DataStabilityGroup, context: Extracting) -> perf.DataGroup:
+    """The way back."""
+    is_stable = isinstance(element, am.DataStabilityGroup)
+    return perf.DataGroup(
+        name=element.name or "",
+        kind=perf.DataGroupKind.STABILITY if is_stable else perf.DataGroupKind.COHERENCY,
+        labels=_LABELS.extract(element.labels, context, element),
+        origin=context.location(element),
+    )

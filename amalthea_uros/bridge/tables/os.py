@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from amalthea_uros.bridge.codecs import reference, same_names
+from amalthea_uros.bridge.codecs import enumeration, reference, same_names
 from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.entries import Entry, Field, Table
 from amalthea_uros.bridge.kinds import Kind
 from amalthea_uros.bridge.tables.parameters import Definitions, Given, extract_parameters, extract_policy
-from amalthea_uros.bridge.tables.software import ACTIVITIES, DEMAND, ITEMS
+from amalthea_uros.bridge.tables.software import ACTIVITIES, DEMAND, ITEMS, PROTECTIONS
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.perf import os as perf
+from amalthea_uros.perf.software import Protection
 
 SEMAPHORES = Table(
     Entry(
@@ -32,6 +33,10 @@ _SERVICES = {service: f"api_{service.name.lower()}" for service in perf.Service}
     perf.Service.RESUME_INTERRUPTS: "api_resume_os_interrupts",
     perf.Service.SERVER_CALL: "api_synchronous_server_call_point",
 }
+#: Who keeps data consistent; an operating system cannot inherit that.
+_PROTECTION = enumeration(
+    {Protection[one]: am.OsDataConsistencyMode[other] for one, other in PROTECTIONS.items() if one != "INHERITED"}
+)
 _OVERHEAD, _SCHEDULER = reference(Kind.OVERHEAD), reference(Kind.SCHEDULER)
 
 
@@ -99,6 +104,8 @@ def fill_system(system: perf.OperatingSystem, element: am.OperatingSystem, defin
     context.at(system)
     if system.overhead is not None:
         element.overhead = _OVERHEAD.build(system.overhead, context)
+    if system.protection is not None:
+        element.os_data_consistency = am.OsDataConsistency(mode=_PROTECTION.build(system.protection, context))
     policies = {scheduler.name: scheduler.policy for scheduler in system.schedulers}
     for scheduler, task_scheduler in zip(system.schedulers, element.task_schedulers, strict=True):
         _fill_scheduler(scheduler, task_scheduler, definitions)
@@ -144,7 +151,14 @@ def extract_system(element: am.OperatingSystem, allocations: Allocations, contex
             for controller in element.interrupt_controllers
         ),
         overhead=_OVERHEAD.extract(element.overhead, context, element),
+        protection=_protection(element, context),
     )
+
+
+def _protection(element: am.OperatingSystem, context: Extracting) -> Protection | None:
+    mode = element.os_data_consistency.mode if element.os_data_consistency is not None else None
+    found: Protection | None = None if mode is None else _PROTECTION.extract(mode, context, element)
+    return found
 
 
 def _scheduler(element: am.TaskScheduler, allocations: Allocations, context: Extracting) -> perf.Scheduler:

@@ -248,7 +248,7 @@ def _extract_events(value: Any, context: Extracting, element: Element) -> tuple[
 _EVENT_MASK = Codec(
     lambda names, context: am.EventMask(events=references(Kind.OS_EVENT).build(names, context)), _extract_events
 )
-_PROTECTIONS = {
+PROTECTIONS = {
     "NONE": "NO_PROTECTION",
     "AUTOMATIC": "AUTOMATIC_PROTECTION",
     "CUSTOM": "CUSTOM_PROTECTION",
@@ -289,7 +289,7 @@ ACTIVITIES: Table = _Activities(
                 }
             ),
         ),
-        Field("protection", "data_stability", same_names(perf.Protection, am.LabelAccessDataStability, **_PROTECTIONS)),
+        Field("protection", "data_stability", same_names(perf.Protection, am.LabelAccessDataStability, **PROTECTIONS)),
         Field("times", "statistic", _ACCESSES),
     ),
     Entry(
@@ -386,7 +386,7 @@ LABELS = Table(
         Field(
             "protection",
             "data_stability",
-            enumeration({perf.Protection[ours]: am.LabelDataStability[theirs] for ours, theirs in _PROTECTIONS.items()}),
+            enumeration({perf.Protection[ours]: am.LabelDataStability[theirs] for ours, theirs in PROTECTIONS.items()}),
         ),
     )
 )

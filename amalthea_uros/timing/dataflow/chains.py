@@ -7,8 +7,9 @@ or a last one that does not end with it, has to give way, which is told.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from amalthea_uros.perf.events import ChainReference, EventChain, EventSet, Parallel, Segment
 from amalthea_uros.perf.events import Sequence as InSequence
@@ -175,3 +176,52 @@ def combined(unfolded: Unfolded, value: Mapping[tuple[str, ...], int | None], be
 
 def _endless_last(value: int | None) -> tuple[bool, int]:
     return (value is None, value or 0)
+
+
+def steps(chain: EventChain, system: System) -> Iterator[tuple[EventChain | Segment, tuple[str, ...], tuple[str, ...]]]:
+    """The steps that a chain and the segments within it take themselves: from any of some events to any of others."""
+    pending: list[EventChain | Segment] = [chain]
+    while pending:
+        item = pending.pop()
+        own = item.items.items if item.items is not None else ()
+        parts = [resolved for part in own if (resolved := _resolved(part, system)) is not None]
+        pending.extend(part for part in reversed(own) if isinstance(part, Segment))
+        if item.items is None:
+            found = [(item.stimulus, item.response)]
+        elif isinstance(item.items, Parallel):
+            found = [(item.stimulus, part.stimulus) for part in parts]
+            found += [(part.response, item.response) for part in parts]
+        else:
+            found = [(part.response, following.stimulus) for part, following in pairwise(parts)]
+        yield from ((item, _events(first, system), _events(then, system)) for first, then in found)
+
+
+def _resolved(part: ChainReference | Segment, system: System) -> EventChain | Segment | None:
+    return system.chains.get(part.chain) if isinstance(part, ChainReference) else part
+
+
+def _events(name: str | None, system: System) -> tuple[str, ...]:
+    """The events that an end of a chain means: all of a set."""
+    event = system.events_by_name.get(name or "")
+    if isinstance(event, EventSet):
+        return event.events
+    return (event.name,) if event is not None else ()
+
+
+def events_of(chain: EventChain, system: System) -> set[str]:
+    """All events of a chain, of its segments and of the chains that it refers to."""
+    found: set[str] = set()
+    seen: set[str] = set()
+    pending: list[EventChain | Segment] = [chain]
+    while pending:
+        item = pending.pop()
+        found.update(_events(item.stimulus, system), _events(item.response, system))
+        for part in item.items.items if item.items is not None else ():
+            if isinstance(part, ChainReference) and part.chain in seen:
+                continue
+            if isinstance(part, ChainReference):
+                seen.add(part.chain)
+            resolved = _resolved(part, system)
+            if resolved is not None:
+                pending.append(resolved)
+    return found

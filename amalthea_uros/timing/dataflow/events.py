@@ -38,7 +38,7 @@ from amalthea_uros.perf.software import (
     SenderReceiverAccess,
 )
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.positions import ActivityPosition, positions
+from amalthea_uros.timing.dataflow.positions import ActivityPosition, TooComplexError, positions
 
 
 class UnresolvedError(Exception):
@@ -93,13 +93,21 @@ class EventLocator:
     _positions: dict[str, list[ActivityPosition]] = field(default_factory=dict)
 
     def positions(self, process: str) -> list[ActivityPosition]:
-        """Everything that the jobs of a process do."""
+        """Everything that the jobs of a process do.
+
+        Raises
+        ------
+        UnresolvedError : that is too much to be followed.
+        """
         if process not in self._positions:
-            self._positions[process] = positions(self.system.processes[process], self.system)
+            try:
+                self._positions[process] = positions(self.system.processes[process], self.system)
+            except TooComplexError as error:
+                raise UnresolvedError(str(error)) from None
         return self._positions[process]
 
     def all_positions(self) -> Iterator[ActivityPosition]:
-        """Everything that the jobs of all processes do."""
+        """Everything that the jobs of all processes do; raises as `positions`."""
         for process in self.system.processes:
             yield from self.positions(process)
 

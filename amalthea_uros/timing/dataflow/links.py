@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from amalthea_uros.perf.conditions import read_by
 from amalthea_uros.perf.events import Event, RunnableChange, RunnableEvent
 from amalthea_uros.perf.software import (
     AccessKind,
@@ -190,7 +191,9 @@ def writes(position: ActivityPosition) -> tuple[str, ...]:
 
 
 def reads(position: ActivityPosition) -> tuple[str, ...]:
-    """The labels, mode labels and channels that an activity reads."""
+    """The labels, mode labels and channels that an activity reads, or on which a condition depends."""
+    if position.conditions:
+        return tuple(name for condition in position.conditions for name in read_by(condition))
     match position.activity:
         case LabelAccess(label=name, kind=AccessKind.READ) | SenderReceiverAccess(label=name, kind=AccessKind.READ):
             return (name,)

@@ -72,6 +72,7 @@ def paths(system: System, start: str, end: str) -> list[Path]:
     Raises
     ------
     UnknownEndError : there is no process, runnable or label of a name.
+    UnresolvedError : a process executes too many activities to be followed.
     """
     dataflow = Dataflow(system)
     graph = _graph(dataflow)

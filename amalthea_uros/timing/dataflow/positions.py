@@ -6,12 +6,32 @@ from dataclasses import dataclass, field
 from math import ceil
 from typing import TypeAlias
 
-from amalthea_uros.perf.software import Activity, Call, Count, Group, LabelAccess, Process, Runnable, inner_activities
+from amalthea_uros.perf.conditions import Condition
+from amalthea_uros.perf.software import (
+    Activity,
+    Call,
+    Count,
+    Group,
+    LabelAccess,
+    Loop,
+    Process,
+    Runnable,
+    Switch,
+    inner_activities,
+)
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 
+#: Calls that multiply, or nest deeper, are not followed.
+MAX_POSITIONS = 200_000
+MAX_CALL_DEPTH = 100
+
 #: Lists of activities, from the process inwards, each with an index into it.
 Nesting: TypeAlias = tuple[tuple[tuple[Activity, ...], int], ...]
+
+
+class TooComplexError(Exception):
+    """A process executes too many activities to be followed; the text says which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +47,7 @@ class ActivityPosition:
     counters : those that let only some jobs reach it
     is_certain : whether each job reaches it at the same point, apart from the counters
     times : how often a job executes it at most
+    conditions : those that are tested when a job reaches it
     """
 
     process: Process
@@ -38,6 +59,7 @@ class ActivityPosition:
     counters: tuple[Counter, ...]
     is_certain: bool
     times: int
+    conditions: tuple[Condition, ...] = ()
 
     @property
     def before(self) -> tuple[Activity, ...]:
@@ -46,7 +68,12 @@ class ActivityPosition:
 
 
 def positions(process: Process, system: System) -> list[ActivityPosition]:
-    """Everything that the jobs of a process may do, in order; calls are followed by what the runnables do."""
+    """Everything that the jobs of a process may do, in order; calls are followed by what the runnables do.
+
+    Raises
+    ------
+    TooComplexError : its calls multiply to more than `MAX_POSITIONS` activities, or nest deeper than `MAX_CALL_DEPTH`.
+    """
     walk = _Walk(process, system)
     walk.through(process.activities, _Branch())
     return [position for position in walk.found if position is not None]
@@ -78,7 +105,10 @@ class _Walk:
                 times *= _most(activity.times)
             if isinstance(activity, Call) and activity.counter is not None:
                 counters = (*counters, activity.counter)
+            conditions = _conditions(activity, self.system)
             place = len(self.found)
+            if place >= MAX_POSITIONS or len(branch.above) > MAX_CALL_DEPTH:
+                raise TooComplexError(f"the calls of {self.process.name!r} are too many or nested too deep to be followed")
             # Its last number is known after what it contains.
             self.found.append(None)
             if isinstance(activity, Call):
@@ -93,7 +123,16 @@ class _Walk:
                     for each in inner:
                         self.through(each, within)
             self.found[place] = ActivityPosition(
-                self.process, place + 1, len(self.found), activity, branch.runnable, outer, counters, branch.is_certain, times
+                self.process,
+                place + 1,
+                len(self.found),
+                activity,
+                branch.runnable,
+                outer,
+                counters,
+                branch.is_certain,
+                times,
+                conditions,
             )
 
 
@@ -102,6 +141,19 @@ def _of_call(
 ) -> _Branch:
     is_certain = branch.is_certain and call.times is None and called.condition is None
     return _Branch(called.name, outer, counters, is_certain, times, (*branch.above, called.name))
+
+
+def _conditions(activity: Activity, system: System) -> tuple[Condition, ...]:
+    match activity:
+        case Call(runnable=name):
+            found = [system.runnables[name].condition] if name in system.runnables else []
+        case Loop(condition=condition):
+            found = [condition]
+        case Switch(cases=cases):
+            found = [case.condition for case in cases]
+        case _:
+            return ()
+    return tuple(condition for condition in found if condition is not None)
 
 
 def _most(times: Count | float | None) -> int:

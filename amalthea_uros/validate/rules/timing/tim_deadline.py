@@ -5,64 +5,40 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import (
-    LimitType,
-    Process,
-    ProcessRequirement,
-    TaskAllocation,
-    Time,
-    TimeMetric,
-    TimeRequirementLimit,
-)
-from amalthea_uros.metamodel.magnitudes import picoseconds
-from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.load import rates
+from amalthea_uros.timing.releases import response_time_limits
+from amalthea_uros.units import Time
 from amalthea_uros.validate.quantities import time_text
-from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.scheduling import deciding, parameter
+from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.system_context import SystemContext
 
 
-def _check(element: Process, context: Context) -> Iterator[str]:
-    deadline, rate = context.once(_deadlines).get(element), rates(context).get(element)
-    if deadline is not None and rate and deadline * rate > 1:
-        often = time_text(1 / rate)
-        yield f"{element.name!r} has {time_text(deadline)} to respond, and is activated as often as every {often}"
+def _check(context: SystemContext) -> Iterator[Problem]:
+    for name, deadline in _deadlines(context).items():
+        process, rate = context.system.processes.get(name), context.rates.get(name)
+        if process is not None and rate and deadline * rate > 1:
+            message = (
+                f"the deadline of {name!r} is {time_text(deadline)}, longer than the {time_text(1 / rate)} between activations"
+            )
+            yield Problem(process, message)
 
 
-def _deadlines(context: Context) -> dict[Process, int]:
-    """The shortest deadline of each process, in picoseconds."""
-    found: dict[Process, int] = {}
-    for process, time in (*_required(context), *_scheduled(context)):
-        deadline = picoseconds(time)
-        if deadline is not None:
-            found[process] = min(deadline, found.get(process, deadline))
+def _deadlines(context: SystemContext) -> dict[str, Time]:
+    """The shortest deadline of each process, by requirements and by its scheduler."""
+    found = response_time_limits(context.system)
+    for allocation in context.system.mapping.tasks:
+        if allocation.deadline is not None:
+            found[allocation.task] = min(allocation.deadline, found.get(allocation.task, allocation.deadline))
     return found
 
 
-def _required(context: Context) -> Iterator[tuple[Process, Time | None]]:
-    for requirement in context.all(ProcessRequirement):
-        match requirement.limit:
-            case TimeRequirementLimit(limit_type=LimitType.UPPER_LIMIT, metric=TimeMetric.RESPONSE_TIME, limit_value=time):
-                if isinstance(requirement.process, Process):
-                    yield requirement.process, time
-
-
-def _scheduled(context: Context) -> Iterator[tuple[Process, Time | None]]:
-    for allocation in context.all(TaskAllocation):
-        value = parameter(allocation, "deadline", deciding(allocation.scheduler))
-        if allocation.task is not None and isinstance(value, Time):
-            yield allocation.task, value
-
-
-RULE = ModelRule(
+RULE = SystemRule(
     id="TIM-DEADLINE",
-    title="deadline behind the next activation",
+    title="deadline later than the next activation",
     severity=Severity.INFO,
-    target=Process,
     check=_check,
-    rationale="Several jobs of it may be there at a time. Its response times then contain waiting for its own earlier jobs, and "
-    "where it may not be activated again while it runs, activations are lost instead.",
-    remedy="Shorten the deadline if only one job at a time is meant; else see that the activation limit allows for several.",
+    rationale="Several jobs may be pending at the same time. Its response times then include waiting for its own earlier jobs; if the "
+    "activation limit does not allow that, activations are lost.",
+    remedy="Shorten the deadline if only one job may be pending; otherwise raise the activation limit.",
     fails="""
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicStimulus" name="P">

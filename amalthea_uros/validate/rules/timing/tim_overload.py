@@ -7,37 +7,36 @@ from fractions import Fraction
 from math import ceil
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import ProcessingUnit
-from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.load import loads
 from amalthea_uros.validate.quantities import number_text
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined
 
 
-def _check(element: ProcessingUnit, context: Context) -> Iterator[str]:
-    shares = loads(context).get(element, {})
-    total = sum(shares.values())
-    if total > 1:
-        greatest = sorted(shares.items(), key=lambda item: item[1], reverse=True)
-        parts = joined(f"{_percent(share)} by {process.name!r}" for process, share in greatest)
-        yield f"the load of {element.name!r} is {_percent(total)} in the worst case: {parts}"
+def _check(context: SystemContext) -> Iterator[Problem]:
+    for core, shares in context.loads.items():
+        total = sum(shares.values())
+        if total > 1:
+            largest = sorted(shares.items(), key=lambda item: item[1], reverse=True)
+            parts = joined(f"{_percent(share)} by {process!r}" for process, share in largest)
+            yield Problem(
+                context.system.cores[core], f"overload: the worst-case load of {core!r} is {_percent(total)}: {parts}"
+            )
 
 
 def _percent(share: Fraction | int) -> str:
-    # Rounded up, so that more than all of it never looks like all of it.
+    # Rounded up, so that an overload never looks like 100 %.
     return f"{number_text(Fraction(ceil(share * 100_000), 1000))} %"
 
 
-RULE = ModelRule(
+RULE = SystemRule(
     id="TIM-OVERLOAD",
-    title="processing unit with more to do than it can",
+    title="overloaded processing unit",
     severity=Severity.WARNING,
-    target=ProcessingUnit,
     check=_check,
-    rationale="If every job takes its worst case, work piles up without an end: the response times of the least urgent processes have "
-    "no bound, nor have the latencies of what goes through them.",
-    remedy="Shorten execution times, lengthen periods, move processes to other processing units, or take a faster one.",
+    rationale="If every job takes its worst-case execution time, more work is activated than the processing unit can execute: the "
+    "response times of processes of low priority, and the latencies of chains through them, have no upper bound.",
+    remedy="Shorten execution times, lengthen periods, move processes to other processing units, or use a faster one.",
     fails="""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock">

@@ -5,51 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import ProcessingUnit, Scheduler, Task, TaskAllocation
-from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.scheduling import cores, deciding, is_by_priority, policy, priority
-from amalthea_uros.validate.wording import listed
-
-#: Scheduler, processing units and priority.
-_Place = tuple[Scheduler, frozenset[ProcessingUnit], int]
+from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.shared_priorities import sharing_a_priority
+from amalthea_uros.validate.system_context import SystemContext
+from amalthea_uros.validate.wording import joined
 
 
-def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
-    place = _place(element, context)
-    tasks = context.once(_by_place).get(place, []) if place is not None else []
-    others = [task for task in tasks if task is not element.task]
-    if element.task is not None and place is not None and others:
+def _check(context: SystemContext) -> Iterator[Problem]:
+    for allocation, priority, others in sharing_a_priority(context):
         have = "has" if len(others) == 1 else "have"
-        yield f"{element.task.name!r} has the priority {place[-1]}, as {listed(others)} {have}"
+        message = f"{allocation.task!r} has the priority {priority}, as {joined(map(repr, others))} {have}"
+        yield Problem(allocation, message, allocation.task)
 
 
-def _by_place(context: Context) -> dict[_Place, list[Task]]:
-    found: dict[_Place, dict[Task, None]] = {}
-    for allocation in context.all(TaskAllocation):
-        place = _place(allocation, context)
-        if place is not None and allocation.task is not None:
-            found.setdefault(place, {})[allocation.task] = None
-    return {place: list(tasks) for place, tasks in found.items()}
-
-
-def _place(allocation: TaskAllocation, context: Context) -> _Place | None:
-    """Where and with what priority a task is served, if others of the same priority have to wait for it."""
-    scheduler, own = deciding(allocation.scheduler), priority(allocation)
-    # Under round robin it is meant that tasks share a priority.
-    if scheduler is None or own is None or not is_by_priority(scheduler) or policy(scheduler) == "PriorityBasedRoundRobin":
-        return None
-    units = cores(context).get(allocation.task, frozenset()) if allocation.task is not None else frozenset()
-    return scheduler, units, own
-
-
-RULE = ModelRule(
+RULE = SystemRule(
     id="TIM-PRIORITY-SHARED",
     title="tasks of the same priority",
     severity=Severity.INFO,
-    target=TaskAllocation,
     check=_check,
-    rationale="They are served in the order of their arrival; an analysis has to take each for being first.",
+    rationale="They are executed in the order of their activation, so that each may have to wait for the others.",
     remedy="Give each task of a scheduler a priority of its own.",
     fails="""
 <hwModel>

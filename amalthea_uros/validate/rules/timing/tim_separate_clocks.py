@@ -5,48 +5,43 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import AbstractEventChain, Event, EventChain, HwStructure, ProcessingUnit, StructureType
-from amalthea_uros.metamodel.naming import name_of
-from amalthea_uros.validate.chains import events, parts
-from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.graphs import bottom_up
-from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.timing._moments import Moments
-from amalthea_uros.validate.scheduling import cores
-from amalthea_uros.validate.wording import listed
+from amalthea_uros.perf.events import EventSet
+from amalthea_uros.timing.dataflow.chains import events_of
+from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.system_context import SystemContext
+from amalthea_uros.validate.wording import joined
 
 
-def _check(element: EventChain, context: Context) -> Iterator[str]:
-    whole: AbstractEventChain = element
-    ends = (end for part in bottom_up([whole], parts) for end in (part.stimulus, part.response))
-    controllers = (_controller(event, context) for end in ends for event in events(end))
-    found = {controller for controller in controllers if controller is not None}
-    if len(found) > 1:
-        yield f"{element.name!r} goes through {listed(sorted(found, key=name_of))}, which have no common clock"
+def _check(context: SystemContext) -> Iterator[Problem]:
+    for chain in context.system.events.chains:
+        controllers = (_controller(event, context) for event in events_of(chain, context.system))
+        found = sorted({controller for controller in controllers if controller is not None})
+        if len(found) > 1:
+            names = joined(map(repr, found))
+            yield Problem(chain, f"{chain.name!r} goes through {names}, which have no common clock")
 
 
-def _controller(event: Event, context: Context) -> HwStructure | None:
-    """Where an event occurs, if it can only do so in one controller."""
-    processes = {spot.process for spot in context.once(Moments).of(event)}
-    found = {_of(unit) for process in processes for unit in cores(context).get(process, ())}
+def _controller(name: str, context: SystemContext) -> str | None:
+    """The controller in which an event occurs; None if that may be several, or is unknown."""
+    event = context.system.events_by_name.get(name)
+    if event is None or isinstance(event, EventSet):
+        return None
+    try:
+        processes = {occurrence.process.name for occurrence in context.dataflow.events.of(event)}
+    except UnresolvedError:
+        return None
+    found = {context.controllers.get(core) for process in processes for core in context.cores.get(process, ())}
     return found.pop() if len(found) == 1 else None
 
 
-def _of(unit: ProcessingUnit) -> HwStructure | None:
-    structure = unit.enclosing(HwStructure)
-    while structure is not None and structure.structure_type is not StructureType.ECU:
-        structure = structure.enclosing(HwStructure)
-    return structure
-
-
-RULE = ModelRule(
+RULE = SystemRule(
     id="TIM-SEPARATE-CLOCKS",
     title="chain through several controllers",
     severity=Severity.INFO,
-    target=EventChain,
     check=_check,
-    rationale="Their clocks drift, so that offsets between tasks of different controllers mean nothing: the latency is the sum of "
-    "what it is within each of them, at their worst phases.",
+    rationale="The clocks of controllers drift, so that offsets between their tasks are not constant: the latency is bounded by the "
+    "sum of the latencies within each controller, each at its worst phase.",
     remedy="Expect a bound instead of an exact latency; put the cores into one ECU if they share a clock.",
     fails="""
 <eventModel>

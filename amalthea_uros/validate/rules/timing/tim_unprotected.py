@@ -2,106 +2,109 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations_with_replacement
+from typing import NamedTuple
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import (
-    DataCoherencyGroup,
-    DataStabilityGroup,
-    ISRAllocation,
-    Label,
-    LabelAccess,
-    LabelAccessImplementation,
-    OperatingSystem,
-    OsDataConsistencyMode,
-    Process,
-    ProcessingUnit,
-    Scheduler,
-    Semaphore,
-    TaskAllocation,
-)
-from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.timing._locks import Writing, writings
-from amalthea_uros.validate.scheduling import cores
+from amalthea_uros.perf.software import AccessKind, Communication, Label, LabelAccess, Protection, SenderReceiverAccess
+from amalthea_uros.timing.allocation import operating_system_of
+from amalthea_uros.timing.critical_sections import exclusively_held
+from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined
 
+
+class _Writing(NamedTuple):
+    """A write access, and the semaphores held there."""
+
+    position: ActivityPosition
+    held: frozenset[str]
+
+
 #: Where processes may run, and what they hold.
-_Kind = tuple[frozenset[ProcessingUnit], frozenset[Semaphore]]
+_Kind = tuple[frozenset[str], frozenset[str]]
 
 
-def _check(element: Label, context: Context) -> Iterator[str]:
-    if element in context.once(_grouped):
-        return
-    places = cores(context)
-    open_to_all = [w for w in writings(context).get(element, ()) if w.process in places and not _is_protected(w, context)]
-    # Processes on the same cores with the same semaphores are looked at together.
-    kinds: dict[_Kind, set[Process]] = {}
-    for writing in open_to_all:
-        kinds.setdefault((places[writing.process], writing.held), set()).add(writing.process)
-    pairs = combinations_with_replacement(kinds, 2)
-    if any(_may_meet(one, other) and len(kinds[one] | kinds[other]) > 1 for one, other in pairs):
-        writers = dict.fromkeys(writing.process for writing in open_to_all)
-        names = joined(f"{process.name!r} on {_names(places[process])}" for process in writers)
-        yield f"{element.name!r} is written by {names}; no semaphore or stated protection keeps them apart"
+def _check(context: SystemContext) -> Iterator[Problem]:
+    protected = {label for group in context.system.constraints.data_groups for label in group.labels}
+    stated = _by_operating_system(context)
+    for name, writings in _writings(context).items():
+        label = context.system.labels.get(name)
+        if label is None or name in protected:
+            continue
+        exposed = [w for w in writings if not _is_protected(w.position, label, stated.get(w.position.process.name))]
+        if _may_collide(exposed, context):
+            processes = dict.fromkeys(writing.position.process.name for writing in exposed)
+            names = joined(f"{process!r} on {'/'.join(sorted(context.cores[process]))}" for process in processes)
+            yield Problem(label, f"{name!r} is written by {names} without a common semaphore or a stated protection")
 
 
-def _may_meet(one: _Kind, other: _Kind) -> bool:
-    """Whether processes may run on different cores without a common semaphore."""
-    return len(one[0] | other[0]) > 1 and not one[1] & other[1]
-
-
-def _names(units: Iterable[ProcessingUnit]) -> str:
-    return "/".join(sorted(unit.name or "" for unit in units))
-
-
-def _grouped(context: Context) -> set[Label]:
-    """The labels that have to be consistent, which whoever builds the system has to see to."""
-    groups: tuple[DataStabilityGroup | DataCoherencyGroup, ...]
-    groups = (*context.all(DataStabilityGroup), *context.all(DataCoherencyGroup))
-    return {label for group in groups for label in group.labels}
-
-
-#: Protection that model elements do not have to show.
-_PROTECTED = {"automaticProtection", "customProtection"}
-#: The access decides, then the label, then the operating system; these leave it to the next one.
-_LEFT_OPEN = {None, "_undefined_", "inherited"}
-
-
-def _is_protected(writing: Writing, context: Context) -> bool:
-    """Whether a protection is stated; copies at the start and end of a job, or at fixed times, are one, too."""
-    write, by_access, is_copied = writing.write, None, False
-    if isinstance(write, LabelAccess):
-        by_access = write.data_stability
-        is_copied = write.implementation in (LabelAccessImplementation.IMPLICIT, LabelAccessImplementation.TIMED)
-    levels = (by_access, writing.label.data_stability, context.once(_modes).get(writing.process))
-    return is_copied or next((level for level in levels if level not in _LEFT_OPEN), None) in _PROTECTED
-
-
-def _modes(context: Context) -> dict[Process, OsDataConsistencyMode | None]:
-    """What the operating system of each process does for consistency."""
-    places: list[tuple[Process | None, Scheduler | None]] = [
-        (place.task, place.scheduler) for place in context.all(TaskAllocation)
-    ]
-    places += [(place.isr, place.controller) for place in context.all(ISRAllocation)]
-    found = {}
-    for process, scheduler in places:
-        system = scheduler.enclosing(OperatingSystem) if scheduler is not None else None
-        consistency = system.os_data_consistency if system is not None else None
-        if process is not None and consistency is not None:
-            found[process] = consistency.mode
+def _writings(context: SystemContext) -> dict[str, list[_Writing]]:
+    """The writes to each label in the jobs of processes that are allocated to a core."""
+    found: dict[str, list[_Writing]] = {}
+    for process in context.system.processes:
+        if process not in context.cores:
+            continue
+        try:
+            positions = context.dataflow.events.positions(process)
+        except UnresolvedError:
+            continue
+        for position, held in zip(positions, exclusively_held(positions, context.system), strict=True):
+            access = position.activity
+            if isinstance(access, LabelAccess | SenderReceiverAccess) and access.kind is AccessKind.WRITE:
+                found.setdefault(access.label, []).append(_Writing(position, held))
     return found
 
 
-RULE = ModelRule(
+def _may_collide(writings: Sequence[_Writing], context: SystemContext) -> bool:
+    """Whether two processes may write on different cores without a common semaphore."""
+    # Processes on the same cores with the same semaphores are considered together.
+    kinds: dict[_Kind, set[str]] = {}
+    for writing in writings:
+        process = writing.position.process.name
+        kinds.setdefault((context.cores[process], writing.held), set()).add(process)
+    return any(
+        len(one[0] | other[0]) > 1 and not one[1] & other[1] and len(kinds[one] | kinds[other]) > 1
+        for one, other in combinations_with_replacement(kinds, 2)
+    )
+
+
+#: Protection that model elements do not have to show.
+_PROTECTED = (Protection.AUTOMATIC, Protection.CUSTOM)
+
+
+def _is_protected(position: ActivityPosition, label: Label, by_system: Protection | None) -> bool:
+    """Whether a protection is stated; copies at the start and end of a job, or at fixed times, are one, too."""
+    access = position.activity
+    by_access, is_copied = None, False
+    if isinstance(access, LabelAccess):
+        by_access, is_copied = access.protection, access.communication in (Communication.IMPLICIT, Communication.LET)
+    # The access decides, then the label, then the operating system.
+    levels: Iterable[Protection | None] = (by_access, label.protection, by_system)
+    stated = next((level for level in levels if level not in (None, Protection.INHERITED)), None)
+    return is_copied or stated in _PROTECTED
+
+
+def _by_operating_system(context: SystemContext) -> dict[str, Protection | None]:
+    """What the operating system of each process states."""
+    system = context.system
+    of_scheduler = operating_system_of(system)
+    stated = {each.name: each.protection for each in system.os.systems}
+    allocations = [(task.task, task.scheduler) for task in system.mapping.tasks]
+    allocations += [(isr.isr, isr.controller) for isr in system.mapping.isrs]
+    return {process: stated.get(of_scheduler.get(scheduler, "")) for process, scheduler in allocations}
+
+
+RULE = SystemRule(
     id="TIM-UNPROTECTED",
-    title="label that several cores may write at a time",
+    title="label written by several cores without protection",
     severity=Severity.WARNING,
-    target=Label,
     check=_check,
-    rationale="Response times leave out that the writers wait for each other, and chains take each value for one that was written "
-    "whole: with a protection the times grow, without one the data may be mixed.",
+    rationale="Response times do not include waiting of the writers for each other, and chains assume that values are written "
+    "consistently: with a protection response times grow, without one the data may be inconsistent.",
     remedy="Hold a common semaphore around the accesses, let one process write, or state how the label is protected.",
     fails="""
 <swModel>

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.graphs import bottom_up
 from amalthea_uros.metamodel.classes import (
     AsynchronousServerCall,
     IExecutable,
@@ -15,7 +16,6 @@ from amalthea_uros.metamodel.classes import (
 )
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.execution import called
-from amalthea_uros.validate.graphs import bottom_up
 from amalthea_uros.validate.rule import ModelRule
 
 

@@ -1,4 +1,4 @@
-"""The load and the activations that rules compute from a model, against the analysis, which sees the system that it describes."""
+"""The load of cores as rules see it, also of systems of which only a part is known."""
 
 from fractions import Fraction
 
@@ -45,8 +45,7 @@ from amalthea_uros.perf.stimuli import (
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.units import MILLISECOND as MS
-from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.load import loads, rates
+from amalthea_uros.validate.system_context import SystemContext
 
 CORES = {"core 0": ("small", 1_000_000), "core 1": ("big", 3_000_000)}
 #: Ticks for each unit of a need; the second one is the inverse of instructions per cycle.
@@ -55,7 +54,7 @@ FEATURES = {"small": (2.0, 0.5), "big": (1.0, 2.0)}
 
 def total(model):
     """The load of each processing unit that has any, by its name."""
-    return {unit.name: sum(shares.values()) for unit, shares in loads(Context(model)).items()}
+    return {core: sum(shares.values()) for core, shares in SystemContext(extract(model).system).loads.items()}
 
 
 def assert_same_load(model, system):
@@ -347,20 +346,31 @@ def test_a_known_load(tmp_path):
     ("task", "others"),
     [
         (TICK + f'<items xsi:type="am:WhileLoop">{TICK}</items>', ""),
-        (TICK + '<items xsi:type="am:WaitEvent"/>', ""),
-        (TICK + '<items xsi:type="am:EnforcedMigration"/>', ""),
-        (TICK + '<items xsi:type="am:Ticks"/>', ""),
-        (TICK + UNBOUNDED, ""),
         (TICK + NEED, ""),
-        (TICK + '<items xsi:type="am:RunnableCall"/>', ""),
-        (TICK + call("nowhere"), ""),
         (call("A"), calls("A", "B") + calls("B", "A")),
         (call("A"), calls("A", "A")),
     ],
-    ids=["loop", "wait", "migration", "no ticks", "no bound", "need", "no runnable", "unresolved", "circle", "itself"],
+    ids=["loop", "need", "circle", "itself"],
 )
 def test_a_process_of_which_the_demand_is_not_known_is_left_out(task, others, tmp_path):
     assert total(model(tmp_path, task, others)) == {}
+
+
+@pytest.mark.parametrize(
+    "incomplete",
+    [
+        '<items xsi:type="am:WaitEvent"/>',
+        '<items xsi:type="am:EnforcedMigration"/>',
+        '<items xsi:type="am:Ticks"/>',
+        UNBOUNDED,
+        '<items xsi:type="am:RunnableCall"/>',
+        call("nowhere"),
+    ],
+    ids=["wait", "migration", "no ticks", "no bound", "no runnable", "unresolved"],
+)
+def test_incomplete_activities_add_nothing(incomplete, tmp_path):
+    """They have no meaning, so that the load is at least that of the others."""
+    assert total(model(tmp_path, TICK + incomplete)) == {"core": Fraction(1, 10)}
 
 
 @pytest.mark.parametrize(
@@ -382,7 +392,7 @@ def test_a_process_of_which_the_activations_or_the_clock_are_not_known_is_left_o
 def test_a_task_that_triggers_itself_is_left_out(tmp_path):
     trigger = '<items xsi:type="am:InterProcessTrigger" stimulus="I?type=InterProcessStimulus"/>'
     found = model(tmp_path, TICK + trigger, "", "P?type=PeriodicStimulus I?type=InterProcessStimulus")
-    assert not rates(Context(found))
+    assert not SystemContext(extract(found).system).rates
 
 
 def test_calls_may_be_nested_deeper_than_recursion_goes(tmp_path):

@@ -1,0 +1,48 @@
+"""The load of cores in the worst case, as far as it is known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation import Activations, UnknownActivationError
+from amalthea_uros.timing.demand import DemandModel
+from amalthea_uros.timing.notes import UnknownDemandError
+
+
+def activation_rates(system: System, activations: Activations) -> Mapping[str, Fraction]:
+    """Maximum number of activations per picosecond of each process, in the long run; only of processes that have a bound."""
+    found: dict[str, Fraction] = {}
+    for process in system.processes.values():
+        try:
+            found[process.name] = activations.of(process).rate
+        except UnknownActivationError:
+            continue
+    return found
+
+
+def loads(
+    cores: Mapping[str, frozenset[str]], rates: Mapping[str, Fraction], demand_model: DemandModel
+) -> Mapping[str, Mapping[str, Fraction]]:
+    """The share of its core that each process demands, where it has only one; 1 is all of it.
+
+    Processes whose demand or rate of activations is unknown are left out, so that the load is at least the sum.
+
+    Parameters
+    ----------
+    cores : where each process may run
+    rates : of activations
+    """
+    found: dict[str, dict[str, Fraction]] = {}
+    for name, allowed in cores.items():
+        process = demand_model.system.processes.get(name)
+        if process is None or name not in rates or len(allowed) > 1:
+            continue
+        (core,) = allowed
+        try:
+            demand = demand_model.of_process(process, core)
+        except UnknownDemandError:
+            continue
+        found.setdefault(core, {})[name] = demand.mean_worst * rates[name] / demand_model.time_base(core)
+    return found

@@ -1,0 +1,49 @@
+"""What rules may ask of a system, found once for all of them; the answers come from `timing`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation import Activations
+from amalthea_uros.timing.allocation import allocated_cores
+from amalthea_uros.timing.clocks import controller_of_core
+from amalthea_uros.timing.dataflow.links import Dataflow
+from amalthea_uros.timing.demand import DemandModel
+from amalthea_uros.timing.load import activation_rates, loads
+from amalthea_uros.timing.notes import Notes
+
+
+@dataclass
+class SystemContext:
+    """A system with what is known of it."""
+
+    system: System
+
+    @cached_property
+    def dataflow(self) -> Dataflow:
+        """Where jobs do what, and what links them."""
+        return Dataflow(self.system)
+
+    @cached_property
+    def cores(self) -> Mapping[str, frozenset[str]]:
+        """The cores on which each process may run."""
+        return allocated_cores(self.system)
+
+    @cached_property
+    def controllers(self) -> Mapping[str, str]:
+        """The controller of each core."""
+        return controller_of_core(self.system)
+
+    @cached_property
+    def rates(self) -> Mapping[str, Fraction]:
+        """Maximum number of activations per picosecond of each process."""
+        return activation_rates(self.system, Activations(self.system, self.dataflow))
+
+    @cached_property
+    def loads(self) -> Mapping[str, Mapping[str, Fraction]]:
+        """The share of each core that its processes demand in the worst case."""
+        return loads(self.cores, self.rates, DemandModel(self.system, Notes()))
