@@ -17,7 +17,6 @@ import yaml
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 
-MAX_SIZE = 5_000_000
 MAX_DEPTH = 40
 MAX_NODES = 400_000
 #: More mistakes are not told in one run; a person mends the first ones first.
@@ -91,11 +90,6 @@ def read_nodes(path: Path, text: str) -> tuple[Node, Source, list[Finding]]:
     ReadError : the text is no YAML document, or goes beyond a limit.
     """
     source = Source(path, text.split("\n"))
-    if len(text) > MAX_SIZE:
-        message = f"the file has {len(text) / 1e6:.1f} million characters, more than {MAX_SIZE / 1e6:g} million are refused"
-        raise ReadError(
-            [Finding("YML002", Severity.ERROR, message, Location(path), "Split the application, or generate less.")]
-        )
     reader = _Reader(source)
     try:
         node = reader.document(text)

@@ -11,12 +11,16 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from amalthea_uros._internal.files import FileError, FileTooLargeError, read_text
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.nodes import MAX_FINDINGS, Mapping, Node, Place, Scalar, Sequence, Source, plain, read_nodes
 from amalthea_uros.spec.section import Section, settle
 from amalthea_uros.units import shortened
+
+#: In bytes.
+MAX_SIZE = 5 * 2**20
 
 S = TypeVar("S", bound=Section)
 
@@ -49,14 +53,12 @@ def read_section(path: Path, kind: type[S]) -> S:
 
 def _text(path: Path) -> str:
     try:
-        return path.read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        message = f"the file is not UTF-8, see byte {error.start}"
-        raise ReadError([Finding("YML001", Severity.ERROR, message, Location(path), "Save it as UTF-8.")]) from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        message = f"the file cannot be read: {reason.lower()}"
-        raise ReadError([Finding("YML001", Severity.ERROR, message, Location(path))]) from None
+        return read_text(path, MAX_SIZE)
+    except FileTooLargeError as error:
+        advice = "Split the application, or generate less."
+        raise ReadError([Finding("YML002", Severity.ERROR, error.reason, Location(path), advice)]) from None
+    except FileError as error:
+        raise ReadError([Finding("YML001", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
 
 
 def _in_order(findings: list[Finding]) -> list[Finding]:

@@ -149,7 +149,7 @@ def test_all_mistakes_in_one_run(told):
         (b"\xff\xfe\x00", None, "YML001", "not UTF-8"),
         ("a: " + "[" * 100_000, 1, "YML002", "nested more than 40 deep"),
         ("? [a]\n: b\n", 1, "YML001", "a key has to be a plain text"),
-        ("a: 1\n" * 2_100_000, None, "YML002", "more than 5 million"),
+        ("a: 1\n" * 2_100_000, None, "YML002", "larger than 5 MiB"),
         ("a:\n" + "- b\n" * 500_000, 400_002, "YML002", "more than 400,000 values"),
     ],
     ids=lambda value: value[:20] if isinstance(value, str) else "",
@@ -177,9 +177,9 @@ def test_aliases_that_do_not(tmp_path):
 
 
 def test_a_file_that_is_not_there(tmp_path):
-    with pytest.raises(ReadError, match="no such file"):
+    with pytest.raises(ReadError, match="file not found"):
         read_description(tmp_path / "none.yaml")
-    with pytest.raises(ReadError, match="is a directory"):
+    with pytest.raises(ReadError, match="found a directory"):
         read_description(tmp_path)
 
 

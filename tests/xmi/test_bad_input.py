@@ -89,11 +89,11 @@ def refused(*paths, **options):
 
 
 def test_a_missing_file(tmp_path):
-    assert refused(tmp_path / "none.amxmi") == ["there is no such file"]
+    assert refused(tmp_path / "none.amxmi") == ["file not found"]
 
 
 def test_a_folder_without_models(tmp_path):
-    assert refused(tmp_path) == ["there is no .amxmi file in this folder"]
+    assert refused(tmp_path) == ["the directory contains no .amxmi file"]
 
 
 def test_a_file_without_permission(tmp_path, monkeypatch):
@@ -117,7 +117,7 @@ def test_a_zip_bomb_is_refused_before_it_is_unpacked(tmp_path):
     path = tmp_path / "bomb.amxmi"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("ResourceContents", b" " * 20_000_000)
-    assert refused(path, max_size=10 * 2**20) == ["the content is larger than 10 MiB"]
+    assert refused(path, max_size=10 * 2**20) == ["the unpacked content is larger than 10 MiB"]
 
 
 def test_a_zip_of_several_files(tmp_path):
@@ -125,13 +125,13 @@ def test_a_zip_of_several_files(tmp_path):
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("one", GOOD)
         archive.writestr("two", GOOD)
-    assert refused(path) == ["the archive holds 2 files instead of one"]
+    assert refused(path) == ["the archive contains 2 files, expected one"]
 
 
 def test_a_file_that_is_too_large(tmp_path):
     path = tmp_path / "large.amxmi"
     path.write_bytes(GOOD)
-    assert refused(path, max_size=1000) == ["the content is larger than 0 MiB"]
+    assert refused(path, max_size=1000) == ["the file is larger than 1,000 bytes"]
 
 
 @pytest.mark.parametrize("end", range(1, len(GOOD) - 1, 7))

@@ -163,7 +163,7 @@ def test_the_command_exits_with_2(tmp_path):
 
 
 def test_a_missing_file_is_refused(tmp_path):
-    with pytest.raises(ReadError, match="no such file"):
+    with pytest.raises(ReadError, match="file not found"):
         load(tmp_path / "missing.amxmi")
 
 
