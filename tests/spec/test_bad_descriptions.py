@@ -66,7 +66,7 @@ def test_the_good_one_is_good(tmp_path):
         (
             "execution_time: 4 us",
             "execution_time: 4",
-            (10, 55, "YML012", "execution_time: '4' has no unit; a time looks like '10 ms'", ""),
+            (10, 55, "YML012", "execution_time: '4' has no unit; write a time such as '10 ms'", ""),
         ),
         ("execution_time: 4 us", "execution_time: 0 us", (10, 55, "YML012", "execution_time: must be greater than zero", "")),
         ("execution_time: 4 us", "execution_time: -4 us", (10, 55, "YML012", "execution_time: must be greater than zero", "")),

@@ -15,9 +15,9 @@ from amalthea_uros.metamodel.classes import (
     TimeRequirementLimit,
 )
 from amalthea_uros.metamodel.magnitudes import picoseconds
+from amalthea_uros.units import time_text
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.load import rates
-from amalthea_uros.validate.quantities import time_text
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.scheduling import deciding, parameter
 

@@ -8,9 +8,9 @@ from math import ceil
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ProcessingUnit
+from amalthea_uros.units import number_text
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.load import loads
-from amalthea_uros.validate.quantities import number_text
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.wording import joined
 
