@@ -62,7 +62,7 @@ class _Build:
 
     def objects(self, table: Table, items: Sequence[Named]) -> Any:
         """Objects that are filled when all exist."""
-        elements = table.shells(items, self.context)
+        elements = table.create_all(items, self.context)
         self._waiting.append((table, elements, items))
         return elements
 

@@ -35,7 +35,7 @@ PLAIN = Codec(lambda value, _: value, lambda value, _context, _element: value)
 
 def enumeration(pairs: Mapping[StrEnum, StrEnum]) -> Codec:
     """Literals by a table; literals of AMALTHEA that the table does not have are not given."""
-    back = {theirs: ours for ours, theirs in pairs.items()}
+    back = {literal: value for value, literal in pairs.items()}
 
     def build(value: StrEnum, context: Building) -> StrEnum | None:
         if value not in pairs:
@@ -45,14 +45,14 @@ def enumeration(pairs: Mapping[StrEnum, StrEnum]) -> Codec:
     return Codec(build, lambda value, _context, _element: back.get(value))
 
 
-def same_names(ours: type[StrEnum], theirs: type[StrEnum], **others: str) -> Codec:
+def same_names(model_enum: type[StrEnum], amalthea_enum: type[StrEnum], **others: str) -> Codec:
     """Literals whose names are the same on both sides, except for some.
 
     Parameters
     ----------
-    others : our name -> their name
+    others : name of the literal in `perf` -> its name in AMALTHEA
     """
-    return enumeration({literal: theirs[others.get(literal.name, literal.name)] for literal in ours})
+    return enumeration({literal: amalthea_enum[others.get(literal.name, literal.name)] for literal in model_enum})
 
 
 # Quantities. Units without meaning, and values that are not given, give None.

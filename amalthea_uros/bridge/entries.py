@@ -34,19 +34,19 @@ class Entry:
     and left out with a note.
     """
 
-    def __init__(self, ours: type[Any], theirs: type[Element], *columns: Field) -> None:
-        self.ours = ours
-        self.theirs = theirs
+    def __init__(self, model_class: type[Any], amalthea_class: type[Element], *columns: Field) -> None:
+        self.model_class = model_class
+        self.amalthea_class = amalthea_class
         self.columns = columns
-        self.is_named = issubclass(ours, Named)
-        declared = {field.name: field for field in fields(ours)}
+        self.is_named = issubclass(model_class, Named)
+        declared = {field.name: field for field in fields(model_class)}
         self._defaults = {column.name: _default(declared[column.name]) for column in columns}
-        features = features_of(theirs)
+        features = features_of(amalthea_class)
         self._xml_names = {column.feature: features[column.feature].xml_name for column in columns}
 
-    def shell(self, item: Any, context: Building) -> Element:
+    def create(self, item: Any, context: Building) -> Element:
         """The object of AMALTHEA with nothing but its name, which references will find."""
-        element = self.theirs(name=item.name)
+        element = self.amalthea_class(name=item.name)
         context.register(item, element)
         return element
 
@@ -54,7 +54,7 @@ class Entry:
         """Set all features."""
         if self.is_named:
             context.at(item)
-        known = context.known_features(self.theirs)
+        known = context.known_features(self.amalthea_class)
         for column in self.columns:
             value = getattr(item, column.name)
             if value is None or value == () or value == "":
@@ -66,7 +66,7 @@ class Entry:
 
     def build(self, item: Any, context: Building) -> Any:
         """The object of AMALTHEA for one that nothing refers to."""
-        return self.fill(self.theirs(), item, context)
+        return self.fill(self.amalthea_class(), item, context)
 
     def extract(self, element: Element, context: Extracting) -> Any:
         """The object of perf; None, with a note, if something is missing without which it has no meaning."""
@@ -86,7 +86,7 @@ class Entry:
         if self.is_named:
             values["name"] = context.names[element]
             values["origin"] = context.location(element)
-        return self.ours(**values)
+        return self.model_class(**values)
 
 
 def _default(field: Any) -> Any:
@@ -97,25 +97,25 @@ class Table:
     """Entries for the alternatives of one type."""
 
     def __init__(self, *entries: Entry) -> None:
-        self.by_ours: Mapping[type[Any], Entry] = {entry.ours: entry for entry in entries}
-        self.by_theirs: Mapping[type[Element], Entry] = {entry.theirs: entry for entry in entries}
+        self.by_model_class: Mapping[type[Any], Entry] = {entry.model_class: entry for entry in entries}
+        self.by_amalthea_class: Mapping[type[Element], Entry] = {entry.amalthea_class: entry for entry in entries}
 
-    def shells(self, items: Iterable[Any], context: Building) -> list[Element]:
+    def create_all(self, items: Iterable[Any], context: Building) -> list[Element]:
         """Objects that are filled later, by `fill`."""
-        return [self.by_ours[type(item)].shell(item, context) for item in items]
+        return [self.by_model_class[type(item)].create(item, context) for item in items]
 
     def fill(self, elements: Iterable[Element], items: Iterable[Any], context: Building) -> None:
-        """Set the features of objects that were made by `shells`."""
+        """Set the features of objects that were made by `create_all`."""
         for element, item in zip(elements, items, strict=True):
-            self.by_ours[type(item)].fill(element, item, context)
+            self.by_model_class[type(item)].fill(element, item, context)
 
     def build(self, item: Any, context: Building) -> Any:
         """The object of AMALTHEA."""
-        return self.by_ours[type(item)].build(item, context)
+        return self.by_model_class[type(item)].build(item, context)
 
     def extract(self, element: Element, context: Extracting) -> Any:
         """The object of perf; None if there is none for it."""
-        entry = self.by_theirs.get(type(element))
+        entry = self.by_amalthea_class.get(type(element))
         if entry is None:
             context.leave_out(element)
             context.drop(element)

@@ -16,7 +16,7 @@ from amalthea_uros.metamodel.features import Feature, features_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable
 
-    from amalthea_uros.difference.absence import Absences
+    from amalthea_uros.difference.unset import UnsetAttributes
 
 #: Classes of which the parts follow each other, and the feature that holds them; all other parts stand side by side.
 _SEQUENCES = (
@@ -54,7 +54,7 @@ class Fingerprints:
 
     Parameters
     ----------
-    absences : of the models to be compared
+    unset_attributes : of the models to be compared
     token : what stands for the target of a reference
     numbers : the fingerprints given out, shared by the models to be compared
     stops : whether a part counts by its token only, or not at all (None), instead of by its content
@@ -62,12 +62,12 @@ class Fingerprints:
 
     def __init__(
         self,
-        absences: Absences,
+        unset_attributes: UnsetAttributes,
         token: Callable[[Element], Hashable],
         numbers: dict[Hashable, int],
         stops: Callable[[Element], bool] | None = None,
     ) -> None:
-        self._absences = absences
+        self._unset_attributes = unset_attributes
         self._token = token
         self._numbers = numbers
         self._stops = stops
@@ -94,26 +94,26 @@ class Fingerprints:
 
     def _facts(self, element: Element) -> list[tuple[str, Hashable]]:
         """What is set and does not say the same as absence, by feature, in an order that depends on the names only."""
-        absences = self._absences.of(element)
+        unset_attributes = self._unset_attributes.of(element)
         values = element.__dict__
         facts: list[tuple[str, Any]] = []
         for name, value in values.items():
-            absence = absences.get(name)
-            if absence is not None:
-                value = absence.meaning(value)
-                if value != absence.common:
+            unset = unset_attributes.get(name)
+            if unset is not None:
+                value = unset.meaning(value)
+                if value != unset.common:
                     facts.append((name, value))
             elif value:
                 content = self._content(element, name, value)
                 if content:
                     facts.append((name, content))
-        if len(self._absences.versions) > 1:
-            facts += self._varying(values, absences)
+        if len(self._unset_attributes.versions) > 1:
+            facts += self._varying(values, unset_attributes)
         facts.sort(key=_name)
         return facts
 
-    def _varying(self, values: dict[str, Any], absences: dict[str, Any]) -> list[tuple[str, Any]]:
-        return [(n, a.stands_for) for n, a in absences.items() if n not in values and a.common != a.stands_for]
+    def _varying(self, values: dict[str, Any], unset_attributes: dict[str, Any]) -> list[tuple[str, Any]]:
+        return [(n, a.stands_for) for n, a in unset_attributes.items() if n not in values and a.common != a.stands_for]
 
     def _content(self, element: Element, name: str, value: Any) -> Hashable:
         if type(value) is ContainmentList:

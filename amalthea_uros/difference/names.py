@@ -56,8 +56,8 @@ class Names:
         token = self.own_token(element)
         return self.translation.get(token, token)
 
-    def home(self, element: Element) -> Token:
-        """The token of the nearest container with an identity, empty if there is none: files and sub-models are no homes."""
+    def owner(self, element: Element) -> Token:
+        """The token of the nearest container with an identity, empty if there is none: files and sub-models are no owners."""
         holder = element.container
         while holder is not None and not has_identity(holder):
             holder = holder.container
@@ -67,7 +67,12 @@ class Names:
         call = argument.container
         called = call.runnable if isinstance(call, RunnableCall) else None
         involved = (called, argument.parameter)
-        return ("CallArgument", argument.name, self.home(argument), *(self.token(e) if e is not None else () for e in involved))
+        return (
+            "CallArgument",
+            argument.name,
+            self.owner(argument),
+            *(self.token(e) if e is not None else () for e in involved),
+        )
 
 
 def _class_name(element: Element) -> str:

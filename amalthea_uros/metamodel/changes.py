@@ -14,23 +14,23 @@ class Changes:
 
     Attributes
     ----------
-    touched : changed objects and everything that they are part of
+    modified : changed objects and everything that they are part of
     renamed : objects whose unique names may have changed, or which came or went
     """
 
     def __init__(self) -> None:
-        self.touched: set[Element] = set()
+        self.modified: set[Element] = set()
         self.renamed: set[Element] = set()
 
     def note(self, path: list[Element], renames: bool) -> None:
         """Note the change of an object, given with its containers."""
-        self.touched.update(path)
+        self.modified.update(path)
         if renames:
             self.renamed.add(path[0])
 
 
-def spread_renames(documents: Iterable[tuple[Element, Changes]]) -> None:
-    """Mark as touched, in all documents (root and changes) of a model, what holds the name of a renamed object.
+def propagate_renames(documents: Iterable[tuple[Element, Changes]]) -> None:
+    """Mark as modified, in all documents (root and changes) of a model, what holds the name of a renamed object.
 
     That are its parts, whose own names may be made from it, and the holders of references to it and to them.
     """
@@ -42,15 +42,15 @@ def spread_renames(documents: Iterable[tuple[Element, Changes]]) -> None:
         for root, changes in documents:
             for holder in root.walk():
                 if holder in affected and holder.is_referable:
-                    changes.touched.update(path_of(holder))
+                    changes.modified.update(path_of(holder))
                 for name, value in references_of(holder):
-                    if not _meets(value, affected):
+                    if not _refers_to_any(value, affected):
                         continue
-                    changes.touched.update(path_of(holder))
+                    changes.modified.update(path_of(holder))
                     # The names of namespace members and of call arguments are made from those of their references.
                     if name == "namespace" or isinstance(holder, RunnableCall | CallArgument):
                         renamed.add(holder)
 
 
-def _meets(value: Element | list[Element], affected: set[Element]) -> bool:
+def _refers_to_any(value: Element | list[Element], affected: set[Element]) -> bool:
     return not affected.isdisjoint(value) if isinstance(value, list) else value in affected

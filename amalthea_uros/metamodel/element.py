@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, ClassVar, Self, SupportsIndex, TypeVar, dataclass_transform
 
-from amalthea_uros.metamodel.containment import ReferenceList, adopt, release, touch
+from amalthea_uros.metamodel.containment import ReferenceList, attach, detach, mark_modified
 from amalthea_uros.metamodel.features import containments_of, features_of
 
 if TYPE_CHECKING:
@@ -102,11 +102,11 @@ class Element:
                 if old is value:
                     return
                 if old is not None and feature.contains(old):
-                    release(old)
+                    detach(old)
                 if value is not None and feature.contains(value):
-                    adopt(self, value)
+                    attach(self, value)
             _set(self, name, value)
-            touch(self, renames=name in _NAMING)
+            mark_modified(self, renames=name in _NAMING)
 
         def __delattr__(self, name: str) -> None:
             feature = features_of(type(self)).get(name)
@@ -176,7 +176,7 @@ class Element:
         """What stands at the object in its file and is unknown to the metamodel, None if nothing. It may be changed."""
         found: Extras | None = self.__dict__.get("_extras")
         if found is not None:
-            touch(self)
+            mark_modified(self)
         return found
 
     @property

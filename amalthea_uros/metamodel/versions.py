@@ -14,7 +14,7 @@ from amalthea_uros.metamodel.factfile import Block, ClassFact, EnumFact, Feature
 NAMESPACE_PREFIX = "http://app4mc.eclipse.org/amalthea/"
 
 #: The first version whose models are held as they are; older ones have another structure.
-OLDEST_HELD = "0.9.7"
+OLDEST_SUPPORTED = "0.9.7"
 
 #: Value of an unset attribute without a default literal, by Ecore type: that of the Java primitive, or nothing at all.
 _JAVA_DEFAULTS = {
@@ -48,9 +48,9 @@ def known_versions() -> tuple[str, ...]:
     return tuple((files(__package__) / "facts" / "versions.txt").read_text(encoding="utf-8").split())
 
 
-def held_versions() -> tuple[str, ...]:
+def supported_versions() -> tuple[str, ...]:
     """The versions that the typed classes cover, oldest first."""
-    return tuple(v for v in known_versions() if version_key(v) >= version_key(OLDEST_HELD))
+    return tuple(v for v in known_versions() if version_key(v) >= version_key(OLDEST_SUPPORTED))
 
 
 def newest_version() -> str:

@@ -7,10 +7,10 @@ from typing import Literal
 from pydantic import Field
 
 from amalthea_uros.spec.application import Application
-from amalthea_uros.spec.demands import Chain, Requirement
 from amalthea_uros.spec.hardware import Hardware
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.processes import Isr, Label, Task
+from amalthea_uros.spec.requirements import Chain, Requirement
 from amalthea_uros.spec.section import Section
 from amalthea_uros.spec.values import Name
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from amalthea_uros.metamodel.versions import (
     NAMESPACE_PREFIX,
-    OLDEST_HELD,
+    OLDEST_SUPPORTED,
     known_versions,
     nearest_version,
     newest_version,
@@ -40,8 +40,8 @@ class Header(NamedTuple):
     own_attributes: frozenset[str]
 
     @property
-    def remark(self) -> str:
-        """What is to be said about the version, "" if it is a known one."""
+    def version_note(self) -> str:
+        """What a finding says about an unknown version, "" for a known one."""
         if self.version in known_versions():
             return ""
         newer = version_key(self.version) > version_key(newest_version())
@@ -83,8 +83,8 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
     version = namespace.removeprefix(NAMESPACE_PREFIX)
     if not _VERSION(version):
         raise NotAModelError("XMI005", f"namespace {namespace} names no AMALTHEA version")
-    if version_key(version) < version_key(OLDEST_HELD):
-        raise NotAModelError("XMI006", f"the model is of AMALTHEA {version}, older than {OLDEST_HELD}", _MIGRATE)
+    if version_key(version) < version_key(OLDEST_SUPPORTED):
+        raise NotAModelError("XMI006", f"the model is of AMALTHEA {version}, older than {OLDEST_SUPPORTED}", _MIGRATE)
     prefixes = {uri: key.partition(":")[2] for key, uri in attributes.items() if key.startswith("xmlns:")}
     for usual, uri in (("xmi", XMI_NAMESPACE), ("xsi", XSI_NAMESPACE)):
         given = attributes.get(f"xmlns:{usual}", uri)
@@ -101,4 +101,4 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
     )
 
 
-_MIGRATE = f"Such models have another structure; migrate it with Eclipse APP4MC to {OLDEST_HELD} or newer."
+_MIGRATE = f"Such models have another structure; migrate it with Eclipse APP4MC to {OLDEST_SUPPORTED} or newer."

@@ -20,9 +20,9 @@ from amalthea_uros.metamodel.element import Element, extras_of
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.xmi.files import FileText
+from amalthea_uros.xmi.finding_collector import CollectedFinding, FindingCollector, location
 from amalthea_uros.xmi.header import XSI_NAMESPACE, Header, NotAModelError, read_header
 from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
-from amalthea_uros.xmi.remarks import Remark, Remarks, location
 
 #: Real models nest about 15 deep; far beyond, recursion over a model would fail with less clear words.
 MAX_DEPTH = 200
@@ -106,14 +106,14 @@ class _Reader:
         self.referables: list[Element] = []
         self.xmi_ids: list[tuple[Element, str]] = []
         #: Comments and the like that wait for the part in front of which they stand.
-        self.loose: dict[Element, list[str]] = {}
+        self.pending_extras: dict[Element, list[str]] = {}
         self.prolog: list[str] = []
         self.epilog: list[str] = []
         self.skipped_depth = 0
         self.skipped_start = 0
         self.start_part: StartHandler | None = None
         self.end_part: EndHandler = self.end_handler()
-        self.remarks = Remarks()
+        self.collector = FindingCollector()
 
     def read(self) -> ReadResult:
         parser = self.parser
@@ -148,7 +148,7 @@ class _Reader:
             content.text, header.version, content.encoding, content.zip_entry, prefixes, self.elements, self.starts, self.ends
         )
         document.prolog, document.epilog = self.prolog, self.epilog
-        findings = [remark.finding(self.path, source) for remark in self.remarks]
+        findings = [collected.finding(self.path, source) for collected in self.collector]
         return ReadResult(document, self.references, self.referables, self.xmi_ids, findings)
 
     @cached_property
@@ -166,9 +166,9 @@ class _Reader:
         if "xsi:type" in self.content.text and "xmlns:xsi" not in self.content.text:
             message = "not well-formed XML: the prefix 'xsi' is not declared"
             raise self.refuse("XMI002", message, f'Add xmlns:xsi="{XSI_NAMESPACE}" to the root element.')
-        if header.remark:
+        if header.version_note:
             added = "What that version added is kept and written back, but not understood."
-            self.remark("XMI007", Severity.WARNING, header.remark, added)
+            self.report("XMI007", Severity.WARNING, header.version_note, added)
         self.parser.StartElementHandler = self.start_part = self.start_handler(header)
         plan = plans(header.facts_version).of("Amalthea")
         assert plan is not None
@@ -188,7 +188,7 @@ class _Reader:
         foreign_prefix = None if header.type_prefix == TYPE_PREFIX else header.type_prefix
         elements, add_element, add_start, add_end = self.elements, self.elements.append, self.starts.append, self.ends.append
         add_referable, add_id, add_reference = self.referables.append, self.xmi_ids.append, self.references.append
-        loose = self.loose
+        pending_extras = self.pending_extras
 
         def start(name: str, attributes: dict[str, str]) -> None:
             parent, parent_plan, _, held = stack[-1]
@@ -215,11 +215,11 @@ class _Reader:
                     parts._owner = parent
                     _set(parent, feature_name, parts)
                 elif feature.only_one:
-                    self.start_second(feature)
+                    self.start_duplicate(feature)
                     return
                 _append(parts, element)
             elif feature_name in held:
-                self.start_second(feature)
+                self.start_duplicate(feature)
                 return
             else:
                 held[feature_name] = True
@@ -252,9 +252,9 @@ class _Reader:
                     try:
                         _set(element, attribute.name, attribute.parse(value))
                     except ValueError as error:
-                        self.no_value(element, key, value, error)
-            if loose:
-                self.settle_loose(parent, element)
+                        self.invalid_value(element, key, value, error)
+            if pending_extras:
+                self.attach_extras(parent, element)
             if len(stack) > MAX_DEPTH:
                 raise self.too_deep()
 
@@ -262,14 +262,14 @@ class _Reader:
 
     def end_handler(self) -> EndHandler:
         """The handler of end tags."""
-        parser, stack, ends, loose = self.parser, self.stack, self.ends, self.loose
+        parser, stack, ends, pending_extras = self.parser, self.stack, self.ends, self.pending_extras
 
         def end(_name: str) -> None:
             element, _, place, _ = stack.pop()
             if place >= 0:
                 ends[place] = parser.CurrentByteIndex
-                if loose:
-                    self.settle_loose(element, None)
+                if pending_extras:
+                    self.attach_extras(element, None)
 
         return end
 
@@ -286,7 +286,7 @@ class _Reader:
             texts = held[feature.name] = []
             self.references.append(PendingReference(holder, feature, texts, True))
         elif texts is True or not feature.many:
-            self.start_second(feature)
+            self.start_duplicate(feature)
             return
         texts.append(text)
         self.stack.append((None, None, -1, {}))
@@ -297,7 +297,9 @@ class _Reader:
         holder, plan, *_ = self.stack[-1]
         where = type(holder).__name__ if plan is not None else "a reference"
         message = f"AMALTHEA {self.version} knows no <{name}> in {where}"
-        self.remarks.add(Remark("XMI010", Severity.WARNING, message, _KEPT, self.offset), name, plan.children if plan else ())
+        self.collector.add(
+            CollectedFinding("XMI010", Severity.WARNING, message, _KEPT, self.offset), name, plan.children if plan else ()
+        )
         self.skip()
 
     def start_misplaced(self, feature: FeaturePlan, type_name: str | None) -> None:
@@ -309,15 +311,15 @@ class _Reader:
             given = type_name.removeprefix(TYPE_PREFIX)
             message = f"<{feature.xml_name}> in {where} must be a {target} of AMALTHEA {self.version}, not a {given}"
             hint = ""
-        self.remark("XMI012", Severity.ERROR, message, hint + _KEPT)
+        self.report("XMI012", Severity.ERROR, message, hint + _KEPT)
         self.skip()
 
-    def start_second(self, feature: FeaturePlan) -> None:
+    def start_duplicate(self, feature: FeaturePlan) -> None:
         where = type(self.stack[-1][0]).__name__
         message = f"{where} takes only one <{feature.xml_name}>, this is a second one"
         if feature.is_reference and feature.many:
             message = f"{feature.xml_name!r} of {where} stands as an attribute and as an element"
-        self.remark("XMI014", Severity.ERROR, message, "The first one counts; the second is kept and written back.")
+        self.report("XMI014", Severity.ERROR, message, "The first one counts; the second is kept and written back.")
         self.skip()
 
     def skip(self) -> None:
@@ -347,7 +349,7 @@ class _Reader:
         if data.isspace() or self.skipped_depth:
             return
         message = f"text {data.strip()[:30]!r} stands between the elements, where a model has none"
-        self.remark("XMI015", Severity.WARNING, message, "It is kept and written back; remove it.")
+        self.report("XMI015", Severity.WARNING, message, "It is kept and written back; remove it.")
         self.keep_extra(data.strip().replace("&", "&amp;").replace("<", "&lt;"))
 
     def comment(self, data: str) -> None:
@@ -362,13 +364,13 @@ class _Reader:
             return
         holder = next((element for element, *_ in reversed(self.stack) if element is not None), None)
         if holder is not None:
-            self.loose.setdefault(holder, []).append(raw)
+            self.pending_extras.setdefault(holder, []).append(raw)
         else:
             (self.epilog if self.elements else self.prolog).append(raw)
 
-    def settle_loose(self, holder: Element, anchor: Element | None) -> None:
+    def attach_extras(self, holder: Element, anchor: Element | None) -> None:
         """Tie what was kept inside `holder` to the part in front of which it stands."""
-        for raw in self.loose.pop(holder, ()):
+        for raw in self.pending_extras.pop(holder, ()):
             extras_of(holder).content.append((anchor, raw))
 
     def unknown_attribute(self, element: Element, plan: ClassPlan, key: str, value: str) -> None:
@@ -376,12 +378,12 @@ class _Reader:
         if key.startswith("xmlns"):
             return
         message = f"AMALTHEA {self.version} knows no attribute {key!r} of {type(element).__name__}"
-        self.remarks.add(Remark("XMI011", Severity.WARNING, message, _KEPT, self.offset, key), key, plan.attributes)
+        self.collector.add(CollectedFinding("XMI011", Severity.WARNING, message, _KEPT, self.offset, key), key, plan.attributes)
 
-    def no_value(self, element: Element, key: str, value: str, error: ValueError) -> None:
+    def invalid_value(self, element: Element, key: str, value: str, error: ValueError) -> None:
         extras_of(element).attributes[key] = value
         message = f"attribute {key!r} of {type(element).__name__}: {error}"
-        self.remark("XMI013", Severity.ERROR, message, "It is kept and written back, but counts as not set.", key)
+        self.report("XMI013", Severity.ERROR, message, "It is kept and written back, but counts as not set.", key)
 
     # Findings
 
@@ -393,8 +395,8 @@ class _Reader:
     def version(self) -> str:
         return self.header.facts_version if self.header else ""
 
-    def remark(self, rule: str, severity: Severity, message: str, help_text: str, attribute: str = "") -> None:
-        self.remarks.add(Remark(rule, severity, message, help_text, self.offset, attribute))
+    def report(self, rule: str, severity: Severity, message: str, help_text: str, attribute: str = "") -> None:
+        self.collector.add(CollectedFinding(rule, severity, message, help_text, self.offset, attribute))
 
     def refuse(self, rule: str, message: str, help_text: str, offset: int | None = None) -> ReadError:
         where = location(self.path, Source(self.content.text), self.offset if offset is None else offset)

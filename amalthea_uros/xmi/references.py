@@ -19,12 +19,12 @@ from amalthea_uros.metamodel.containment import ReferenceList
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Spelling
 from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix, unique_name
+from amalthea_uros.xmi.finding_collector import location
 from amalthea_uros.xmi.plan import FeaturePlan, plans
 from amalthea_uros.xmi.reader import PendingReference, ReadResult
-from amalthea_uros.xmi.remarks import location
 
 #: After so many comparisons no more similar names are searched: it would take longer than reading.
-MOST_COMPARED = 20_000
+MAX_COMPARISONS = 20_000
 
 _set = object.__setattr__
 
@@ -46,7 +46,7 @@ def resolve(results: Sequence[ReadResult]) -> list[Finding]:
     resolver.index(_referables(results, CallArgument))
     resolver.link_all(waves[2])
     for result in results:
-        resolver.note_odd_ids(result)
+        resolver.check_xmi_ids(result)
     return resolver.findings()
 
 
@@ -78,7 +78,7 @@ class _Resolver:
         self.in_namespace = {p.holder for r in results for p in r.references if p.feature.target is Namespace}
         #: The unique name of every object that can be referred to.
         self.names: dict[Element, str] = {}
-        self.stand_ins: dict[tuple[str, type[Element]], Element] = {}
+        self.proxies: dict[tuple[str, type[Element]], Element] = {}
         self.problems: dict[tuple[str, str], list[Use]] = {}
         self.comparisons = 0
 
@@ -123,7 +123,7 @@ class _Resolver:
         fitting = [element for element in candidates if isinstance(element, feature.target)]
         if not fitting:
             self.problem("XMI023" if candidates else "XMI020", text, use)
-            return self.stand_in(text, feature)
+            return self.proxy(text, feature)
         if len(fitting) > 1:
             self.problem("XMI021", text, use)
         target = next((element for element in fitting if element.document is document), fitting[0])
@@ -145,9 +145,9 @@ class _Resolver:
         if found is not None:
             return [found]
         # APP4MC before 0.9.7 encoded the whole id of some hrefs a second time; people type names as they are.
-        for respelled in (unquote(text), _respell(text)):
-            if respelled in self.by_id:
-                return self.shared.get(respelled, [self.by_id[respelled]])
+        for canonical_references in (unquote(text), _reencoded(text)):
+            if canonical_references in self.by_id:
+                return self.shared.get(canonical_references, [self.by_id[canonical_references]])
         return []
 
     @cached_property
@@ -158,21 +158,21 @@ class _Resolver:
             for result in self.results
         }
 
-    def stand_in(self, text: str, feature: FeaturePlan) -> Element:
+    def proxy(self, text: str, feature: FeaturePlan) -> Element:
         """An unresolved object of the class that the text names, or else of the class that the feature expects."""
         name, mark, class_name = text.rpartition(TYPE_MARK)
         document_plans = [plans(result.document.facts_version) for result in self.results]
         plan = document_plans[0].of(class_name) if mark else None
         cls = plan.cls if plan and issubclass(plan.cls, feature.target) else feature.target
-        found = self.stand_ins.get((text, cls))
+        found = self.proxies.get((text, cls))
         if found is None:
-            found = self.stand_ins[text, cls] = object.__new__(cls)
+            found = self.proxies[text, cls] = object.__new__(cls)
             _set(found, "_container", None)
             _set(found, "_reference", text)
             _set(found, "name", decode((name if mark else text).rpartition("/")[2]))
         return found
 
-    def note_odd_ids(self, result: ReadResult) -> None:
+    def check_xmi_ids(self, result: ReadResult) -> None:
         """Remember every `xmi:id` that is not the unique name, as after renaming an object with a text editor."""
         for element, xmi_id in result.xmi_ids:
             canonical = self.names.get(element, "")
@@ -236,7 +236,7 @@ class _Resolver:
     def near(self, text: str) -> str:
         """A hint which object might be meant."""
         self.comparisons += len(self.by_id)
-        near = get_close_matches(text, self.by_id, n=1, cutoff=0.8) if self.comparisons < MOST_COMPARED else []
+        near = get_close_matches(text, self.by_id, n=1, cutoff=0.8) if self.comparisons < MAX_COMPARISONS else []
         return f"Did you mean {near[0]!r}? " if near else ""
 
     def place(self, element: Element) -> str:
@@ -261,7 +261,7 @@ def _count(number: int, noun: str) -> str:
     return f"{number:,} {noun}" + ("" if number == 1 else "s")
 
 
-def _respell(text: str) -> str:
+def _reencoded(text: str) -> str:
     """The unique name for a reference whose segments are not, or oddly, encoded."""
     path, mark, class_name = text.rpartition(TYPE_MARK)
     return "/".join(encode(decode(segment)) for segment in path.split("/")) + mark + class_name

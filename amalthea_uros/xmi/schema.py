@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, cast
 from lxml import etree
 
 from amalthea_uros.metamodel.factfile import Kind
-from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, Facts, facts, held_versions
+from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, Facts, facts, supported_versions
 from amalthea_uros.resources import resource_folder
 
 if TYPE_CHECKING:
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.factfile import FeatureFact
 
 #: So many problems are told; more are only counted.
-MOST_PROBLEMS = 100
+MAX_PROBLEMS = 100
 
 #: A reason and advice, and where they belong; words and paths are made only for the problems told.
-_Words = tuple[str, str | None]
-_Finding = tuple[etree._Element, Callable[[], _Words]]
+_Text = tuple[str, str | None]
+_Finding = tuple[etree._Element, Callable[[], _Text]]
 
 _XSI = "{http://www.w3.org/2001/XMLSchema-instance}"
 _XMI = "{http://www.omg.org/XMI}"
@@ -51,7 +51,7 @@ class NoSchemaError(LookupError):
     """There is no schema of an AMALTHEA version."""
 
     def __init__(self, version: str) -> None:
-        super().__init__(f"there is no schema of AMALTHEA {version}, only of {', '.join(held_versions())}")
+        super().__init__(f"there is no schema of AMALTHEA {version}, only of {', '.join(supported_versions())}")
         self.version = version
 
 
@@ -82,7 +82,7 @@ def schema_path(version: str) -> Path:
     ------
     NoSchemaError : if there is none.
     """
-    if version not in held_versions():
+    if version not in supported_versions():
         raise NoSchemaError(version)
     return resource_folder("schemas") / f"amalthea-{version}.xsd"
 
@@ -102,11 +102,11 @@ def validate(data: bytes, version: str) -> list[SchemaProblem]:
         line, column = error.position
         return [SchemaProblem(line, column, "/", "not well-formed XML: " + error.msg.split(", line ")[0])]
     if entities := list(_entities(root)):
-        return _told(entities)
+        return _sorted_problems(entities)
     _drop_locations(root)
     if schema.validate(root):
         return []
-    return _told(_Explanation(root, facts(version)).findings()) or _plain(schema)
+    return _sorted_problems(_Diagnosis(root, facts(version)).findings()) or _plain(schema)
 
 
 @cache
@@ -115,17 +115,17 @@ def _schema(version: str) -> etree.XMLSchema:
 
 
 @cache
-def _explaining_schema(version: str) -> xmlschema.XMLSchema10:
+def _diagnosing_schema(version: str) -> xmlschema.XMLSchema10:
     import xmlschema  # slow to import, and needed for invalid files only
 
     return xmlschema.XMLSchema10(str(schema_path(version)), allow="local")
 
 
-def _told(findings: list[_Finding]) -> list[SchemaProblem]:
+def _sorted_problems(findings: list[_Finding]) -> list[SchemaProblem]:
     """The problems by line, those at the end of a long list as a number only."""
     findings.sort(key=lambda finding: cast("int", finding[0].sourceline))
-    problems = [_at(element, *words()) for element, words in findings[:MOST_PROBLEMS]]
-    more = findings[MOST_PROBLEMS:]
+    problems = [_at(element, *words()) for element, words in findings[:MAX_PROBLEMS]]
+    more = findings[MAX_PROBLEMS:]
     return [*problems, _at(more[0][0], f"from here on {len(more)} more problems, not listed")] if more else problems
 
 
@@ -140,7 +140,7 @@ def _entities(root: etree._Element) -> Iterator[_Finding]:
         yield cast("etree._Element", entity.getparent()), partial(_unreplaced, entity)
 
 
-def _unreplaced(entity: etree._Element) -> _Words:
+def _unreplaced(entity: etree._Element) -> _Text:
     return f"{entity.text} is not allowed between the elements", None
 
 
@@ -183,7 +183,7 @@ def _repeats(error: xmlschema.XMLSchemaValidationError) -> bool:
     return _CANNOT_SUBSTITUTE in (error.reason or "") and isinstance(error.validator, XsdGroup)
 
 
-class _Explanation:
+class _Diagnosis:
     """Finds the problems of an invalid file one by one and puts them into words."""
 
     def __init__(self, root: etree._Element, declared: Facts) -> None:
@@ -197,10 +197,10 @@ class _Explanation:
         if self.root.tag != f"{{{self.declared.namespace}}}Amalthea":
             return [(self.root, self._wrong_root)]
         found = list(self._unknown_classes())
-        for error in _explaining_schema(self.declared.version).iter_errors(self.root):
+        for error in _diagnosing_schema(self.declared.version).iter_errors(self.root):
             element = cast("etree._Element", error.invalid_child if error.invalid_tag else error.elem)
             if not self._hidden(element) and not _repeats(error):
-                found.append((element, partial(self._words, element, error)))
+                found.append((element, partial(self._text, element, error)))
                 if _is_of_class(error):
                     self.opaque.add(element)
         return found
@@ -208,12 +208,14 @@ class _Explanation:
     def _hidden(self, element: etree._Element) -> bool:
         return bool(self.opaque) and (element in self.opaque or any(e in self.opaque for e in element.iterancestors()))
 
-    def _wrong_root(self) -> _Words:
+    def _wrong_root(self) -> _Text:
         name = etree.QName(self.root)
         if name.namespace == self.declared.namespace:
             return f'the root element is "{name.localname}"', 'only "Amalthea" can be the root element'
         other = (name.namespace or "").removeprefix(NAMESPACE_PREFIX)
-        advice = f"it is a file of AMALTHEA {other}" if other in held_versions() else f'expected: "{self.declared.namespace}"'
+        advice = (
+            f"it is a file of AMALTHEA {other}" if other in supported_versions() else f'expected: "{self.declared.namespace}"'
+        )
         return f'the namespace of the root element is "{name.namespace or ""}"', advice
 
     def _unknown_classes(self) -> Iterator[_Finding]:
@@ -231,7 +233,7 @@ class _Explanation:
             del element.attrib[f"{_XSI}type"]
             self.opaque.add(element)
 
-    def _unknown_class(self, element: etree._Element, name: str, reason: str) -> _Words:
+    def _unknown_class(self, element: etree._Element, name: str, reason: str) -> _Text:
         return reason, self._class_advice(element, name)
 
     def _class_advice(self, element: etree._Element, name: str) -> str | None:
@@ -268,7 +270,7 @@ class _Explanation:
             return ["href"] if Kind.ATTRIBUTE in kinds else []
         return [f.name for f in self.declared.features(class_name) if f.stored and f.kind in kinds]
 
-    def _words(self, element: etree._Element, error: xmlschema.XMLSchemaValidationError) -> _Words:
+    def _text(self, element: etree._Element, error: xmlschema.XMLSchemaValidationError) -> _Text:
         reason = error.reason or ""
         if error.invalid_tag:
             return self._unknown_child(element)
@@ -284,28 +286,28 @@ class _Explanation:
             return "text between the tags, where only elements are allowed", None
         return reason, None
 
-    def _unknown_child(self, element: etree._Element) -> _Words:
+    def _unknown_child(self, element: etree._Element) -> _Text:
         owner = self._class_of(cast("etree._Element", element.getparent()))
         name = etree.QName(element).localname
         written = f"{element.prefix}:{name}" if element.prefix else name
         advice = _nearest(name, self._names(owner, Kind.CONTAINMENT, Kind.REFERENCE))
         return f'{owner or "a reference"} has no element "{written}"', advice
 
-    def _unknown_attribute(self, element: etree._Element, name: str) -> _Words:
+    def _unknown_attribute(self, element: etree._Element, name: str) -> _Text:
         owner = self._class_of(element)
         advice = _nearest(name, self._names(owner, Kind.ATTRIBUTE, Kind.REFERENCE))
         return f'{owner or "a reference"} has no attribute "{name.replace(_XMI, "xmi:")}"', advice
 
-    def _wrong_class(self, element: etree._Element) -> _Words:
+    def _wrong_class(self, element: etree._Element) -> _Text:
         name = self._class_of(element) or ""
         reason = f'xsi:type is {name}, but "{element.tag}" holds objects of class {self._declared_class(element)}'
         return reason, self._class_advice(element, name)
 
-    def _missing_class(self, element: etree._Element) -> _Words:
+    def _missing_class(self, element: etree._Element) -> _Text:
         reason = f"xsi:type is missing: {self._declared_class(element)} is an abstract class"
         return reason, self._class_advice(element, "")
 
-    def _wrong_value(self, element: etree._Element, name: str) -> _Words:
+    def _wrong_value(self, element: etree._Element, name: str) -> _Text:
         value = element.get(name)
         feature = self.declared.feature(self._class_of(element) or "", name)
         what, advice = self._value_advice(feature.type if feature else "")

@@ -163,7 +163,7 @@ def test_any_damage_is_told_or_kept(tmp_path):
             continue
         amuros.save(model, copy)
         assert copy.read_bytes() == bytes(data)
-        model.documents[0].changes.touched.update(model.walk())
+        model.documents[0].changes.modified.update(model.walk())
         amuros.save(model, copy)
         assert copy.read_bytes() == bytes(data)
 

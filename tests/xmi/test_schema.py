@@ -8,9 +8,9 @@ import xmlschema
 from lxml import etree
 
 from amalthea_uros.metamodel.factfile import Kind
-from amalthea_uros.metamodel.versions import Facts, facts, held_versions
+from amalthea_uros.metamodel.versions import Facts, facts, supported_versions
 from amalthea_uros.resources import resource_folder
-from amalthea_uros.xmi.schema import MOST_PROBLEMS, NoSchemaError, SchemaProblem, schema_path, validate
+from amalthea_uros.xmi.schema import MAX_PROBLEMS, NoSchemaError, SchemaProblem, schema_path, validate
 
 VERSION = "3.3.0"
 SHARED = Path(__file__).parents[2].parent / "shared"
@@ -32,7 +32,7 @@ def only_problem(content: str) -> SchemaProblem:
     return problems[0]
 
 
-@pytest.mark.parametrize("version", held_versions())
+@pytest.mark.parametrize("version", supported_versions())
 def test_schemas_are_accepted_by_both_validators_and_small(version):
     path = schema_path(version)
     etree.XMLSchema(file=str(path))
@@ -101,7 +101,7 @@ def ways_to_contain(declared: Facts) -> dict[str, tuple[tuple[str, str], ...]]:
     return ways
 
 
-@pytest.mark.parametrize("version", held_versions())
+@pytest.mark.parametrize("version", supported_versions())
 def test_every_feature_of_every_class_is_accepted_in_any_order(version):
     declared = facts(version)
     ways = ways_to_contain(declared)
@@ -124,7 +124,7 @@ TOLERATED = {
 }
 
 
-@pytest.mark.parametrize("version", held_versions())
+@pytest.mark.parametrize("version", supported_versions())
 def test_a_class_is_accepted_only_where_it_belongs(version):
     declared = facts(version)
     types = xmlschema.XMLSchema10(str(schema_path(version)), allow="local").types
@@ -285,8 +285,8 @@ def test_problems_come_by_line_and_the_second_of_equal_elements_is_named():
 
 
 def test_a_long_list_is_cut_and_says_so():
-    problems = validate(document("<swModel>" + '<tasks foo="1"/>\n' * (MOST_PROBLEMS + 50) + "</swModel>"), VERSION)
-    assert len(problems) == MOST_PROBLEMS + 1
+    problems = validate(document("<swModel>" + '<tasks foo="1"/>\n' * (MAX_PROBLEMS + 50) + "</swModel>"), VERSION)
+    assert len(problems) == MAX_PROBLEMS + 1
     assert problems[-1].reason == "from here on 50 more problems, not listed"
     assert problems[-1].path == "/am:Amalthea/swModel/tasks[101]"
 
@@ -335,7 +335,7 @@ def test_an_avalanche_of_entities_is_refused():
 def corpus() -> list[tuple[str, str]]:
     inventory = SHARED / "corpus" / "inventory.json"
     entries = json.loads(inventory.read_text(encoding="utf-8")) if inventory.exists() else []
-    return [(e["file"], e["version"]) for e in entries if e["wellFormed"] and e["version"] in held_versions()]
+    return [(e["file"], e["version"]) for e in entries if e["wellFormed"] and e["version"] in supported_versions()]
 
 
 @pytest.mark.skipif(not SHARED.exists(), reason="no collection of models beside the repository")

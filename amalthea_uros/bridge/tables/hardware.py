@@ -62,7 +62,7 @@ class HardwareBuilder:
 
     def build(self, hardware: perf.Hardware) -> am.HWModel:
         """The whole model."""
-        clocks: Any = CLOCKS.shells(hardware.clocks, self.context)
+        clocks: Any = CLOCKS.create_all(hardware.clocks, self.context)
         CLOCKS.fill(clocks, hardware.clocks, self.context)
         for core_type in hardware.core_types:
             self.core_type(core_type)

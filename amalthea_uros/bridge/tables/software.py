@@ -314,7 +314,7 @@ LABELS = Table(
         Field(
             "protection",
             "data_stability",
-            enumeration({perf.Protection[ours]: am.LabelDataStability[theirs] for ours, theirs in _PROTECTIONS.items()}),
+            enumeration({perf.Protection[name]: am.LabelDataStability[other] for name, other in _PROTECTIONS.items()}),
         ),
     )
 )

@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Source, attributes_of_tag
+from amalthea_uros.xmi.emf_serializer import Child, EmfSerializer, Href, Part
 from amalthea_uros.xmi.escape import escape, unescape
 from amalthea_uros.xmi.plan import ClassPlan, reference_texts
-from amalthea_uros.xmi.spell import Child, Href, Part, Speller
 
 _NAME = re.compile(r"[^\s/>]+")
 _NODE = re.compile(
@@ -41,14 +41,14 @@ class Node(NamedTuple):
     kept: bool
 
 
-class Weaver:
+class SourceMerger:
     """Reads the source of one document again, where it matters how something was written."""
 
-    def __init__(self, document: Document, source: Source, speller: Speller) -> None:
+    def __init__(self, document: Document, source: Source, serializer: EmfSerializer) -> None:
         self.document = document
         self.source = source
         self.text = source.text
-        self.speller = speller
+        self.serializer = serializer
 
     def end(self, place: int) -> int:
         """Offset behind an element."""
@@ -59,12 +59,12 @@ class Weaver:
             return end
         return text.index(">", end) + 1
 
-    def stands_as(self, tag: str, place: int) -> bool:
+    def is_same_part(self, tag: str, place: int) -> bool:
         """Whether the object was the same kind of part when it was read."""
         start = self.source.start(place)
         return self.text.startswith(tag, start + 1) and self.text[start + 1 + len(tag)] in " \t\r\n/>"
 
-    def is_regular(self, children: list[Child], at: int, end: int, separator: str) -> bool:
+    def has_emf_layout(self, children: list[Child], at: int, end: int, separator: str) -> bool:
         """Whether the content between two offsets is just these children, one after the other, laid out as EMF does."""
         text, source, index = self.text, self.source, self.source.index
         for child in children:
@@ -77,7 +77,7 @@ class Weaver:
                 at += len(child.tag)
             else:
                 place = index.get(child.element)
-                if place is None or source.start(place) != at or not self.stands_as(child.feature.xml_name, place):
+                if place is None or source.start(place) != at or not self.is_same_part(child.feature.xml_name, place):
                     return False
                 at = self.end(place)
         return at <= end and text[at:end] == separator[: -len("  ")]
@@ -94,7 +94,7 @@ class Weaver:
         for attribute in attributes_of_tag(self.text, start):
             at = attribute.end()
             key, value = attribute["name"], unescape(attribute["quoted"][1:-1])
-            if self.still_says(element, plan, key, value, wanted.get(key)):
+            if self.is_unchanged(element, plan, key, value, wanted.get(key)):
                 pieces[key] = attribute[0]
             elif key in wanted:
                 lead = attribute[0][: attribute.start("quoted") - attribute.start()]
@@ -122,15 +122,15 @@ class Weaver:
         feature = plan.attributes.get(key)
         if feature is not None:
             return element.__dict__.get(feature.name) is not None
-        return key == self.speller.prefixes.xsi_type
+        return key == self.serializer.prefixes.xsi_type
 
-    def still_says(self, element: Element, plan: ClassPlan, key: str, value: str, wanted: str | None) -> bool:
+    def is_unchanged(self, element: Element, plan: ClassPlan, key: str, value: str, wanted: str | None) -> bool:
         """Whether an attribute of the source means what the object says now."""
         if value == wanted:
             return True
-        if key == self.speller.prefixes.xsi_type:
-            return value.removeprefix(self.speller.prefixes.type_prefix) == plan.cls.__name__
-        spelling = self.document.spellings.get((element, "xmi:id" if key == self.speller.prefixes.xmi_id else key))
+        if key == self.serializer.prefixes.xsi_type:
+            return value.removeprefix(self.serializer.prefixes.type_prefix) == plan.cls.__name__
+        spelling = self.document.spellings.get((element, "xmi:id" if key == self.serializer.prefixes.xmi_id else key))
         if spelling is not None:
             return spelling == (value, wanted or "")
         feature = plan.attributes.get(key)
@@ -139,15 +139,15 @@ class Weaver:
             is_own = element is self.document.root and (extras is None or key not in extras.attributes)
             return is_own or bool(extras and extras.attributes.get(key) == value)
         if feature.is_reference:
-            written = self.respelled(element, key, reference_texts(feature, value))
+            written = self.canonical_references(element, key, reference_texts(feature, value))
             return written == reference_texts(feature, wanted or "")
-        assert feature.literal
+        assert feature.data_type
         current = element.__dict__.get(feature.name)
         if current is None:
-            return wanted is not None and _equal(_parsed(feature.literal.parse, value), feature.literal.parse(wanted))
-        return _equal(_parsed(feature.literal.parse, value), current)
+            return wanted is not None and _equal(_parsed(feature.data_type.parse, value), feature.data_type.parse(wanted))
+        return _equal(_parsed(feature.data_type.parse, value), current)
 
-    def respelled(self, element: Element, key: str, references: list[str]) -> list[str]:
+    def canonical_references(self, element: Element, key: str, references: list[str]) -> list[str]:
         """References as we would write them, as far as they were odd but understood."""
         spellings = self.document.spellings
         found = (spellings.get((element, f"{key} {reference}")) for reference in references)
@@ -167,7 +167,7 @@ class Weaver:
         separator = next((n.text for n in nodes if n.text.isspace() and "\n" in n.text), separator if not nodes else "")
         new_extra = [piece for raw in extra for piece in (separator, raw)]
         if not _in_order(nodes, children):
-            return _rearranged(nodes, children, new_extra, separator)
+            return _reordered(nodes, children, new_extra, separator)
         behind, before = _added(nodes, children)
         found: list[str | Part] = [item for child in behind.get(None, ()) for item in (separator, _item(child))]
         for node in nodes:
@@ -192,7 +192,7 @@ class Weaver:
             if place is not None:
                 at = self.end(place)
                 part = parts.get(self.source.elements[place])
-                stays = part is not None and self.stands_as(part.feature.xml_name, place)
+                stays = part is not None and self.is_same_part(part.feature.xml_name, place)
                 yield Node(self.text[start:at], part if stays else None, stays)
                 continue
             match = _NODE.match(self.text, start)
@@ -231,7 +231,7 @@ class Weaver:
             if attribute["name"] != "href":
                 continue
             value = unescape(attribute["quoted"][1:-1])
-            (reference,) = self.respelled(element, opening["open"], [value.partition("#")[2] or value])
+            (reference,) = self.canonical_references(element, opening["open"], [value.partition("#")[2] or value])
             for i, href in enumerate(hrefs):
                 if href.feature.xml_name == opening["open"] and href.reference == reference:
                     return hrefs.pop(i)
@@ -298,7 +298,7 @@ def _added(nodes: list[Node], children: list[Child]) -> tuple[dict[int | None, l
     return behind, before
 
 
-def _rearranged(nodes: list[Node], children: list[Child], extra: list[str], separator: str) -> list[str | Part]:
+def _reordered(nodes: list[Node], children: list[Child], extra: list[str], separator: str) -> list[str | Part]:
     """The children in EMF's order, because the old order and the new one cannot be reconciled; comments come first."""
     found: list[str | Part] = []
     for node in nodes:

@@ -14,7 +14,7 @@ from amalthea_uros.metamodel.naming import qualified_name, segments
 UNSET = "unset"
 
 #: Longer texts are shown in part.
-_LONGEST = 120
+_MAX_LENGTH = 120
 
 
 def is_inline(element: Element) -> bool:
@@ -22,7 +22,7 @@ def is_inline(element: Element) -> bool:
     return isinstance(element, Quantity | Value)
 
 
-def wording(value: Any) -> str:
+def value_text(value: Any) -> str:
     """A value of a feature: a number, text, literal, an object referred to or a part that is read as a value."""
     if value is None:
         return UNSET
@@ -48,10 +48,10 @@ def label(element: Element) -> str:
     if has_identity(element):
         return readable_name(element)
     if is_inline(element):
-        return wording(element)
+        return value_text(element)
     for name in ("key", "name"):
         if values.get(name):
-            return wording(values[name])
+            return value_text(values[name])
     target = first_reference(element)
     return readable_name(target) if target is not None else ""
 
@@ -69,22 +69,22 @@ def first_reference(element: Element) -> Element | None:
 def shortened(text: str) -> str:
     """A text in one line of bearable length."""
     line = " ".join(text.split())
-    return line if len(line) <= _LONGEST else line[: _LONGEST - 3] + "..."
+    return line if len(line) <= _MAX_LENGTH else line[: _MAX_LENGTH - 3] + "..."
 
 
 def _of_part(part: Element) -> str:
     values = part.__dict__
     if isinstance(part, Quantity):
-        unit = wording(values.get("unit"))
-        return f"{wording(values.get('value') or 0)}{'' if unit == UNSET else f' {unit}'}"
+        unit = value_text(values.get("unit"))
+        return f"{value_text(values.get('value') or 0)}{'' if unit == UNSET else f' {unit}'}"
     if isinstance(part, ListObject):
         return shortened(f"[{', '.join(map(_of_part, part.values))}]")
     if isinstance(part, MapObject):
         return shortened(f"{{{', '.join(map(_of_entry, part.entries))}}}")
     if isinstance(part, ReferenceObject) and part.value is not None:
         return readable_name(part.value)
-    return wording(values.get("value"))
+    return value_text(values.get("value"))
 
 
 def _of_entry(entry: CustomProperty) -> str:
-    return f"{entry.key}: {wording(entry.value)}"
+    return f"{entry.key}: {value_text(entry.value)}"

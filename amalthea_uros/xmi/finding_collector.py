@@ -10,7 +10,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.metamodel.source import Source
 
 
-class Remark:
+class CollectedFinding:
     """A finding in the making, about the tag at an offset (in bytes of UTF-8) or one of its attributes."""
 
     __slots__ = ("attribute", "count", "help", "message", "offset", "rule", "severity")
@@ -31,24 +31,24 @@ class Remark:
         return Finding(self.rule, self.severity, self.message + times, where, self.help)
 
 
-class Remarks:
+class FindingCollector:
     """The oddities of one file."""
 
     def __init__(self) -> None:
-        self._remarks: dict[tuple[str, str], Remark] = {}
+        self._findings: dict[tuple[str, str], CollectedFinding] = {}
 
-    def add(self, remark: Remark, name: str = "", known_names: Iterable[str] = ()) -> None:
+    def add(self, remark: CollectedFinding, name: str = "", known_names: Iterable[str] = ()) -> None:
         """Note an oddity; if it is about an unknown name, a known one that is near is suggested."""
-        known = self._remarks.get((remark.rule, remark.message))
+        known = self._findings.get((remark.rule, remark.message))
         if known is not None:
             known.count += 1
             return
         if name:
             remark.help = did_you_mean(name, known_names) + remark.help
-        self._remarks[remark.rule, remark.message] = remark
+        self._findings[remark.rule, remark.message] = remark
 
-    def __iter__(self) -> Iterator[Remark]:
-        return iter(self._remarks.values())
+    def __iter__(self) -> Iterator[CollectedFinding]:
+        return iter(self._findings.values())
 
 
 def location(path: Path, source: Source, byte_offset: int, attribute: str = "") -> Location:

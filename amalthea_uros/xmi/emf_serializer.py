@@ -40,7 +40,7 @@ class Href(NamedTuple):
 Child = Part | Href
 
 
-class Shape(NamedTuple):
+class WritePlan(NamedTuple):
     """What is to be written for objects of one class of which the same features are set.
 
     Attributes
@@ -54,7 +54,7 @@ class Shape(NamedTuple):
     has_extras: bool
 
 
-class Speller:
+class EmfSerializer:
     """Spells the objects of one document."""
 
     def __init__(self, document: Document, prefixes: Prefixes) -> None:
@@ -63,7 +63,7 @@ class Speller:
         self.prefixes = prefixes
         self.findings: list[Finding] = []
         self.uses_xsi = False
-        self._shapes: dict[tuple[type[Element], tuple[str, ...]], Shape] = {}
+        self._write_plans: dict[tuple[type[Element], tuple[str, ...]], WritePlan] = {}
         #: Reference text of a target, and whether it lives in this document.
         self._targets: dict[Element, tuple[str, bool]] = {}
 
@@ -75,15 +75,15 @@ class Speller:
             self.refuse(element, f"class {type(element).__name__} {kind} in AMALTHEA {self.document.facts_version}")
         return plan
 
-    def shape(self, plan: ClassPlan, element: Element) -> Shape:
+    def write_plan(self, plan: ClassPlan, element: Element) -> WritePlan:
         """What is to be written of the object."""
         present = tuple(element.__dict__)
-        shape = self._shapes.get((plan.cls, present))
-        if shape is None:
-            shape = self._shapes[plan.cls, present] = self._new_shape(plan, element)
-        return shape
+        write_plan = self._write_plans.get((plan.cls, present))
+        if write_plan is None:
+            write_plan = self._write_plans[plan.cls, present] = self._new_write_plan(plan, element)
+        return write_plan
 
-    def _new_shape(self, plan: ClassPlan, element: Element) -> Shape:
+    def _new_write_plan(self, plan: ClassPlan, element: Element) -> WritePlan:
         present = element.__dict__
         unknown = present.keys() - {feature.name for feature in plan.features} - {"_extras"}
         for name in sorted(unknown):
@@ -96,15 +96,15 @@ class Speller:
             if feature.xml_name in plan.attributes and (is_set or feature.default_text is not None):
                 attributes.append((f' {feature.xml_name}="', feature, is_set))
         children = tuple(f for f in plan.features if f.xml_name in plan.children and f.name in present)
-        # A shape with features unknown to the version is not shared, so that every object with one is named.
-        shape = Shape(tuple(attributes), children, "_extras" in present)
+        # A write_plan with features unknown to the version is not shared, so that every object with one is named.
+        write_plan = WritePlan(tuple(attributes), children, "_extras" in present)
         if unknown:
-            self._shapes.pop((plan.cls, tuple(present)), None)
-        return shape
+            self._write_plans.pop((plan.cls, tuple(present)), None)
+        return write_plan
 
     # Attributes
 
-    def tag(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, shape: Shape) -> str:
+    def tag(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, write_plan: WritePlan) -> str:
         """The start tag behind the element name and without its end, as EMF writes it."""
         pieces = []
         if part is not None and plan.cls is not part.target:
@@ -113,7 +113,7 @@ class Speller:
         if plan.referable:
             pieces.append(f' {self.prefixes.xmi_id}="{escape(self.target(element)[0])}"')
         values = element.__dict__
-        for opening, feature, is_set in shape.attributes:
+        for opening, feature, is_set in write_plan.attributes:
             value = values[feature.name] if is_set else None
             if value is None:
                 if feature.default_text is not None:
@@ -124,14 +124,14 @@ class Speller:
                 pieces.append(f'{opening}{escape(text)}"')
         return "".join(pieces)
 
-    def attributes(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, shape: Shape) -> dict[str, str]:
+    def attributes(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, write_plan: WritePlan) -> dict[str, str]:
         """The same as `tag`, one by one: attribute name -> value."""
         found = {}
         if part is not None and plan.cls is not part.target:
             found[self.prefixes.xsi_type] = f"{self.prefixes.type_prefix}{plan.cls.__name__}"
         if plan.referable:
             found[self.prefixes.xmi_id] = self.target(element)[0]
-        for _, feature, is_set in shape.attributes:
+        for _, feature, is_set in write_plan.attributes:
             value = element.__dict__[feature.name] if is_set else None
             text = feature.default_text if value is None else self.value_text(element, feature, value)
             if text is not None:
@@ -142,12 +142,12 @@ class Speller:
         """A set value as text; None if it is not to stand as an attribute."""
         if feature.is_reference:
             return self.reference_text(element, feature, value)
-        literal = feature.literal
-        assert literal
-        if type(value) is not literal.python_type:
-            checked = _converted(value, literal.python_type)
+        data_type = feature.data_type
+        assert data_type
+        if type(value) is not data_type.python_type:
+            checked = _converted(value, data_type.python_type)
             if checked is None:
-                expected = literal.python_type.__name__
+                expected = data_type.python_type.__name__
                 self.refuse(element, f"{feature.name!r} must be of type {expected}, not {value!r}")
                 return None
             value = checked
@@ -160,8 +160,8 @@ class Speller:
         if value == feature.omitted:
             return None
         try:
-            text: str = literal.format(value)
-            literal.parse(text)
+            text: str = data_type.format(value)
+            data_type.parse(text)
         except ValueError as error:
             self.refuse(element, f"{feature.name!r}: {error}")
             return None
@@ -219,11 +219,11 @@ class Speller:
 
     # Children
 
-    def children(self, element: Element, shape: Shape) -> list[Child]:
+    def children(self, element: Element, write_plan: WritePlan) -> list[Child]:
         """The child elements in order."""
         found: list[Child] = []
         values = element.__dict__
-        for feature in shape.children:
+        for feature in write_plan.children:
             value = values[feature.name]
             if value is None:
                 continue
