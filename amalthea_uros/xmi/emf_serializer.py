@@ -1,6 +1,6 @@
 """What EMF would write for an object: its attributes and children, in order.
 
-Values are checked on the way; whatever the metamodel of the version does not allow becomes a finding that names the object.
+Values are checked at the same time; what the metamodel of the version does not allow becomes a finding that names the object.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Href(NamedTuple):
 
     Attributes
     ----------
-    reference : the id behind `amlt:/#`
+    reference : the id after `amlt:/#`
     tag : the whole element as text
     """
 
@@ -41,12 +41,12 @@ Child = Part | Href
 
 
 class WritePlan(NamedTuple):
-    """What is to be written for objects of one class of which the same features are set.
+    """The features to write for objects of one class that have the same features set.
 
     Attributes
     ----------
-    attributes : (text in front of the value, feature, whether it is set)
-    children : features that may give child elements
+    attributes : (text before the value, feature, whether it is set)
+    children : features that may be written as child elements
     """
 
     attributes: tuple[tuple[str, FeaturePlan, bool], ...]
@@ -55,7 +55,7 @@ class WritePlan(NamedTuple):
 
 
 class EmfSerializer:
-    """Spells the objects of one document."""
+    """Serialises the objects of one document."""
 
     def __init__(self, document: Document, prefixes: Prefixes) -> None:
         self.document = document
@@ -64,7 +64,7 @@ class EmfSerializer:
         self.findings: list[Finding] = []
         self.uses_xsi = False
         self._write_plans: dict[tuple[type[Element], tuple[str, ...]], WritePlan] = {}
-        #: Reference text of a target, and whether it lives in this document.
+        #: Reference text of a target, and whether it is in this document.
         self._targets: dict[Element, tuple[str, bool]] = {}
 
     def plan(self, element: Element) -> ClassPlan | None:
@@ -72,11 +72,11 @@ class EmfSerializer:
         plan = self.plans.of(type(element).__name__)
         if plan is None:
             kind = "is abstract" if type(element).is_abstract else "does not exist"
-            self.refuse(element, f"class {type(element).__name__} {kind} in AMALTHEA {self.document.facts_version}")
+            self.refuse(element, f"the class {type(element).__name__} {kind} in AMALTHEA {self.document.facts_version}")
         return plan
 
     def write_plan(self, plan: ClassPlan, element: Element) -> WritePlan:
-        """What is to be written of the object."""
+        """The features to write for the object."""
         present = tuple(element.__dict__)
         write_plan = self._write_plans.get((plan.cls, present))
         if write_plan is None:
@@ -89,14 +89,14 @@ class EmfSerializer:
         for name in sorted(unknown):
             if present[name] not in (None, []):
                 version = self.document.facts_version
-                self.refuse(element, f"{name!r} does not exist in {type(element).__name__} of AMALTHEA {version}")
+                self.refuse(element, f"{type(element).__name__} has no feature {name!r} in AMALTHEA {version}")
         attributes = []
         for feature in plan.features:
             is_set = feature.name in present
             if feature.xml_name in plan.attributes and (is_set or feature.default_text is not None):
                 attributes.append((f' {feature.xml_name}="', feature, is_set))
         children = tuple(f for f in plan.features if f.xml_name in plan.children and f.name in present)
-        # A write_plan with features unknown to the version is not shared, so that every object with one is named.
+        # A plan with features unknown to the version is not shared, so that every object with one is reported.
         write_plan = WritePlan(tuple(attributes), children, "_extras" in present)
         if unknown:
             self._write_plans.pop((plan.cls, tuple(present)), None)
@@ -105,7 +105,7 @@ class EmfSerializer:
     # Attributes
 
     def tag(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, write_plan: WritePlan) -> str:
-        """The start tag behind the element name and without its end, as EMF writes it."""
+        """The start tag after the element name and without its end, as EMF writes it."""
         pieces = []
         if part is not None and plan.cls is not part.target:
             self.uses_xsi = True
@@ -125,7 +125,7 @@ class EmfSerializer:
         return "".join(pieces)
 
     def attributes(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, write_plan: WritePlan) -> dict[str, str]:
-        """The same as `tag`, one by one: attribute name -> value."""
+        """The same as `tag` as a mapping: attribute name -> value."""
         found = {}
         if part is not None and plan.cls is not part.target:
             found[self.prefixes.xsi_type] = f"{self.prefixes.type_prefix}{plan.cls.__name__}"
@@ -139,7 +139,7 @@ class EmfSerializer:
         return found
 
     def value_text(self, element: Element, feature: FeaturePlan, value: Any) -> str | None:
-        """A set value as text; None if it is not to stand as an attribute."""
+        """A set value as text; None if it is not written as an attribute."""
         if feature.is_reference:
             return self.reference_text(element, feature, value)
         data_type = feature.data_type
@@ -154,7 +154,7 @@ class EmfSerializer:
         if feature.is_string:
             wrong = impossible_character(value)
             if wrong is not None:
-                self.refuse(element, f"{feature.name!r} holds the character U+{ord(wrong):04X}, which XML cannot hold")
+                self.refuse(element, f"{feature.name!r} contains the character U+{ord(wrong):04X}, which XML does not allow")
                 return None
             return str(value)
         if value == feature.omitted:
@@ -168,7 +168,7 @@ class EmfSerializer:
         return text
 
     def reference_text(self, element: Element, feature: FeaturePlan, value: Any) -> str | None:
-        """The ids of the targets, None if they stand as `href` elements (or there are none)."""
+        """The ids of the targets, None if they are written as `href` elements (or there are none)."""
         if not feature.many:
             if not isinstance(value, feature.target):
                 self.refuse_target(element, feature, value)
@@ -184,7 +184,7 @@ class EmfSerializer:
         return " ".join([self.target(target)[0] for target in targets])
 
     def is_attribute(self, element: Element, feature: FeaturePlan, is_local: bool) -> bool:
-        """Whether a reference stands as an attribute: if all its targets live in this file, or as it was read."""
+        """Whether a reference is written as an attribute: as it was read, or else if all its targets are in this file."""
         forms = self.document.href_features
         if forms:
             is_href = forms.get((element, feature.xml_name))
@@ -193,7 +193,7 @@ class EmfSerializer:
         return is_local
 
     def checked_targets(self, element: Element, feature: FeaturePlan, value: Any) -> list[Element]:
-        """The targets that fit; the others become findings."""
+        """The targets of the right class; the others become findings."""
         if not isinstance(value, list):
             self.refuse_target(element, feature, value)
             return []
@@ -204,7 +204,7 @@ class EmfSerializer:
         return fitting
 
     def target(self, element: Element) -> tuple[str, bool]:
-        """The reference text of an object and whether it lives in this document."""
+        """The reference text of an object and whether it is in this document."""
         found = self._targets.get(element)
         if found is None:
             document = element.document
@@ -212,7 +212,9 @@ class EmfSerializer:
             if document is None and element.unresolved is None:
                 self.findings.append(
                     self.finding(
-                        element, f"{element!r} is referred to, but is not part of the model", "Add it, or clear the references."
+                        element,
+                        f"{element!r} is referenced, but not part of the model",
+                        "Add it to the model, or remove the references to it.",
                     )
                 )
         return found
@@ -231,14 +233,14 @@ class EmfSerializer:
                 found += self.hrefs(element, feature, value)
             elif feature.many:
                 if feature.only_one and len(value) > 1:
-                    self.refuse(element, f"{feature.name!r} takes only one object in AMALTHEA {self.document.facts_version}")
+                    self.refuse(element, f"{feature.name!r} can have only one object in AMALTHEA {self.document.facts_version}")
                 found += [Part(feature, part) for part in value if self.check_part(element, feature, part)]
             elif self.check_part(element, feature, value):
                 found.append(Part(feature, value))
         return found
 
     def hrefs(self, element: Element, feature: FeaturePlan, value: Any) -> list[Child]:
-        """The `href` elements of a reference, none if it stands as an attribute."""
+        """The `href` elements of a reference, none if it is written as an attribute."""
         targets = [t for t in (value if isinstance(value, list) else [value]) if isinstance(t, feature.target)]
         is_local = all(self.target(target)[1] for target in targets)
         if self.is_attribute(element, feature, is_local):
@@ -255,7 +257,7 @@ class EmfSerializer:
         return Href(feature, text, f'<{feature.xml_name}{typed} href="amlt:/#{escape(text)}"/>')
 
     def check_part(self, element: Element, feature: FeaturePlan, part: Any) -> bool:
-        """Whether an object may be a part; if not, that becomes a finding."""
+        """Whether an object may be a part of another one; if not, a finding says so."""
         if isinstance(part, feature.target):
             return True
         self.refuse_target(element, feature, part)
@@ -264,16 +266,16 @@ class EmfSerializer:
     # Findings
 
     def refuse_target(self, element: Element, feature: FeaturePlan, value: object) -> None:
-        """Note a value of the wrong class."""
+        """Add a finding about a value of the wrong class."""
         expected = (
             f"a list of {feature.target.__name__}"
             if feature.many and not isinstance(value, Element)
             else feature.target.__name__
         )
-        self.refuse(element, f"{feature.name!r} takes {expected}, not {value!r}")
+        self.refuse(element, f"{feature.name!r} must be {expected}, not {value!r}")
 
     def refuse(self, element: Element, message: str) -> None:
-        """Note what is wrong with an object."""
+        """Add a finding about an object."""
         self.findings.append(self.finding(element, message, ""))
 
     def finding(self, element: Element, message: str, help_text: str) -> Finding:
@@ -283,7 +285,7 @@ class EmfSerializer:
 
 
 def _converted(value: object, expected: type) -> Any:
-    """A value that may stand for one of the expected type: whole numbers for floating point, literals as text."""
+    """The value as one of the expected type, where that is possible: whole numbers as floating point; else None."""
     if expected is float and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
     if isinstance(value, expected) and not isinstance(value, bool):

@@ -1,4 +1,4 @@
-"""Validation of a file against the XML schema of its AMALTHEA version, with problems told in words."""
+"""Validation of a file against the XML schema of its AMALTHEA version, with readable problems."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
     from amalthea_uros.metamodel.factfile import FeatureFact
 
-#: So many problems are told; more are only counted.
+#: Further problems are only counted.
 MAX_PROBLEMS = 100
 
-#: A reason and advice, and where they belong; words and paths are made only for the problems told.
+#: A reason and advice, and the element concerned; texts and paths are made only for the problems that are reported.
 _Text = tuple[str, str | None]
 _Finding = tuple[etree._Element, Callable[[], _Text]]
 
@@ -34,7 +34,7 @@ _XSI = "{http://www.w3.org/2001/XMLSchema-instance}"
 _XMI = "{http://www.omg.org/XMI}"
 _LOCATIONS = (f"{_XSI}schemaLocation", f"{_XSI}noNamespaceSchemaLocation")
 
-#: How xmlschema words what is told by its reason only.
+#: Fragments of messages of xmlschema by which a kind of error is recognised.
 _CANNOT_SUBSTITUTE = "cannot substitute"
 _IS_ABSTRACT = "is abstract"
 
@@ -51,13 +51,13 @@ class NoSchemaError(LookupError):
     """There is no schema of an AMALTHEA version."""
 
     def __init__(self, version: str) -> None:
-        super().__init__(f"there is no schema of AMALTHEA {version}, only of {', '.join(supported_versions())}")
+        super().__init__(f"no XML schema for AMALTHEA {version}; there is one for {', '.join(supported_versions())}")
         self.version = version
 
 
 @dataclass(frozen=True, slots=True)
 class SchemaProblem:
-    """A place where a file breaks the schema of its version.
+    """A violation of the schema of a version.
 
     Attributes
     ----------
@@ -88,7 +88,7 @@ def schema_path(version: str) -> Path:
 
 
 def validate(data: bytes, version: str) -> list[SchemaProblem]:
-    """Everything in which the text of a file breaks the schema of a version, in the order of the lines.
+    """All violations of the schema of a version in the text of a file, in the order of the lines.
 
     Raises
     ------
@@ -122,11 +122,15 @@ def _diagnosing_schema(version: str) -> xmlschema.XMLSchema10:
 
 
 def _sorted_problems(findings: list[_Finding]) -> list[SchemaProblem]:
-    """The problems by line, those at the end of a long list as a number only."""
+    """The problems by line; those at the end of a long list are only counted."""
     findings.sort(key=lambda finding: cast("int", finding[0].sourceline))
     problems = [_at(element, *words()) for element, words in findings[:MAX_PROBLEMS]]
     more = findings[MAX_PROBLEMS:]
-    return [*problems, _at(more[0][0], f"from here on {len(more)} more problems, not listed")] if more else problems
+    return (
+        [*problems, _at(more[0][0], f"{len(more)} more problem{'s' if len(more) > 1 else ''} from here on, not listed")]
+        if more
+        else problems
+    )
 
 
 def _at(element: etree._Element, reason: str, advice: str | None = None) -> SchemaProblem:
@@ -141,11 +145,11 @@ def _entities(root: etree._Element) -> Iterator[_Finding]:
 
 
 def _unreplaced(entity: etree._Element) -> _Text:
-    return f"{entity.text} is not allowed between the elements", None
+    return f"entity reference {entity.text} between the elements", "remove it"
 
 
 def _drop_locations(root: etree._Element) -> None:
-    """Keep the validators from loading what the file names as its schema."""
+    """Prevent the validators from loading the schema that the file names."""
     for element in root.iter("*"):
         for name in _LOCATIONS:
             if name in element.attrib:
@@ -163,7 +167,7 @@ def _quoted(names: Sequence[str]) -> str:
 
 
 def _nearest(name: str, allowed: Sequence[str]) -> str | None:
-    """Advice which name might have been meant, or which there are."""
+    """Advice: the most similar name, or all that are allowed."""
     close = get_close_matches(name, allowed, n=1)
     if close:
         return f'did you mean "{close[0]}"?'
@@ -177,19 +181,19 @@ def _is_of_class(error: xmlschema.XMLSchemaValidationError) -> bool:
 
 
 def _repeats(error: xmlschema.XMLSchemaValidationError) -> bool:
-    """Whether the error is said of the parent of a faulty element."""
+    """Whether the error repeats that of a faulty child for its parent."""
     from xmlschema.validators import XsdGroup
 
     return _CANNOT_SUBSTITUTE in (error.reason or "") and isinstance(error.validator, XsdGroup)
 
 
 class _Diagnosis:
-    """Finds the problems of an invalid file one by one and puts them into words."""
+    """Finds the problems of an invalid file one by one and describes them in the terms of AMALTHEA."""
 
     def __init__(self, root: etree._Element, declared: Facts) -> None:
         self.root = root
         self.declared = declared
-        #: Elements of unknown or wrong class: nothing can be said about what they have and contain.
+        #: Elements of an unknown or wrong class: their attributes and content cannot be checked.
         self.opaque: set[etree._Element] = set()
 
     def findings(self) -> list[_Finding]:
@@ -211,15 +215,15 @@ class _Diagnosis:
     def _wrong_root(self) -> _Text:
         name = etree.QName(self.root)
         if name.namespace == self.declared.namespace:
-            return f'the root element is "{name.localname}"', 'only "Amalthea" can be the root element'
+            return f'wrong root element "{name.localname}"', 'expected: "Amalthea"'
         other = (name.namespace or "").removeprefix(NAMESPACE_PREFIX)
         advice = (
-            f"it is a file of AMALTHEA {other}" if other in supported_versions() else f'expected: "{self.declared.namespace}"'
+            f"validate it as AMALTHEA {other}" if other in supported_versions() else f'expected: "{self.declared.namespace}"'
         )
-        return f'the namespace of the root element is "{name.namespace or ""}"', advice
+        return f'wrong namespace of the root element: "{name.namespace or ""}"', advice
 
     def _unknown_classes(self) -> Iterator[_Finding]:
-        """Elements of a class that does not exist or has no instances; their `xsi:type` is taken away."""
+        """Elements of a class that does not exist or is abstract; their `xsi:type` is removed."""
         for element in self.root.iter("*"):
             text = element.get(f"{_XSI}type")
             if text is None:
@@ -228,7 +232,7 @@ class _Diagnosis:
             fact = self.declared.classes.get(name)
             if fact is not None and not fact.abstract and element.nsmap.get(prefix or None) == self.declared.namespace:
                 continue
-            what = "an abstract class" if fact and fact.abstract else f"no class of AMALTHEA {self.declared.version}"
+            what = "an abstract class" if fact and fact.abstract else f"not a class of AMALTHEA {self.declared.version}"
             yield element, partial(self._unknown_class, element, name, f'xsi:type="{text}" is {what}')
             del element.attrib[f"{_XSI}type"]
             self.opaque.add(element)
@@ -244,7 +248,7 @@ class _Diagnosis:
         return _nearest(f"{prefix}:{name}", [f"{prefix}:{c}" for c in self.declared.concrete_subtypes(expected)])
 
     def _feature(self, element: etree._Element) -> FeatureFact | None:
-        """The feature that an element stands for."""
+        """The feature that an element belongs to."""
         parent = element.getparent()
         owner = self._class_of(parent) if parent is not None else None
         return self.declared.feature(owner, element.tag) if owner else None
@@ -265,7 +269,7 @@ class _Diagnosis:
         return feature.type if feature and feature.kind is Kind.CONTAINMENT else None
 
     def _names(self, class_name: str | None, *kinds: Kind) -> list[str]:
-        """What an object of a class may have, or a bare reference."""
+        """The names of the features of a class, or of a bare reference."""
         if class_name is None:
             return ["href"] if Kind.ATTRIBUTE in kinds else []
         return [f.name for f in self.declared.features(class_name) if f.stored and f.kind in kinds]
@@ -283,7 +287,7 @@ class _Diagnosis:
         if match := re.match(r"attribute (\S+?)=['\"]", reason):
             return self._wrong_value(element, match[1])
         if reason.startswith("character data"):
-            return "text between the tags, where only elements are allowed", None
+            return "text between the elements", "remove it"
         return reason, None
 
     def _unknown_child(self, element: etree._Element) -> _Text:
@@ -300,11 +304,11 @@ class _Diagnosis:
 
     def _wrong_class(self, element: etree._Element) -> _Text:
         name = self._class_of(element) or ""
-        reason = f'xsi:type is {name}, but "{element.tag}" holds objects of class {self._declared_class(element)}'
+        reason = f'wrong xsi:type {name}: "{element.tag}" contains objects of class {self._declared_class(element)}'
         return reason, self._class_advice(element, name)
 
     def _missing_class(self, element: etree._Element) -> _Text:
-        reason = f"xsi:type is missing: {self._declared_class(element)} is an abstract class"
+        reason = f"missing xsi:type: {self._declared_class(element)} is an abstract class"
         return reason, self._class_advice(element, "")
 
     def _wrong_value(self, element: etree._Element, name: str) -> _Text:
@@ -314,11 +318,11 @@ class _Diagnosis:
         return f'attribute {name}="{value}" is not {what}', advice
 
     def _value_advice(self, type_name: str) -> tuple[str, str | None]:
-        """What a value of a type has to be, and which or what kind of values that are."""
+        """What a value of a type must be, and advice on the allowed values."""
         if type_name in self.declared.enums:
             return f"a literal of {type_name}", f"allowed: {_quoted(self.declared.enums[type_name].literals)}"
         if type_name == "EBoolean":
-            return "a truth value", 'allowed: "true", "false"'
+            return "a boolean", 'allowed: "true", "false"'
         if type_name == "Address":
             return "an address", 'allowed: hexadecimal numbers such as "0x1a" and decimal numbers such as "26"'
         if type_name in _WHOLE_NUMBERS:

@@ -1,8 +1,8 @@
-"""Merging changed objects into the text they were read from, where that text is not laid out as EMF does.
+"""Merging modified objects into the text from which they were read, where that text does not have EMF's layout.
 
-Two questions are answered here: how does a start tag look in which some attributes changed (`tag`), and how does the content of an
-element look in which children came, went or moved (`content`)? Whatever still says the same stays to the letter: order, white
-space, quotes, comments, unknown attributes and elements.
+`tag` gives a start tag of which some attributes changed, `content` the content of an element of which children were added, removed
+or moved. Everything that still has the same meaning is preserved byte for byte: order, white space, quotes, comments, unknown
+attributes and elements.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ class Node(NamedTuple):
 
     Attributes
     ----------
-    child : the part or reference of now that it stands for, None for everything else
-    kept : whether it is written again; what is gone from the model is not
+    child : the present part or reference that it represents, None for everything else
+    kept : whether it is written again, that is, not removed from the model
     """
 
     text: str
@@ -42,7 +42,7 @@ class Node(NamedTuple):
 
 
 class SourceMerger:
-    """Reads the source of one document again, where it matters how something was written."""
+    """Reads the source of one document again, to preserve the way in which it is written."""
 
     def __init__(self, document: Document, source: Source, serializer: EmfSerializer) -> None:
         self.document = document
@@ -51,21 +51,21 @@ class SourceMerger:
         self.serializer = serializer
 
     def end(self, place: int) -> int:
-        """Offset behind an element."""
+        """Offset after an element."""
         source, text = self.source, self.text
         end = source.end(place)
-        # Behind the tag of an empty element, but at the end tag of one with content.
+        # After the tag of an empty element, but at the end tag of one with content.
         if text.startswith("/>", end - 2) and text.find("<", source.start(place) + 1, end) < 0:
             return end
         return text.index(">", end) + 1
 
     def is_same_part(self, tag: str, place: int) -> bool:
-        """Whether the object was the same kind of part when it was read."""
+        """Whether the object was held by the same feature when it was read."""
         start = self.source.start(place)
         return self.text.startswith(tag, start + 1) and self.text[start + 1 + len(tag)] in " \t\r\n/>"
 
     def has_emf_layout(self, children: list[Child], at: int, end: int, separator: str) -> bool:
-        """Whether the content between two offsets is just these children, one after the other, laid out as EMF does."""
+        """Whether the content between two offsets consists of exactly these children, in order and in EMF's layout."""
         text, source, index = self.text, self.source, self.source.index
         for child in children:
             if not text.startswith(separator, at):
@@ -85,7 +85,7 @@ class SourceMerger:
     # Start tags
 
     def tag(self, element: Element, plan: ClassPlan, wanted: dict[str, str], place: int) -> tuple[str, int]:
-        """A start tag with the wanted attributes, without its `>` or `/>`, and the offset at which that stands."""
+        """A start tag with the wanted attributes, without its `>` or `/>`, and the offset of these."""
         start = self.source.start(place)
         name = _NAME.match(self.text, start + 1)
         assert name
@@ -105,7 +105,7 @@ class SourceMerger:
         return f"<{tag}{tail[0]}", tail.end()
 
     def with_new(self, element: Element, plan: ClassPlan, pieces: dict[str, str], wanted: dict[str, str]) -> list[str]:
-        """The attributes that stay, and those that were set since, each behind its predecessor in EMF's order."""
+        """The attributes that stay, and those that were set since, each after its predecessor in EMF's order."""
         order = list(pieces)
         before = None
         for key, value in wanted.items():
@@ -125,7 +125,7 @@ class SourceMerger:
         return key == self.serializer.prefixes.xsi_type
 
     def is_unchanged(self, element: Element, plan: ClassPlan, key: str, value: str, wanted: str | None) -> bool:
-        """Whether an attribute of the source means what the object says now."""
+        """Whether an attribute of the source still has the value of the object."""
         if value == wanted:
             return True
         if key == self.serializer.prefixes.xsi_type:
@@ -148,7 +148,7 @@ class SourceMerger:
         return _equal(_parsed(feature.data_type.parse, value), current)
 
     def canonical_references(self, element: Element, key: str, references: list[str]) -> list[str]:
-        """References as we would write them, as far as they were odd but understood."""
+        """References in the form in which we write them, where the source has another one."""
         spellings = self.document.spellings
         found = (spellings.get((element, f"{key} {reference}")) for reference in references)
         return [spelling.canonical if spelling else reference for spelling, reference in zip(found, references, strict=True)]
@@ -156,11 +156,11 @@ class SourceMerger:
     # Content
 
     def content(self, element: Element, children: list[Child], at: int, end: int, separator: str) -> list[str | Part]:
-        """The content between two offsets of the source, with the children of now: text to copy and parts to write.
+        """The content between two offsets of the source, with the present children: text to copy and parts to write.
 
         Parameters
         ----------
-        separator : what stands in front of a child where the source gives no example
+        separator : white space before a child, unless the source gives an example
         """
         extra = [raw for _, raw in element.extras.content if _is_element(raw)] if element.extras else []
         nodes = list(self.nodes(element, children, extra, at, end))
@@ -168,13 +168,13 @@ class SourceMerger:
         new_extra = [piece for raw in extra for piece in (separator, raw)]
         if not _in_order(nodes, children):
             return _reordered(nodes, children, new_extra, separator)
-        behind, before = _added(nodes, children)
-        found: list[str | Part] = [item for child in behind.get(None, ()) for item in (separator, _item(child))]
+        after, before = _added(nodes, children)
+        found: list[str | Part] = [item for child in after.get(None, ()) for item in (separator, _item(child))]
         for node in nodes:
             if node.kept:
                 found += [item for child in before.get(id(node.child), ()) for item in (_item(child), separator)]
                 found.append(node.child if isinstance(node.child, Part) else node.text)
-                found += [item for child in behind.get(id(node.child), ()) for item in (separator, _item(child))]
+                found += [item for child in after.get(id(node.child), ()) for item in (separator, _item(child))]
             elif found and isinstance(found[-1], str) and found[-1].isspace():
                 found.pop()
         if len(new_extra) > 0:
@@ -183,7 +183,7 @@ class SourceMerger:
         return [] if is_blank and not all(node.kept for node in nodes) else found
 
     def nodes(self, element: Element, children: list[Child], extra: list[str], at: int, end: int) -> Iterator[Node]:
-        """The pieces of the content of an element; unknown elements that are found are taken out of `extra`."""
+        """The pieces of the content of an element; unknown elements that are found are removed from `extra`."""
         parts = {child.element: child for child in children if isinstance(child, Part)}
         hrefs = [child for child in children if isinstance(child, Href)]
         while at < end:
@@ -211,7 +211,7 @@ class SourceMerger:
                 yield Node(raw, href, href is not None)
 
     def _element_end(self, opening: re.Match[str]) -> int:
-        """Offset behind an element without an object, whose start tag is given."""
+        """Offset after an element without an object, whose start tag is given."""
         depth, match = 1, opening
         if opening[0].endswith("/>"):
             return opening.end()
@@ -226,7 +226,7 @@ class SourceMerger:
         return match.end()
 
     def _take_href(self, element: Element, opening: re.Match[str], hrefs: list[Href]) -> Href | None:
-        """The reference of now that an element of the source stands for; each is taken once."""
+        """The present reference that an element of the source represents; each is used once."""
         for attribute in attributes_of_tag(self.text, opening.start()):
             if attribute["name"] != "href":
                 continue
@@ -264,7 +264,7 @@ def _before_last_space(found: list[str | Part]) -> int:
 
 
 def _in_order(nodes: list[Node], children: list[Child]) -> bool:
-    """Whether the children that stay have the order of the source, feature by feature; between features it says nothing."""
+    """Whether the children that stay have the order of the source within each feature; between features the order has no meaning."""
     positions = {id(child): position for position, child in enumerate(children)}
     last: dict[str, int] = {}
     for node in nodes:
@@ -277,13 +277,13 @@ def _in_order(nodes: list[Node], children: list[Child]) -> bool:
 
 
 def _added(nodes: list[Node], children: list[Child]) -> tuple[dict[int | None, list[Child]], dict[int, list[Child]]]:
-    """The children that the source does not have, by the id of the child behind (None: at the start) or before which they belong."""
+    """The children that the source does not have, by the id of the child after which (None: first) or before which they belong."""
     present = {id(node.child) for node in nodes}
     firsts: dict[str, Child] = {}
     for child in children:
         if id(child) in present:
             firsts.setdefault(child.feature.xml_name, child)
-    behind: dict[int | None, list[Child]] = {}
+    after: dict[int | None, list[Child]] = {}
     before: dict[int, list[Child]] = {}
     last: Child | None = None
     for child in children:
@@ -291,15 +291,15 @@ def _added(nodes: list[Node], children: list[Child]) -> tuple[dict[int | None, l
         if id(child) in present:
             last = child
         elif first is not None and (last is None or last.feature is not child.feature):
-            # In the source the children of the features before may stand behind those of this one.
+            # In the source the children of preceding features may come after those of this one.
             before.setdefault(id(first), []).append(child)
         else:
-            behind.setdefault(id(last) if last else None, []).append(child)
-    return behind, before
+            after.setdefault(id(last) if last else None, []).append(child)
+    return after, before
 
 
 def _reordered(nodes: list[Node], children: list[Child], extra: list[str], separator: str) -> list[str | Part]:
-    """The children in EMF's order, because the old order and the new one cannot be reconciled; comments come first."""
+    """The children in EMF's order, because their new order contradicts that of the source; comments come first."""
     found: list[str | Part] = []
     for node in nodes:
         if node.kept and node.child is None and not node.text.isspace():

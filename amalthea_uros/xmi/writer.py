@@ -1,8 +1,8 @@
 """Document -> text.
 
-What was read and not changed is copied from the source. A changed object is compared with its place in the source, and whatever of
-it still says the same stays to the letter; the rest is written as EMF does. So a file that EMF wrote, and also one that a person laid
-out and commented, differs after saving only where the model differs.
+What was read and not modified is copied from the source. A modified object is compared with its text in the source: what still has
+the same meaning is preserved byte for byte, and the rest is written as EMF does. So a file that EMF wrote, and also one that a person
+formatted and commented, differs after saving only where the model differs.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ def document_text(document: Document, canonical: bool = False) -> str:
 
     Parameters
     ----------
-    canonical : write everything as EMF does, whatever the source looks like; comments and unknown content stay
+    canonical : write everything in EMF's layout, whatever the source looks like; comments and unknown content are preserved
 
     Raises
     ------
-    WriteError : something in the document is not allowed in its AMALTHEA version; carries a finding for each.
+    WriteError : the AMALTHEA version of the document does not allow something in it; carries a finding for each such thing.
     """
     source = None if canonical else _usable_source(document)
     if source is not None:
@@ -45,13 +45,13 @@ def document_text(document: Document, canonical: bool = False) -> str:
     writer = _Writer(document, source)
     text = writer.document()
     if writer.serializer.findings:
-        # What differs from the source is spelled twice.
+        # What differs from the source is serialised twice.
         raise WriteError(dict.fromkeys(writer.serializer.findings))
     return text
 
 
 def _usable_source(document: Document) -> Source | None:
-    """The source, unless the document got another root or is to become one of another version."""
+    """The source, unless the root or the version of the document was replaced."""
     source = document.source
     if source is None or source.elements[0] is not document.root or source.version != document.version:
         return None
@@ -102,7 +102,7 @@ class _Writer:
         return "".join(self.out)
 
     def root_attributes(self) -> str:
-        """What XML and XMI demand of the root element, in EMF's order."""
+        """The attributes of the root element that XML and XMI require, in EMF's order."""
         xsi = f' xmlns:xsi="{XSI_NAMESPACE}"' if self.serializer.uses_xsi else ""
         own = f' xmlns:am="{NAMESPACE_PREFIX}{self.version}"'
         # The order changed with 1.0.0, when APP4MC no longer used Sphinx.
@@ -120,15 +120,15 @@ class _Writer:
             self.out.append(self.source.text[self.source.start(place) : self.merger.end(place)])
             return
         if self.depth == MAX_DEPTH:
-            # The reader refuses what is nested deeper, and `part` itself runs into the recursion limit of Python.
-            self.serializer.refuse(element, f"is nested more than {MAX_DEPTH} deep")
+            # The reader refuses deeper nesting, and `part` would exceed the recursion limit of Python.
+            self.serializer.refuse(element, f"nested more than {MAX_DEPTH} levels deep")
             return
         self.depth += 1
         self.whole_part(feature, element, place, indent)
         self.depth -= 1
 
     def whole_part(self, feature: FeaturePlan, element: Element, place: int | None, indent: str) -> None:
-        """Write an object that changed, or that the source does not hold."""
+        """Write an object that was modified, or that is not in the source."""
         plan = self.serializer.plan(element)
         if plan is None:
             return
@@ -152,7 +152,7 @@ class _Writer:
         self.merged_content(element, tag, children, indent, place, at)
 
     def with_extras(self, feature: FeaturePlan, element: Element, plan: ClassPlan, write_plan: WritePlan) -> str:
-        """The attributes of an object with those of its file that are not understood, as far as nothing was set in their place."""
+        """The attributes of an object with the unknown ones of its file, unless they were replaced since."""
         wanted = self.serializer.attributes(feature, plan, element, write_plan)
         for key, text in element.extras.attributes.items() if element.extras else ():
             known = plan.attributes.get(key)
@@ -161,7 +161,7 @@ class _Writer:
         return "".join(f' {key}="{escape(text)}"' for key, text in wanted.items())
 
     def canonical_content(self, element: Element, tag: str, children: list[Child], indent: str) -> None:
-        """The end of the start tag, the children, and the end tag, laid out as EMF does."""
+        """The end of the start tag, the children, and the end tag, in EMF's layout."""
         out, inner = self.out, indent + _INDENT
         separator = self.newline + inner
         extra = element.extras.content if element.extras else []
@@ -184,7 +184,7 @@ class _Writer:
         out.append(f"{self.newline}{indent}</{tag}>")
 
     def merged_content(self, element: Element, tag: str, children: list[Child], indent: str, place: int, at: int) -> None:
-        """The same for an object of the source, whose start tag ends at an offset."""
+        """The same for an object that is in the source, where its start tag ends at an offset."""
         assert self.source
         assert self.merger
         text, out = self.source.text, self.out
