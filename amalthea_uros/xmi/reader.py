@@ -387,9 +387,7 @@ class _Reader:
         if key.startswith("xmlns"):
             return
         message = f"unknown attribute {key!r} of {type(element).__name__} (AMALTHEA {self.version})"
-        self.collector.add(
-            CollectedFinding("XMI011", Severity.WARNING, message, _KEPT, self.offset, key), key, plan.attributes
-        )
+        self.collector.add(CollectedFinding("XMI011", Severity.WARNING, message, _KEPT, self.offset, key), key, plan.attributes)
 
     def invalid_value(self, element: Element, key: str, value: str, error: ValueError) -> None:
         extras_of(element).attributes[key] = value

@@ -35,7 +35,7 @@ def _extract_demand(ticks: Any, context: Extracting, _element: Element) -> perf.
         if name is not None and value is not None:
             by_core_type.append((name, value))
     if default is None and not by_core_type:
-        context.note("EXT004", "ticks without a value are left out", ticks)
+        context.note("EXT004", "Ticks ignored: they have no value", ticks)
         return None
     return perf.Demand(default, tuple(by_core_type))
 
