@@ -1,8 +1,8 @@
 """Two models compared by meaning.
 
-Objects are the same if their unique names are, wherever they stand; parts without a unique name are matched inside the objects
-that hold them. What has no meaning is not compared: files, ids, spelling, the order of what stands side by side, attributes
-that say the same as their unset.
+Objects are the same if their unique names are, regardless of their position; parts without a unique name are matched within their
+containers. What has no meaning is not compared: files, ids, spelling, the order of unordered parts, attributes with their default
+value.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 #: The feature of the change that is another AMALTHEA version.
 VERSION_FEATURE = "AMALTHEA version"
 
-#: So many names of a list are told.
+#: Further names of a list are only counted.
 _MAX_NAMES = 5
 
 Elements = tuple[Element, ...]
@@ -55,9 +55,9 @@ class Change:
     Attributes
     ----------
     class_name, qualified_name : the object; for a removed one as in the old model, else as in the new one
-    feature : the name in files of the feature that changed, or that holds a moved object; "" for added and removed objects
-    old, new : the values in a few words; of a list what was removed, and what was added or stands in another order; of an
-        object without unique name what it is about
+    feature : the name in files of the feature that changed, or that contains a moved object; "" for added and removed objects
+    old, new : the values as text; of a list what was removed, and what was added or reordered; of an object without unique
+        name its label
     old_element, new_element : the object in the two models, None where it is absent
     """
 
@@ -72,7 +72,7 @@ class Change:
 
 
 def difference(old: Model, new: Model) -> list[Change]:
-    """What is different by meaning, in the order of the new model; what was removed stands where its container is."""
+    """The differences in meaning, in the order of the new model; a removed object has the position of its container."""
     was_enabled = gc.isenabled()
     # The comparison makes many objects and no garbage: scanning both models for it would take half of the time.
     gc.disable()
@@ -95,7 +95,7 @@ class _Comparison:
         self.new = Side(self.new_names, Fingerprints(unset_attributes, self.new_names.token, numbers))
         #: Old objects -> where they are now.
         self.counterparts: dict[Element, Element] = dict(self.matching.pairs)
-        #: Objects without counterpart; what they hold came or went with them.
+        #: Objects without counterpart; their parts were added or removed with them.
         self.unmatched: set[Element] = {*self.matching.removed, *self.matching.added}
         self.found: list[Change] = []
 
@@ -114,7 +114,7 @@ class _Comparison:
                 self.add(added)
         return sorted(self.found, key=self.place)
 
-    # What to tell
+    # Results
 
     def change(self, old: Element | None, new: Element | None, feature: str, old_text: str, new_text: str) -> None:
         self.record(ChangeKind.CHANGED, old, new, feature, old_text, new_text)
@@ -148,7 +148,7 @@ class _Comparison:
             holder = holder.container
         return holder is not None
 
-    # What to compare
+    # Comparison
 
     def versions(self) -> None:
         old, new = (", ".join(sorted({document.version for document in model.documents})) for model in self.models)
@@ -289,7 +289,7 @@ class _Tokens:
         return names
 
     def names_moved(self, other: _Tokens) -> list[str]:
-        """The names of the targets that stand in both lists, but in another order."""
+        """The names of the targets that are in both lists, but in another order."""
         places = {token: place for place, token in enumerate(other.tokens)}
         common = [(t, e) for t, e in dict(zip(self.tokens, self.targets, strict=True)).items() if t in places]
         kept = set(increasing([places[token] for token, _ in common]))

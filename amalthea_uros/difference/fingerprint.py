@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from amalthea_uros.difference.unset import UnsetAttributes
 
-#: Classes of which the parts follow each other, and the feature that holds them; all other parts stand side by side.
+#: Classes with ordered parts, and the feature that contains them; all other parts are unordered.
 _SEQUENCES = (
     (IActivityGraphItemContainer, "items"),
     (AbstractEventChain, "items"),
@@ -55,7 +55,7 @@ class Fingerprints:
     Parameters
     ----------
     unset_attributes : of the models to be compared
-    token : what stands for the target of a reference
+    token : the token of the target of a reference
     numbers : the fingerprints given out, shared by the models to be compared
     stops : whether a part counts by its token only, or not at all (None), instead of by its content
     """
@@ -93,7 +93,7 @@ class Fingerprints:
         return self._numbers.setdefault((type(element), *facts), len(self._numbers))
 
     def _facts(self, element: Element) -> list[tuple[str, Hashable]]:
-        """What is set and does not say the same as absence, by feature, in an order that depends on the names only."""
+        """The values that differ from the defaults, by feature, in an order that depends on the names only."""
         unset_attributes = self._unset_attributes.of(element)
         values = element.__dict__
         facts: list[tuple[str, Any]] = []

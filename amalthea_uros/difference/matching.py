@@ -23,7 +23,7 @@ def pair_up(
     old_key: Callable[[Element], Hashable],
     new_key: Callable[[Element], Hashable],
 ) -> list[Pair]:
-    """Pairs of objects with equal keys, those with the same key in their order; the key None fits nothing."""
+    """Pairs of objects with equal keys, those with the same key in their order; the key None matches none."""
     waiting: dict[Hashable, deque[Element]] = defaultdict(deque)
     for element in new:
         key = new_key(element)
@@ -141,5 +141,5 @@ def _position_key(element: Element, names: Names) -> Hashable:
 
 
 def _without(elements: list[Element], taken: Iterable[Element]) -> list[Element]:
-    gone = set(taken)
-    return [element for element in elements if element not in gone]
+    excluded = set(taken)
+    return [element for element in elements if element not in excluded]

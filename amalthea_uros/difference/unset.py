@@ -1,4 +1,4 @@
-"""What absent attributes stand for when documents of one or several AMALTHEA versions are compared."""
+"""The meaning of unset attributes when documents of one or several AMALTHEA versions are compared."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ _VARIES = object()
 
 
 class UnsetAttribute(NamedTuple):
-    """The absence of one attribute in one version.
+    """An unset attribute in one version.
 
     Attributes
     ----------
-    default : the value that means the same as absence
-    stands_for : what absence means; None if one of the versions has no such attribute and thus nothing to differ from
-    common : what absence means in all the versions, equal to nothing if it differs between them
+    default : the value that means the same as being unset
+    stands_for : the value that unset means; None if one of the versions has no such attribute, so that there is no difference
+    common : the value that unset means in all versions; equal to no value if it differs between them
     """
 
     default: Any

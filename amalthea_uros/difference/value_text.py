@@ -1,4 +1,4 @@
-"""Values and objects in a few words, for people."""
+"""Short texts of values and objects."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from amalthea_uros.metamodel.naming import qualified_name, segments
 
 UNSET = "unset"
 
-#: Longer texts are shown in part.
+#: Longer texts are truncated.
 _MAX_LENGTH = 120
 
 
@@ -36,14 +36,14 @@ def value_text(value: Any) -> str:
 
 
 def readable_name(element: Element) -> str:
-    """The unique name of an object as people read it."""
+    """The unique name of an object in readable form."""
     if element.is_referable or element.unresolved is not None:
         return ".".join(filter(None, segments(element))) or qualified_name(element)
     return qualified_name(element)
 
 
 def label(element: Element) -> str:
-    """What tells an object from its neighbours: its unique name or else its key, its name, or the object it is about."""
+    """The label of an object: its unique name or else its key, its name, or the object that it refers to."""
     values = element.__dict__
     if has_identity(element):
         return readable_name(element)
@@ -67,7 +67,7 @@ def first_reference(element: Element) -> Element | None:
 
 
 def shortened(text: str) -> str:
-    """A text in one line of bearable length."""
+    """A text in one line of limited length."""
     line = " ".join(text.split())
     return line if len(line) <= _MAX_LENGTH else line[: _MAX_LENGTH - 3] + "..."
 

@@ -1,4 +1,4 @@
-"""Parts and references of objects: lists that know their owner, and the ways into and out of a container."""
+"""Parts and references of objects: lists that know their owner, and attaching and detaching of objects."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ _set = object.__setattr__
 
 
 class Revision:
-    """Counts the changes of names and containment in this process; look-up tables made earlier are stale."""
+    """Counts the changes of names and containment in this process; look-up tables of an earlier revision are stale."""
 
     number: ClassVar[int] = 0
 
 
 class ReferenceList(list[E]):
-    """References of one object, in order; its document learns of every change."""
+    """References of one object, in order; every change marks the object as modified."""
 
     __slots__ = ("_owner",)
 
@@ -84,7 +84,7 @@ class ReferenceList(list[E]):
 
 
 class ContainmentList(ReferenceList[E]):
-    """Parts of one object, in order. Every way of putting an object in makes the owner its container."""
+    """Parts of one object, in order. Adding an object makes the owner its container."""
 
     __slots__ = ()
 
@@ -131,7 +131,7 @@ class ContainmentList(ReferenceList[E]):
 
 
 def mark_modified(element: Element, renames: bool = False) -> Document | None:
-    """Tell the document that an object changed, and whether references to it, or to its parts, may have to as well."""
+    """Mark an object as modified, and as renamed if references to it or to its parts may be affected."""
     path = path_of(element)
     if renames:
         Revision.number += 1
@@ -150,16 +150,16 @@ def path_of(element: Element) -> list[Element]:
 
 
 def detach(value: Element) -> None:
-    """Take the container from an object that is about to be taken out of it."""
+    """Detach an object from its container, before it is removed from it."""
     document = mark_modified(value, renames=True)
     if document is not None and document.source is not None:
-        # What changes while it is out goes unnoticed; should it come back, all of it is compared with the source.
+        # Changes of a detached object are not recorded; if it comes back, all of it is compared with the source.
         document.changes.modified.update(value.walk())
     _set(value, "_container", None)
 
 
 def attach(owner: Element, value: Element) -> None:
-    """Make `owner` the container of `value`, taking it out of the old one."""
+    """Make `owner` the container of `value`, and remove it from the old one."""
     if not hasattr(value, "_container"):
         raise TypeError(f"{owner!r} cannot contain {value!r}: not a model object")
     ancestor: Element | None = owner

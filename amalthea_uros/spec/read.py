@@ -170,7 +170,7 @@ def _schema(kind: type[Section]) -> dict[str, Any]:
 
 
 def _variants(schema: dict[str, Any], whole: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """A schema and all that it stands for."""
+    """A schema and its alternatives."""
     if "$ref" in schema:
         yield from _variants(whole["$defs"][schema["$ref"].rpartition("/")[2]], whole)
         return

@@ -228,7 +228,7 @@ def extract_parameters(element: Any, context: Extracting, defaults: Iterable[am.
 
     Parameters
     ----------
-    defaults : definitions whose default values count where nothing is stated
+    defaults : definitions whose default values apply where no value is given
     """
     priority: int | None = None
     deadline: int | None = None
