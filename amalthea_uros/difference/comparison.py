@@ -193,7 +193,7 @@ class _Comparison:
             self.change(*_first_of_each(old, new), feature.xml_name, value_text(old_value), value_text(new_value))
 
     def meaning(self, feature: Feature, elements: Elements, others: Elements) -> Any:
-        """The first value that says more than unset."""
+        """The first value that differs from the default."""
         unset_attributes = [self.unset_attributes.of(element)[feature.name] for element in elements or others]
         values = [a.meaning(e.__dict__.get(feature.name)) for a, e in zip(unset_attributes, elements, strict=False)]
         return next(

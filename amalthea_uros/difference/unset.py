@@ -38,7 +38,7 @@ class UnsetAttribute(NamedTuple):
 
 
 class UnsetAttributes:
-    """The unset_attributes of the attributes of every class in the versions of some documents."""
+    """The meaning of every unset attribute of every class in the versions of some documents."""
 
     def __init__(self, documents: Iterable[Document]) -> None:
         self.versions = frozenset(document.facts_version for document in documents)
