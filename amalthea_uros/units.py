@@ -1,13 +1,14 @@
 """Times, frequencies, data sizes and bit rates, as exact numbers and as text.
 
-Inside, a time is a whole number of picoseconds, a data size of bits, a bit rate of bits per second, and a frequency an exact
-fraction in hertz (333.3 MHz is no whole number of anything). Text always carries its unit: "10 ms", "250 kbit/s", "4 B".
+Internally a time is a whole number of picoseconds, a data size of bits, a bit rate of bits per second, and a frequency an exact
+fraction in hertz (a third of a megahertz is not a whole number of hertz). Text always has a unit: "10 ms", "250 kbit/s", "4 B".
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from decimal import MAX_EMAX, Context, Decimal
 from difflib import get_close_matches
 from fractions import Fraction
 from math import ceil, floor
@@ -31,12 +32,12 @@ SECOND: Time = 1000 * MILLISECOND
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S*)\s*", re.ASCII)
 _LONGEST_NUMBER = 40
-#: Quantities fit into 64 bits, also where they are summed up in arrays: times up to 106 days.
+#: Quantities fit into 64 bits, so that arrays can hold them: times up to 106 days.
 _LIMIT = 2**63
 
 
 def _data_units(suffix: str = "") -> dict[str, int]:
-    """Units of data, biggest first among equals in base: decimal and binary prefixes, bytes and bits."""
+    """Bytes and bits with decimal and binary prefixes: unit -> bits."""
     found = {}
     for symbol, bits in (("B", 8), ("bit", 1)):
         found[symbol + suffix] = bits
@@ -52,9 +53,9 @@ class Dimension(NamedTuple):
     Attributes
     ----------
     article : its name with the article, for messages
-    units : unit -> its size in the unit used inside
-    example : how a value looks
-    whole : whether only whole numbers of the unit used inside are values
+    units : unit -> its size in the internal unit
+    example : a value
+    whole : plural of the internal unit if values are whole numbers of it, else ""
     """
 
     article: str
@@ -84,32 +85,32 @@ BIT_RATE = Dimension("a bit rate", _data_units("/s"), "250 kbit/s", "bits per se
 
 
 def parse(text: str, dimension: Dimension) -> Fraction:
-    """The value of a text such as "10 ms", in the unit used inside; exact.
+    """The value of a text such as "10 ms", in the internal unit; exact.
 
     Raises
     ------
-    ValueError : no number, no unit, an unknown unit, or a fraction of what is counted in whole numbers; says what and why.
+    ValueError : no number, no unit, an unknown unit, out of range, or not a whole number of the internal unit.
     """
     match = _QUANTITY.fullmatch(text)
     if match is None or len(match[1]) > _LONGEST_NUMBER:
         raise ValueError(f"{shortened(text)!r} is not {dimension.article} such as {dimension.example!r}")
     number, unit = match.groups()
     if not unit:
-        raise ValueError(f"{text.strip()!r} has no unit; {dimension.article} looks like {dimension.example!r}")
+        raise ValueError(f"{text.strip()!r} has no unit; write {dimension.article} such as {dimension.example!r}")
     if unit not in dimension.units:
         raise ValueError(f"{shortened(unit)!r} is not a unit of {dimension.article.split(' ', 1)[1]}{_advice(unit, dimension)}")
     value = Fraction(number) * dimension.units[unit]
     if abs(value) >= _LIMIT:
         raise ValueError(f"{text.strip()!r} is out of range")
     if dimension.whole and value.denominator != 1:
-        raise ValueError(f"{text.strip()!r} is no whole number of {dimension.whole}")
+        raise ValueError(f"{text.strip()!r} is not a whole number of {dimension.whole}")
     return value
 
 
 def _advice(unit: str, dimension: Dimension) -> str:
     folded = {known.lower(): known for known in dimension.units}
     near = folded.get(unit.lower()) or next(iter(get_close_matches(unit, dimension.units, n=1)), None)
-    return f", did you mean {near!r}?" if near else f"; units are {', '.join(dimension.units)}"
+    return f", did you mean {near!r}?" if near else f"; known units: {', '.join(dimension.units)}"
 
 
 def shortened(text: str, length: int = 40) -> str:
@@ -137,21 +138,31 @@ def parse_bit_rate(text: str) -> BitRate:
     return int(parse(text, BIT_RATE))
 
 
-#: Units for output, biggest first.
+#: Units for output, largest first.
 _TIME_STEPS = (("s", SECOND), ("ms", MILLISECOND), ("us", MICROSECOND), ("ns", NANOSECOND), ("ps", PICOSECOND))
 _FREQUENCY_STEPS = (("GHz", 10**9), ("MHz", 10**6), ("kHz", 10**3), ("Hz", 1))
 _DATA_STEPS = tuple((unit, DATA_SIZE.units[unit]) for unit in ("GiB", "GB", "MiB", "MB", "KiB", "kB", "B", "bit"))
 _RATE_STEPS = (("Gbit/s", 10**9), ("Mbit/s", 10**6), ("kbit/s", 10**3), ("bit/s", 1))
 
 
-def _steps_text(value: Fraction | int, steps: tuple[tuple[str, int], ...]) -> str:
-    """The value in the biggest unit in which it is at least 1, with as many decimals as it has."""
-    unit, size = next((step for step in steps if value >= step[1] or -value >= step[1]), steps[-1])
-    whole, rest = divmod(value, size)
-    return f"{float(Fraction(value) / size):.12g} {unit}" if rest else f"{whole} {unit}"
+_TWELVE_DIGITS = Context(prec=12, Emax=MAX_EMAX)
 
 
-def time_text(value: Time) -> str:
+def number_text(number: int | Fraction) -> str:
+    """A number with at most twelve significant digits, also beyond the range of `float`: "2.5", "1e+20"."""
+    quotient = _TWELVE_DIGITS.divide(Decimal(number.numerator), Decimal(number.denominator))
+    value = _TWELVE_DIGITS.normalize(quotient)
+    return f"{value:f}" if -7 < value.adjusted() < 12 else f"{value:g}"
+
+
+def _steps_text(value: int | Fraction, steps: tuple[tuple[str, int], ...]) -> str:
+    """The value in the largest unit in which it is at least 1."""
+    exact = Fraction(value)
+    unit, size = next((step for step in steps if abs(exact) >= step[1]), steps[-1])
+    return f"{number_text(exact / size)} {unit}"
+
+
+def time_text(value: Time | Fraction) -> str:
     """A time for people: "12 us", "16.65 us", "0 s"."""
     return _steps_text(value, _TIME_STEPS) if value else "0 s"
 
@@ -162,9 +173,9 @@ def frequency_text(value: Frequency) -> str:
 
 
 def data_size_text(value: DataSize) -> str:
-    """A data size for people, in the biggest unit that needs no decimals: "240 KiB", "4 B"."""
+    """A data size for people, in the largest unit that needs no decimals: "240 KiB", "4 B"."""
     unit, size = next(step for step in _DATA_STEPS if (value and value % step[1] == 0) or step[1] == 1)
-    return f"{value // size} {unit}" if value else "0 B"
+    return f"{number_text(value // size)} {unit}" if value else "0 B"
 
 
 def bit_rate_text(value: BitRate) -> str:
@@ -173,20 +184,20 @@ def bit_rate_text(value: BitRate) -> str:
 
 
 def ticks_of_time(time: Time, frequency: Frequency) -> Fraction:
-    """How many ticks of a clock a time is; exact, so that the caller decides how to round."""
+    """The number of clock ticks in a time; exact, so that the caller decides how to round."""
     return Fraction(time) * frequency / SECOND
 
 
 def time_of_ticks(ticks: int | Fraction, frequency: Frequency) -> Fraction:
-    """Picoseconds that a number of ticks takes; exact, so that the caller decides how to round."""
+    """The picoseconds that a number of ticks takes; exact, so that the caller decides how to round."""
     return Fraction(ticks) * SECOND / frequency
 
 
 def up(value: Fraction) -> int:
-    """Rounded as an upper bound has to be."""
+    """Rounded towards a safe upper bound."""
     return ceil(value)
 
 
 def down(value: Fraction) -> int:
-    """Rounded as a lower bound has to be."""
+    """Rounded towards a safe lower bound."""
     return floor(value)

@@ -26,7 +26,7 @@ from pyecore.resources import ResourceSet
 from pyecore.resources.xmi import XMI_URL, XMIOptions, XMIResource
 
 from amalthea_uros.metamodel.factfile import FeatureFact, Kind, NumberFact
-from amalthea_uros.metamodel.versions import OLDEST_HELD, Facts, facts, held_versions, newest_version
+from amalthea_uros.metamodel.versions import OLDEST_SUPPORTED, Facts, facts, newest_version, supported_versions
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -104,8 +104,8 @@ def metamodel(version: str) -> ecore.EPackage:
     ------
     ValueError : the files of that version hold no ids, or there are no facts of it.
     """
-    if version not in held_versions():
-        raise ValueError(f"pyecore reads AMALTHEA {OLDEST_HELD} to {newest_version()}, not {version}")
+    if version not in supported_versions():
+        raise ValueError(f"pyecore reads AMALTHEA {OLDEST_SUPPORTED} to {newest_version()}, not {version}")
     known = facts(version)
     package = ecore.EPackage("amalthea", nsURI=known.namespace, nsPrefix="am")
     for enum in known.enums.values():

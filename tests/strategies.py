@@ -15,7 +15,7 @@ from amalthea_uros.metamodel.defaults import enum_class
 from amalthea_uros.metamodel.factfile import Kind
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.metamodel.versions import facts, held_versions
+from amalthea_uros.metamodel.versions import facts, supported_versions
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.reader import read
 from amalthea_uros.xmi.references import resolve
@@ -235,7 +235,7 @@ class Builder:
 
 
 @st.composite
-def models(draw, size: int = 25, versions: tuple[str, ...] = held_versions()) -> Model:
+def models(draw, size: int = 25, versions: tuple[str, ...] = supported_versions()) -> Model:
     """A model of a random version with about that many objects."""
     rng = draw(st.randoms(use_true_random=False))
     return Builder(rng, draw(st.sampled_from(versions)), draw(st.integers(1, size))).model()

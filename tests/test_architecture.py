@@ -10,6 +10,7 @@ PACKAGE = "amalthea_uros"
 @pytest.mark.parametrize(
     ("room", "allowed"),
     [
+        ("_internal", ()),
         ("diagnostics", ()),
         ("errors", ("diagnostics",)),
         ("resources", ()),
@@ -19,10 +20,10 @@ PACKAGE = "amalthea_uros"
         ("spec", ("units", "diagnostics", "errors", "resources")),
         ("uros", ("spec", "perf", "units", "diagnostics", "errors")),
         ("bridge", ("perf", "metamodel", "units", "diagnostics", "errors")),
-        ("metamodel", ("diagnostics",)),
+        ("metamodel", ("units", "diagnostics")),
         ("difference", ("metamodel",)),
         ("xmi", ("diagnostics", "errors", "garbage", "resources", "metamodel")),
-        ("validate", ("metamodel", "diagnostics")),
+        ("validate", ("units", "metamodel", "diagnostics")),
         ("analyze", ("perf", "units", "diagnostics", "compiled")),
         ("pipeline", ("bridge", "diagnostics", "garbage", "metamodel", "perf", "spec", "uros", "xmi")),
         ("checking", ("diagnostics", "garbage", "metamodel", "pipeline", "validate", "xmi")),

@@ -47,8 +47,8 @@ def test_rates():
         ("ms", "is not a time"),
         ("10 mss", "did you mean 'ms'"),
         ("10 MS", "did you mean 'ms'"),
-        ("10 V", "units are ps, ns"),
-        ("0.5 ps", "no whole number of picoseconds"),
+        ("10 V", "known units: ps, ns"),
+        ("0.5 ps", "not a whole number of picoseconds"),
         ("1e999 s", "out of range"),
         ("9" * 50 + " s", "is not a time"),
         ("-1e7 s", "out of range"),
@@ -62,17 +62,51 @@ def test_what_is_no_time(text, reason):
 
 @pytest.mark.parametrize(
     ("picoseconds", "text"),
-    [(0, "0 s"), (12_000_000, "12 us"), (16_650_000, "16.65 us"), (10**12, "1 s"), (1, "1 ps"), (-2 * 10**9, "-2 ms")],
+    [
+        (0, "0 s"),
+        (Fraction(1, 2), "0.5 ps"),
+        (1, "1 ps"),
+        (999, "999 ps"),
+        (1000, "1 ns"),
+        (12_000_000, "12 us"),
+        (16_650_000, "16.65 us"),
+        (Fraction(10**9, 3), "333.333333333 us"),
+        (-2 * 10**9, "-2 ms"),
+        (90 * 10**12, "90 s"),
+    ],
 )
 def test_times_as_text(picoseconds, text):
     assert units.time_text(picoseconds) == text
 
 
-def test_other_text():
+def test_a_time_beyond_the_range_of_float():
+    assert units.time_text(10**5000) == "1e+4988 s"
+
+
+@pytest.mark.parametrize(
+    ("bits", "text"),
+    [
+        (0, "0 B"),
+        (1, "1 bit"),
+        (8, "1 B"),
+        (8192, "1 KiB"),
+        (8000, "1 kB"),
+        (12_000, "1500 B"),
+        (8 * 1024 * 240, "240 KiB"),
+        (2**33, "1 GiB"),
+    ],
+)
+def test_data_sizes_as_text(bits, text):
+    assert units.data_size_text(bits) == text
+
+
+@given(st.fractions())
+def test_a_number_as_text_is_right_to_twelve_digits(number):
+    assert abs(Fraction(units.number_text(number)) - number) <= abs(number) / 10**11
+
+
+def test_frequencies_and_bit_rates_as_text():
     assert units.frequency_text(Fraction(300 * 10**6)) == "300 MHz"
-    assert units.data_size_text(32) == "4 B"
-    assert units.data_size_text(3) == "3 bit"
-    assert units.data_size_text(8 * 1024 * 240) == "240 KiB"
     assert units.bit_rate_text(250_000) == "250 kbit/s"
 
 

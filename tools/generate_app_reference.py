@@ -17,11 +17,11 @@ from amalthea_uros.spec.schema import json_schema
 
 HEAD = """# All keys of app.yaml
 
-Generated from the JSON Schema that `amuros schema` prints. A key in **bold** has to be stated. Times, sizes, rates and frequencies
-carry their unit: `10 ms`, `4 B`, `250 kbit/s`, `50 Hz`.
+Generated from the JSON Schema that `amuros schema` prints. Keys in **bold** are required. Times, sizes, rates and frequencies have
+a unit: `10 ms`, `4 B`, `250 kbit/s`, `50 Hz`.
 """
 
-#: Patterns tell the quantity by its smallest unit.
+#: The quantity of a pattern is recognised by its smallest unit.
 QUANTITIES = {"ps": "time", "Hz": "frequency", "B/s": "bit rate", "B": "size"}
 
 
@@ -33,7 +33,7 @@ def main(target: Path) -> None:
 
 
 def order(schema: dict[str, Any]) -> Iterator[str]:
-    """Sections as they are met from the top."""
+    """Names of the sections in the order of their first use."""
     waiting, seen = references(schema["properties"]), set()
     while waiting:
         name = waiting.pop(0)

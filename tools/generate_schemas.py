@@ -19,7 +19,7 @@ from typing import NamedTuple
 from templating import ROOT, templates
 
 from amalthea_uros.metamodel.factfile import FeatureFact, Kind, NumberFact
-from amalthea_uros.metamodel.versions import Facts, facts, held_versions
+from amalthea_uros.metamodel.versions import Facts, facts, supported_versions
 
 TARGET = ROOT / "schemas"
 
@@ -161,7 +161,7 @@ def render(version: str) -> str:
 
 def main(target: Path) -> None:
     target.mkdir(parents=True, exist_ok=True)
-    for version in held_versions():
+    for version in supported_versions():
         (target / f"amalthea-{version}.xsd").write_text(render(version), encoding="utf-8")
 
 

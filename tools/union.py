@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 
 from amalthea_uros.metamodel.factfile import Kind
-from amalthea_uros.metamodel.versions import facts, held_versions
+from amalthea_uros.metamodel.versions import facts, supported_versions
 
 #: The enumeration lost its name to a class in 2.0.0.
 RENAMED_ENUMS = {"Condition": "CombinatorialCondition"}
@@ -106,7 +106,7 @@ class Union:
 
 def union() -> Union:
     """Merge the facts of all held versions, the newest first, so that its order and names lead."""
-    versions = held_versions()
+    versions = supported_versions()
     merged = Union(versions, {}, {}, set())
     for version in reversed(versions):
         declared = facts(version)

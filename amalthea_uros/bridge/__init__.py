@@ -1,6 +1,5 @@
-"""Between the generic performance model and AMALTHEA: `build` makes one of the other, `extract` goes the way back.
+"""Conversion between the generic performance model and AMALTHEA: `build` in one direction, `extract` in the other.
 
-Where both have objects of the same shape, a table says which class stands for which and which feature for which field. It drives
-both directions, so that they are inverse to each other by construction. What is shaped differently is written by hand, both ways in
-one file.
+Where both have objects of the same structure, a table maps classes to classes and fields to features. It drives both directions, so
+that they are inverse to each other by construction. Objects of different structure are converted by code, both directions in one file.
 """

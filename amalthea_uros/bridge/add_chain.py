@@ -1,4 +1,4 @@
-"""A chain added to a model that was read, without touching the rest of it."""
+"""Adding a chain to a model that was read, without modifying the rest of it."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ T = TypeVar("T", bound=am.BaseObject)
 
 
 def add_chain(model: Model, chain: EventChain, events: Sequence[Event]) -> None:
-    """Add a sequence of events of processes and runnables; events that the model has already are used.
+    """Add a sequence of events of processes and runnables; existing events of the model are reused.
 
     Raises
     ------
-    ValueError : the model has a chain of that name.
+    ValueError : the model already has a chain of that name.
     """
     if model.find(am.EventChain, chain.name) is not None:
-        raise ValueError(f"the model has a chain {chain.name!r} already")
+        raise ValueError(f"the model already has a chain {chain.name!r}")
     root = model.root
     if root.event_model is None:
         root.event_model = am.EventModel()
@@ -64,4 +64,4 @@ def _event(model: Model, event: Event) -> am.Event:
                 event_type=_RUNNABLE[change],
                 process=model[am.Process, process],
             )
-    raise AssertionError(f"no event of a path: {event}")
+    raise AssertionError(f"not an event of a path: {event}")

@@ -40,8 +40,8 @@ def build_model(system: System, version: str | None = None) -> Model:
 
     Raises
     ------
-    WriteError : a name leads nowhere or occurs twice, or the version has no place for something. What the version does not know
-        of classes, features and literals is refused when the model is written.
+    WriteError : an undefined or duplicate name, or something that the version cannot represent. Classes, features and literals
+        that the version does not have are refused when the model is written.
     """
     context = Building(version or newest_version())
     root = _Build(system, context).root()
@@ -52,7 +52,7 @@ def build_model(system: System, version: str | None = None) -> Model:
 
 
 class _Build:
-    """Makes all objects first, so that references find them, and then fills them."""
+    """Creates all objects first, so that references find them, and then sets their features."""
 
     def __init__(self, system: System, context: Building) -> None:
         self.system = system
@@ -61,13 +61,13 @@ class _Build:
         self._waiting: list[tuple[Table, list[Element], Sequence[Named]]] = []
 
     def objects(self, table: Table, items: Sequence[Named]) -> Any:
-        """Objects that are filled when all exist."""
-        elements = table.shells(items, self.context)
+        """Objects whose features are set when all objects exist."""
+        elements = table.create_all(items, self.context)
         self._waiting.append((table, elements, items))
         return elements
 
     def root(self) -> am.Amalthea:
-        """The whole model; what is empty is left out."""
+        """The whole model without empty sub-models."""
         hardware = HardwareBuilder(self.context).build(self.system.hardware)
         os_model = self.os_model()
         software, stimuli, events = self.software(), self.stimuli(), self.events()
@@ -102,7 +102,7 @@ class _Build:
         )
 
     def os_model(self) -> am.OSModel:
-        """Operating systems, what they cost, and semaphores."""
+        """Operating systems, their overheads, and semaphores."""
         os = self.system.os
         overheads = [am.OsOverhead(name=overhead.name) for overhead in os.overheads]
         for overhead, element in zip(os.overheads, overheads, strict=True):

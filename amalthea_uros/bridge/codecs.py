@@ -1,4 +1,4 @@
-"""How a value of the one side becomes one of the other, in both directions."""
+"""Conversion of values between `perf` and AMALTHEA, in both directions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from amalthea_uros.metamodel.magnitudes import bits, bits_per_second, hertz, pic
 
 
 class Codec(NamedTuple):
-    """Two functions, inverse to each other; both take None for what is not given.
+    """Two functions that are inverse to each other; None is a value that is not given.
 
     Attributes
     ----------
@@ -34,8 +34,8 @@ PLAIN = Codec(lambda value, _: value, lambda value, _context, _element: value)
 
 
 def enumeration(pairs: Mapping[StrEnum, StrEnum]) -> Codec:
-    """Literals by a table; literals of AMALTHEA that the table does not have are not given."""
-    back = {theirs: ours for ours, theirs in pairs.items()}
+    """Literals by a table; literals of AMALTHEA that are not in the table become None."""
+    back = {literal: value for value, literal in pairs.items()}
 
     def build(value: StrEnum, context: Building) -> StrEnum | None:
         if value not in pairs:
@@ -45,17 +45,17 @@ def enumeration(pairs: Mapping[StrEnum, StrEnum]) -> Codec:
     return Codec(build, lambda value, _context, _element: back.get(value))
 
 
-def same_names(ours: type[StrEnum], theirs: type[StrEnum], **others: str) -> Codec:
-    """Literals whose names are the same on both sides, except for some.
+def same_names(model_enum: type[StrEnum], amalthea_enum: type[StrEnum], **others: str) -> Codec:
+    """Literals that have the same names on both sides, with exceptions.
 
     Parameters
     ----------
-    others : our name -> their name
+    others : name of the literal in `perf` -> its name in AMALTHEA
     """
-    return enumeration({literal: theirs[others.get(literal.name, literal.name)] for literal in ours})
+    return enumeration({literal: amalthea_enum[others.get(literal.name, literal.name)] for literal in model_enum})
 
 
-# Quantities. Units without meaning, and values that are not given, give None.
+# Quantities. Values that are not given or whose unit is undefined become None.
 
 _SIZE_UNITS = (DataSizeUnit.B, DataSizeUnit.BIT)
 _RATE_UNITS = (
@@ -67,7 +67,7 @@ _RATE_UNITS = (
 
 
 def build_time(value: int | None) -> am.Time | None:
-    """Picoseconds in the biggest unit that gives a whole number."""
+    """Picoseconds in the largest unit that gives a whole number."""
     if value is None:
         return None
     unit = next(unit for unit, size in magnitudes.TIMES.items() if value % size == 0) if value else TimeUnit.MS
@@ -81,7 +81,7 @@ def _build_frequency(value: Fraction | None, context: Building) -> am.Frequency 
         number = value / size
         if (number >= 1 or size == 1) and Fraction(repr(float(number))) == number:
             return am.Frequency(value=float(number), unit=unit)
-    context.refuse(None, f"the frequency {value} Hz cannot be written as a decimal number")
+    context.refuse(None, f"the frequency {value} Hz has no exact decimal representation")
     return None
 
 
@@ -99,7 +99,7 @@ def _build_rate(value: int | None, _context: Building) -> am.DataRate | None:
     return am.DataRate(value=value // magnitudes.RATES[unit], unit=unit)
 
 
-#: A number that divides; below 1 it means nothing, and is taken for 1.
+#: A divisor; a value below 1 has no meaning and is replaced by 1.
 DIVISOR = Codec(lambda value, _: value, lambda value, _context, _element: None if value is None else max(1, value))
 TIME = Codec(lambda value, _: build_time(value), lambda value, _context, _element: picoseconds(value))
 FREQUENCY = Codec(_build_frequency, lambda value, _context, _element: hertz(value))
@@ -141,7 +141,7 @@ def _name_of(value: Element | None, context: Extracting, element: Element) -> st
     name = context.names.get(value)
     if name is None or value in context.dropped:
         what = getattr(value, "name", None) or value
-        why = "not part of the model" if name is None else "left out"
-        context.note("EXT003", f"{type(value).__name__} {what!r} is referred to, but {why}", element)
+        why = "is not part of the model" if name is None else "was not extracted"
+        context.note("EXT003", f"reference ignored: {type(value).__name__} {what!r} {why}", element)
         return None
     return name

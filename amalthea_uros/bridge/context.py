@@ -1,4 +1,4 @@
-"""What one run of building or extracting knows."""
+"""The state of one run of building or extracting."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Building:
 
     Attributes
     ----------
-    origins : where objects come from, as far as that is known
-    types : data types by their size in bits, as far as something needs one
-    findings : what makes a model impossible
+    origins : locations from which objects come, where known
+    types : data types by their size in bits, as far as they are needed
+    findings : errors that prevent building
     """
 
     def __init__(self, version: str) -> None:
@@ -34,10 +34,10 @@ class Building:
         self.findings: list[Finding] = []
         self._known: dict[type[Element], frozenset[str]] = {}
         self._elements: dict[tuple[Kind, str], Element] = {}
-        self._home: Named | None = None
+        self._holder: Named | None = None
 
     def known_features(self, cls: type[Element]) -> frozenset[str]:
-        """The features that a class has in the version, by their names in files; none if the version has no such class."""
+        """The features of a class in the version, by their names in files; none if the version has no such class."""
         if cls not in self._known:
             is_known = cls.__name__ in self.facts.classes
             self._known[cls] = frozenset(f.name for f in self.facts.features(cls.__name__)) if is_known else frozenset()
@@ -48,11 +48,11 @@ class Building:
         return version_key(self.version) >= version
 
     def register(self, item: Named, element: Element) -> None:
-        """Let references find an object, and remember where it comes from."""
+        """Register an object as a target of references, with its origin."""
         kind = kind_of(type(element))
         assert kind
         if (kind, item.name) in self._elements:
-            self.refuse(item, f"there are two objects of the kind {kind.name.lower().replace('_', ' ')} named {item.name!r}")
+            self.refuse(item, f"duplicate name {item.name!r}: two objects of kind {_text(kind)} have it")
         self._elements[kind, item.name] = element
         if item.origin is not None:
             self.origins[element] = item.origin
@@ -61,30 +61,29 @@ class Building:
         """The object of that name; None, with a finding, if there is none."""
         found = self._elements.get((kind, name))
         if found is None:
-            what = kind.name.lower().replace("_", " ")
-            self.refuse(self._home, f"there is no {what} named {name!r}")
+            self.refuse(self._holder, f"undefined {_text(kind)} {name!r}")
         return found
 
     def at(self, item: Named) -> None:
-        """Say whose references are looked up from now on."""
-        self._home = item
+        """Set the object whose references are resolved from now on."""
+        self._holder = item
 
     def refuse(self, item: Named | None, message: str) -> None:
-        """Note why the model cannot be built."""
+        """Add an error that prevents building."""
         name = item.name if item else ""
         text = f"{name}: {message}" if name else message
         self.findings.append(Finding("BLD001", Severity.ERROR, text, item.origin if item else None, object=name))
 
     def refuse_literal(self, literal: object) -> None:
-        """Note that the object in hand says something for which there is no literal."""
-        self.refuse(self._home, f"AMALTHEA has no literal for {str(literal)!r} here")
+        """Add an error about a value of the current object for which AMALTHEA has no literal."""
+        self.refuse(self._holder, f"AMALTHEA {self.version} has no literal for {str(literal)!r}")
 
     def finish(self) -> None:
-        """Raise what was noted.
+        """Check that there were no errors.
 
         Raises
         ------
-        WriteError : something was noted.
+        WriteError : there were errors; carries a finding for each.
         """
         if self.findings:
             raise WriteError(dict.fromkeys(self.findings))
@@ -96,8 +95,8 @@ class Extracting:
     Attributes
     ----------
     names : unique within each kind
-    dropped : objects with names for which there is none in perf
-    findings : what could not be taken over
+    dropped : named objects that have no counterpart in perf
+    findings : what could not be extracted
     """
 
     def __init__(self, model: Model, dropped: frozenset[Element] = frozenset()) -> None:
@@ -108,7 +107,7 @@ class Extracting:
         self._left_out: dict[str, tuple[int, Element]] = {}
 
     def name(self) -> None:
-        """Give all objects that others refer to a name that is unique in their kind."""
+        """Give every referable object a name that is unique within its kind."""
         taken: set[tuple[Kind, str]] = set()
         for kind, element in self._named():
             own = getattr(element, "name", None) or f"unnamed_{type(element).__name__}"
@@ -119,13 +118,13 @@ class Extracting:
                 while (kind, found) in taken:
                     found = f"{own}_{count}"
                     count += 1
-                message = f"the name {own!r} occurs more than once, this {type(element).__name__} is called {found!r} here"
+                message = f"duplicate name {own!r}: this {type(element).__name__} is called {found!r} in the results"
                 self.note("EXT002", message, element)
             taken.add((kind, found))
             self.names[element] = found
 
     def _named(self) -> Iterator[tuple[Kind, Element]]:
-        """All objects that others refer to by name, in the order of the files."""
+        """All objects that are referenced by name, in the order of the files."""
         stack: list[Element] = [document.root for document in reversed(self.model.documents)]
         while stack:
             element = stack.pop()
@@ -136,35 +135,39 @@ class Extracting:
                 stack.extend(reversed(tuple(element.contents())))
 
     def drop(self, element: Element) -> None:
-        """Note that nothing of perf stands for an object, so that nothing may refer to it."""
+        """Mark an object as one without counterpart in perf, so that references to it are ignored."""
         if element in self.names:
             self.dropped.add(element)
 
     def location(self, element: Element) -> Location | None:
-        """Where an object stands."""
+        """The location of an object."""
         document = element.document
         return document.location_of(element) if document else None
 
     def note(self, rule: str, message: str, element: Element, severity: Severity = Severity.WARNING) -> None:
-        """Note something about an object."""
+        """Add a finding about an object."""
         self.findings.append(Finding(rule, severity, message, self.location(element), object=self.called(element)))
 
     def called(self, element: Element) -> str:
-        """The name of an object, or of what it is part of."""
+        """The name of an object, or of the nearest named container."""
         holder: Element | None = element
         while holder is not None and holder not in self.names:
             holder = holder.container
         return self.names[holder] if holder is not None else ""
 
     def leave_out(self, element: Element) -> None:
-        """Count an object that the generic performance model has no place for."""
+        """Count an object that the generic performance model cannot represent."""
         name = type(element).__name__
         count, first = self._left_out.get(name, (0, element))
         self._left_out[name] = (count + 1, first)
 
     def finish(self) -> tuple[Finding, ...]:
-        """All findings; what was left out is told once for each class."""
+        """All findings; objects that were left out are reported once per class."""
         for name, (count, first) in self._left_out.items():
-            what = f"one {name} is" if count == 1 else f"{count} objects of the class {name} are"
-            self.note("EXT001", f"{what} not taken into account", first, Severity.INFO)
+            what = f"1 object of class {name} is" if count == 1 else f"{count} objects of class {name} are"
+            self.note("EXT001", f"{what} not used by the analysis", first, Severity.INFO)
         return tuple(dict.fromkeys(self.findings))
+
+
+def _text(kind: Kind) -> str:
+    return kind.name.lower().replace("_", " ")

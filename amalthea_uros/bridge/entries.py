@@ -1,4 +1,4 @@
-"""Tables that say which class of AMALTHEA stands for which of perf, and how their fields correspond."""
+"""Tables that map classes of perf to classes of AMALTHEA, and fields to features."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from amalthea_uros.perf.named import Named
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """A field of perf and the feature of AMALTHEA that holds it.
+    """A field of perf and the corresponding feature of AMALTHEA.
 
     Attributes
     ----------
@@ -29,27 +29,27 @@ class Field:
 
 
 class Entry:
-    """A class on each side.
+    """A class of perf and the corresponding class of AMALTHEA.
 
-    A value that is not given on the side of AMALTHEA becomes the default of the field; where there is none, the object is incomplete
-    and left out with a note.
+    A value that is not given in AMALTHEA becomes the default of the field; if there is no default, the object is incomplete and is
+    left out with a finding.
     """
 
-    def __init__(self, ours: type[Any], theirs: type[Element], *columns: Field) -> None:
-        self.ours = ours
-        self.theirs = theirs
+    def __init__(self, model_class: type[Any], amalthea_class: type[Element], *columns: Field) -> None:
+        self.model_class = model_class
+        self.amalthea_class = amalthea_class
         self.columns = columns
-        self.is_named = issubclass(ours, Named)
-        declared = {field.name: field for field in fields(ours)}
+        self.is_named = issubclass(model_class, Named)
+        declared = {field.name: field for field in fields(model_class)}
         self.has_origin = "origin" in declared
         self.is_activity = "locate" in declared
         self._defaults = {column.name: _default(declared[column.name]) for column in columns}
-        features = features_of(theirs)
+        features = features_of(amalthea_class)
         self._xml_names = {column.feature: features[column.feature].xml_name for column in columns}
 
-    def shell(self, item: Any, context: Building) -> Element:
-        """The object of AMALTHEA with nothing but its name, which references will find."""
-        element = self.theirs(name=item.name)
+    def create(self, item: Any, context: Building) -> Element:
+        """The object of AMALTHEA with only its name, as a target of references."""
+        element = self.amalthea_class(name=item.name)
         context.register(item, element)
         return element
 
@@ -57,22 +57,22 @@ class Entry:
         """Set all features."""
         if self.is_named:
             context.at(item)
-        known = context.known_features(self.theirs)
+        known = context.known_features(self.amalthea_class)
         for column in self.columns:
             value = getattr(item, column.name)
             if value is None or value == () or value == "":
                 continue
-            # What a version does not know is left out where it says nothing but the default; the rest the writer refuses.
+            # A feature that the version does not have is omitted if it has the default value; other values are refused by the writer.
             if self._xml_names[column.feature] in known or value != self._defaults[column.name]:
                 setattr(element, column.feature, column.codec.build(value, context))
         return element
 
     def build(self, item: Any, context: Building) -> Any:
-        """The object of AMALTHEA for one that nothing refers to."""
-        return self.fill(self.theirs(), item, context)
+        """The object of AMALTHEA for one that is not a target of references."""
+        return self.fill(self.amalthea_class(), item, context)
 
     def extract(self, element: Element, context: Extracting) -> Any:
-        """The object of perf; None, with a note, if something is missing without which it has no meaning."""
+        """The object of perf; None, with a finding, if a required value is missing."""
         values: dict[str, Any] = {}
         for column in self.columns:
             value = getattr(element, column.feature)
@@ -82,7 +82,7 @@ class Entry:
                 value = self._defaults[column.name]
                 if value is MISSING:
                     what = self._xml_names[column.feature]
-                    context.note("EXT004", f"a {type(element).__name__} without {what} is left out", element)
+                    context.note("EXT004", f"{type(element).__name__} ignored: it has no {what}", element)
                     context.drop(element)
                     return None
             values[column.name] = value
@@ -92,7 +92,7 @@ class Entry:
             values["origin"] = context.location(element)
         if self.is_activity:
             values["locate"] = partial(context.location, element)
-        return self.ours(**values)
+        return self.model_class(**values)
 
 
 def _default(field: Any) -> Any:
@@ -103,25 +103,25 @@ class Table:
     """Entries for the alternatives of one type."""
 
     def __init__(self, *entries: Entry) -> None:
-        self.by_ours: Mapping[type[Any], Entry] = {entry.ours: entry for entry in entries}
-        self.by_theirs: Mapping[type[Element], Entry] = {entry.theirs: entry for entry in entries}
+        self.by_model_class: Mapping[type[Any], Entry] = {entry.model_class: entry for entry in entries}
+        self.by_amalthea_class: Mapping[type[Element], Entry] = {entry.amalthea_class: entry for entry in entries}
 
-    def shells(self, items: Iterable[Any], context: Building) -> list[Element]:
-        """Objects that are filled later, by `fill`."""
-        return [self.by_ours[type(item)].shell(item, context) for item in items]
+    def create_all(self, items: Iterable[Any], context: Building) -> list[Element]:
+        """Objects whose features are set later, by `fill`."""
+        return [self.by_model_class[type(item)].create(item, context) for item in items]
 
     def fill(self, elements: Iterable[Element], items: Iterable[Any], context: Building) -> None:
-        """Set the features of objects that were made by `shells`."""
+        """Set the features of objects that were created by `create_all`."""
         for element, item in zip(elements, items, strict=True):
-            self.by_ours[type(item)].fill(element, item, context)
+            self.by_model_class[type(item)].fill(element, item, context)
 
     def build(self, item: Any, context: Building) -> Any:
         """The object of AMALTHEA."""
-        return self.by_ours[type(item)].build(item, context)
+        return self.by_model_class[type(item)].build(item, context)
 
     def extract(self, element: Element, context: Extracting) -> Any:
-        """The object of perf; None if there is none for it."""
-        entry = self.by_theirs.get(type(element))
+        """The object of perf; None if there is no counterpart."""
+        entry = self.by_amalthea_class.get(type(element))
         if entry is None:
             context.leave_out(element)
             context.drop(element)
@@ -129,7 +129,7 @@ class Table:
         return entry.extract(element, context)
 
     def extract_all(self, elements: Iterable[Element], context: Extracting) -> tuple[Any, ...]:
-        """The objects of perf, without those for which there is none."""
+        """The objects of perf; those without counterpart are left out."""
         return tuple(item for element in elements if (item := self.extract(element, context)) is not None)
 
 

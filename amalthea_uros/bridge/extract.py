@@ -1,6 +1,6 @@
 """An AMALTHEA model as the generic performance model.
 
-Models of any origin and version are taken as they are: what is missing, leads nowhere, or has no place in the generic performance model
+Models of any origin and version are accepted: what is missing, unresolved, or not representable in the generic performance model
 becomes a finding, and the rest is extracted.
 """
 
@@ -43,11 +43,11 @@ E = TypeVar("E", bound=Element)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Extraction:
-    """What came out of a model.
+    """The result of an extraction.
 
     Attributes
     ----------
-    findings : what could not be taken over, each with its place
+    findings : what could not be extracted, each with its location
     """
 
     system: System
@@ -63,7 +63,7 @@ def extract(model: Model) -> Extraction:
         system = _Extract(model, context).system()
         if context.dropped == dropped:
             return Extraction(system=system, findings=context.finish())
-        # What refers to something that was left out has to be extracted without it.
+        # References to objects that were left out must be ignored, too.
         dropped = frozenset(context.dropped)
 
 

@@ -1,4 +1,4 @@
-"""Kinds of named objects: within one, names are unique, and references look for them there."""
+"""Kinds of named objects; names are unique within a kind, and references are resolved within it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from amalthea_uros.metamodel.element import Element
 
 
 class Kind(Enum):
-    """What a name can belong to."""
+    """A kind of named objects."""
 
     CLOCK = auto()
     CORE_TYPE = auto()
@@ -63,7 +63,7 @@ _KIND_OF: dict[type[Element], Kind | None] = {}
 
 
 def kind_of(cls: type[Element]) -> Kind | None:
-    """The kind of the objects of a class; None if nothing refers to them by name."""
+    """The kind of the objects of a class; None if they are not referenced by name."""
     if cls not in _KIND_OF:
         _KIND_OF[cls] = next((KINDS[base] for base in cls.__mro__ if base in KINDS), None)
     return _KIND_OF[cls]

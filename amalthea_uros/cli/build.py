@@ -9,14 +9,14 @@ from pathlib import Path
 import click
 
 from amalthea_uros.cli.output import Output, output_option
-from amalthea_uros.metamodel.versions import held_versions, version_key
+from amalthea_uros.metamodel.versions import supported_versions, version_key
 from amalthea_uros.pipeline import build
 from amalthea_uros.report.build import write_json, write_text
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.xmi.save import save
 
 #: Versions that can be written: older ones lack what a generated model is made of.
-VERSIONS = [version for version in held_versions() if version_key(version) >= (1, 2)]
+VERSIONS = [version for version in supported_versions() if version_key(version) >= (1, 2)]
 
 
 @click.command("build")

@@ -1,4 +1,4 @@
-"""Two sequences laid side by side: what they have in common, in order; near-linear also for thousands of items."""
+"""Alignment of two sequences: their common items, in order; nearly linear even for thousands of items."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ IndexPair = tuple[int, int]
 def align(old: Sequence[Hashable], new: Sequence[Hashable]) -> list[IndexPair]:
     """Index pairs of equal items, increasing on both sides.
 
-    Items that are unique on both sides are settled first; what stands between them is compared on its own.
+    Items that are unique on both sides are matched first; the items between them are compared separately.
 
     >>> align("abcd", "bxcd")
     [(1, 0), (2, 2), (3, 3)]

@@ -1,8 +1,8 @@
 """Two models compared by meaning.
 
-Objects are the same if their unique names are, wherever they stand; parts without a unique name are matched inside the objects
-that hold them. What has no meaning is not compared: files, ids, spelling, the order of what stands side by side, attributes
-that say the same as their absence.
+Objects are the same if their unique names are, regardless of their position; parts without a unique name are matched within their
+containers. What has no meaning is not compared: files, ids, spelling, the order of unordered parts, attributes with their default
+value.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
-from amalthea_uros.difference.absence import Absences
 from amalthea_uros.difference.alignment import increasing
 from amalthea_uros.difference.fingerprint import Fingerprints, is_sequence, unknown_content
 from amalthea_uros.difference.matching import Matching
 from amalthea_uros.difference.names import Names, has_identity
 from amalthea_uros.difference.parts import PartsMatcher, Side
-from amalthea_uros.difference.wording import UNSET, is_inline, label, readable_name, shortened, wording
+from amalthea_uros.difference.unset import UnsetAttributes
+from amalthea_uros.difference.value_text import UNSET, is_inline, label, readable_name, shortened, value_text
 from amalthea_uros.metamodel.classes.base import Amalthea
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import Feature, features_of
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 #: The feature of the change that is another AMALTHEA version.
 VERSION_FEATURE = "AMALTHEA version"
 
-#: So many names of a list are told.
-_MOST_NAMES = 5
+#: Further names of a list are only counted.
+_MAX_NAMES = 5
 
 Elements = tuple[Element, ...]
 
@@ -55,9 +55,9 @@ class Change:
     Attributes
     ----------
     class_name, qualified_name : the object; for a removed one as in the old model, else as in the new one
-    feature : the name in files of the feature that changed, or that holds a moved object; "" for added and removed objects
-    old, new : the values in a few words; of a list what was removed, and what was added or stands in another order; of an
-        object without unique name what it is about
+    feature : the name in files of the feature that changed, or that contains a moved object; "" for added and removed objects
+    old, new : the values as text; of a list what was removed, and what was added or reordered; of an object without unique
+        name its label
     old_element, new_element : the object in the two models, None where it is absent
     """
 
@@ -72,7 +72,7 @@ class Change:
 
 
 def difference(old: Model, new: Model) -> list[Change]:
-    """What is different by meaning, in the order of the new model; what was removed stands where its container is."""
+    """The differences in meaning, in the order of the new model; a removed object has the position of its container."""
     was_enabled = gc.isenabled()
     # The comparison makes many objects and no garbage: scanning both models for it would take half of the time.
     gc.disable()
@@ -86,17 +86,17 @@ def difference(old: Model, new: Model) -> list[Change]:
 class _Comparison:
     def __init__(self, old: Model, new: Model) -> None:
         self.models = old, new
-        absences = Absences([*old.documents, *new.documents])
-        self.absences = absences
+        unset_attributes = UnsetAttributes([*old.documents, *new.documents])
+        self.unset_attributes = unset_attributes
         self.old_names, self.new_names = Names(old), Names(new)
-        self.matching = Matching(self.old_names, self.new_names, absences)
+        self.matching = Matching(self.old_names, self.new_names, unset_attributes)
         numbers: dict[Hashable, int] = {}
-        self.old = Side(self.old_names, Fingerprints(absences, self.old_names.token, numbers))
-        self.new = Side(self.new_names, Fingerprints(absences, self.new_names.token, numbers))
+        self.old = Side(self.old_names, Fingerprints(unset_attributes, self.old_names.token, numbers))
+        self.new = Side(self.new_names, Fingerprints(unset_attributes, self.new_names.token, numbers))
         #: Old objects -> where they are now.
         self.counterparts: dict[Element, Element] = dict(self.matching.pairs)
-        #: Objects without counterpart; what they hold came or went with them.
-        self.lonely: set[Element] = {*self.matching.removed, *self.matching.added}
+        #: Objects without counterpart; their parts were added or removed with them.
+        self.unmatched: set[Element] = {*self.matching.removed, *self.matching.added}
         self.found: list[Change] = []
 
     def changes(self) -> list[Change]:
@@ -105,29 +105,29 @@ class _Comparison:
         for old, new in self.matching.pairs:
             self.pair(old, new)
         for old, new in self.matching.pairs:
-            self.home(old, new)
+            self.owner(old, new)
         for removed in self.matching.removed:
-            if not self.went_along(removed):
+            if not self.has_unmatched_container(removed):
                 self.remove(removed)
         for added in self.matching.added:
-            if not self.went_along(added):
+            if not self.has_unmatched_container(added):
                 self.add(added)
         return sorted(self.found, key=self.place)
 
-    # What to tell
+    # Results
 
     def change(self, old: Element | None, new: Element | None, feature: str, old_text: str, new_text: str) -> None:
-        self.tell(ChangeKind.CHANGED, old, new, feature, old_text, new_text)
+        self.record(ChangeKind.CHANGED, old, new, feature, old_text, new_text)
 
     def remove(self, old: Element) -> None:
-        self.lonely.add(old)
-        self.tell(ChangeKind.REMOVED, old, None, "", "" if has_identity(old) else label(old), "")
+        self.unmatched.add(old)
+        self.record(ChangeKind.REMOVED, old, None, "", "" if has_identity(old) else label(old), "")
 
     def add(self, new: Element) -> None:
-        self.lonely.add(new)
-        self.tell(ChangeKind.ADDED, None, new, "", "", "" if has_identity(new) else label(new))
+        self.unmatched.add(new)
+        self.record(ChangeKind.ADDED, None, new, "", "", "" if has_identity(new) else label(new))
 
-    def tell(
+    def record(
         self, kind: ChangeKind, old: Element | None, new: Element | None, feature: str, old_text: str, new_text: str
     ) -> None:
         shown = new if new is not None else old
@@ -142,13 +142,13 @@ class _Comparison:
             holder = holder.container
         return self.new_names.order[self.counterparts[holder]] if holder is not None else 0
 
-    def went_along(self, element: Element) -> bool:
+    def has_unmatched_container(self, element: Element) -> bool:
         holder = element.container
-        while holder is not None and holder not in self.lonely:
+        while holder is not None and holder not in self.unmatched:
             holder = holder.container
         return holder is not None
 
-    # What to compare
+    # Comparison
 
     def versions(self) -> None:
         old, new = (", ".join(sorted({document.version for document in model.documents})) for model in self.models)
@@ -156,11 +156,11 @@ class _Comparison:
             old_root, new_root = (model.documents[0].root for model in self.models)
             self.change(old_root, new_root, VERSION_FEATURE, old, new)
 
-    def home(self, old: Element, new: Element) -> None:
-        if not self.is_same_home(_home(old), _home(new)):
-            self.tell(ChangeKind.MOVED, old, new, _holding_feature(new).xml_name, _home_text(old), _home_text(new))
+    def owner(self, old: Element, new: Element) -> None:
+        if not self.is_same_owner(_owner(old), _owner(new)):
+            self.record(ChangeKind.MOVED, old, new, _holding_feature(new).xml_name, _owner_text(old), _owner_text(new))
 
-    def is_same_home(self, old: Element | None, new: Element | None) -> bool:
+    def is_same_owner(self, old: Element | None, new: Element | None) -> bool:
         if old is None or new is None:
             return old is new
         if has_identity(old) or has_identity(new):
@@ -169,7 +169,7 @@ class _Comparison:
             return self.counterparts[old] is new
         # Parts of what is equal altogether were not looked at.
         is_alike = type(old) is type(new) and label(old) == label(new)
-        return is_alike and self.is_same_home(_home(old), _home(new))
+        return is_alike and self.is_same_owner(_owner(old), _owner(new))
 
     def pair(self, old: Element, new: Element) -> None:
         self.counterparts[old] = new
@@ -190,13 +190,15 @@ class _Comparison:
     def attribute(self, feature: Feature, old: Elements, new: Elements) -> None:
         old_value, new_value = self.meaning(feature, old, new), self.meaning(feature, new, old)
         if old_value != new_value and not (old_value != old_value and new_value != new_value):
-            self.change(*_firsts(old, new), feature.xml_name, wording(old_value), wording(new_value))
+            self.change(*_first_of_each(old, new), feature.xml_name, value_text(old_value), value_text(new_value))
 
     def meaning(self, feature: Feature, elements: Elements, others: Elements) -> Any:
-        """The first value that says more than absence."""
-        absences = [self.absences.of(element)[feature.name] for element in elements or others]
-        values = [a.meaning(e.__dict__.get(feature.name)) for a, e in zip(absences, elements, strict=False)]
-        return next((v for v, a in zip(values, absences, strict=False) if v != a.stands_for), absences[0].stands_for)
+        """The first value that differs from the default."""
+        unset_attributes = [self.unset_attributes.of(element)[feature.name] for element in elements or others]
+        values = [a.meaning(e.__dict__.get(feature.name)) for a, e in zip(unset_attributes, elements, strict=False)]
+        return next(
+            (v for v, a in zip(values, unset_attributes, strict=False) if v != a.stands_for), unset_attributes[0].stands_for
+        )
 
     def references(self, feature: Feature, old: Elements, new: Elements) -> None:
         old_targets, new_targets = (
@@ -207,10 +209,10 @@ class _Comparison:
         if texts[0].tokens == texts[1].tokens:
             return
         if feature.many:
-            self.change(*_firsts(old, new), feature.xml_name, *_list_wording(*texts))
+            self.change(*_first_of_each(old, new), feature.xml_name, *_list_text(*texts))
         else:
             old_text, new_text = (readable_name(targets[0]) if targets else UNSET for targets in (old_targets, new_targets))
-            self.change(*_firsts(old, new), feature.xml_name, old_text, new_text)
+            self.change(*_first_of_each(old, new), feature.xml_name, old_text, new_text)
 
     def parts(self, feature: Feature, old: Elements, new: Elements) -> None:
         old_parts, new_parts = (
@@ -222,33 +224,33 @@ class _Comparison:
         elif isinstance((old or new)[0], Amalthea) and (old_parts or new_parts):
             self.features(tuple(old_parts), tuple(new_parts))
         elif old_parts or new_parts:
-            self.single_part(feature, (old, new), *_firsts(old_parts, new_parts))
+            self.single_part(feature, (old, new), *_first_of_each(old_parts, new_parts))
 
     def part_lists(self, feature: Feature, holders: tuple[Elements, Elements], old: list[Element], new: list[Element]) -> None:
         if not old and not new:
             return
         matcher = PartsMatcher(old, new, self.old, self.new)
-        follow_each_other = is_sequence(type((holders[0] or holders[1])[0]), feature.name)
-        matcher.match(follow_each_other)
+        is_ordered = is_sequence(type((holders[0] or holders[1])[0]), feature.name)
+        matcher.match(is_ordered)
         for removed in matcher.old:
             self.remove(removed)
         for added in matcher.new:
             self.add(added)
         for pair in matcher.pairs:
             self.pair(*pair)
-        moved = matcher.moved() if follow_each_other else []
+        moved = matcher.moved() if is_ordered else []
         if moved:
-            self.change(*_firsts(*holders), feature.xml_name, "", f"reordered {_names(map(_described, moved))}")
+            self.change(*_first_of_each(*holders), feature.xml_name, "", f"reordered {_names(map(_described, moved))}")
 
     def single_part(
         self, feature: Feature, holders: tuple[Elements, Elements], old: Element | None, new: Element | None
     ) -> None:
         if all(part is None or is_inline(part) for part in (old, new)):
-            texts = wording(old), wording(new)
+            texts = value_text(old), value_text(new)
             if type(old) is not type(new) and old is not None and new is not None and texts[0] == texts[1]:
                 texts = _described(old), _described(new)
             if texts[0] != texts[1]:
-                self.change(*_firsts(*holders), feature.xml_name, *texts)
+                self.change(*_first_of_each(*holders), feature.xml_name, *texts)
                 return
         if old is not None and new is not None and type(old) is type(new):
             self.pair(old, new)
@@ -263,10 +265,10 @@ class _Comparison:
             Counter((name, text) for element in elements for name, texts in _unknown(element) for text in texts)
             for elements in (old, new)
         )
-        gone, came = old_content - new_content, new_content - old_content
-        for name in dict.fromkeys(name for name, _ in [*gone, *came]):
-            texts = (shortened(" ".join(t for n, t in side.elements() if n == name)) or UNSET for side in (gone, came))
-            self.change(*_firsts(old, new), name, *texts)
+        lost, gained = old_content - new_content, new_content - old_content
+        for name in dict.fromkeys(name for name, _ in [*lost, *gained]):
+            texts = (shortened(" ".join(t for n, t in side.elements() if n == name)) or UNSET for side in (lost, gained))
+            self.change(*_first_of_each(old, new), name, *texts)
 
 
 class _Tokens:
@@ -276,7 +278,7 @@ class _Tokens:
         self.tokens = list(tokens)
         self.targets = targets
 
-    def names_beyond(self, other: _Tokens) -> list[str]:
+    def names_missing_in(self, other: _Tokens) -> list[str]:
         """The names of the targets that the other list does not have, or not so often."""
         spare = Counter(other.tokens)
         names = []
@@ -287,23 +289,23 @@ class _Tokens:
         return names
 
     def names_moved(self, other: _Tokens) -> list[str]:
-        """The names of the targets that stand in both lists, but in another order."""
+        """The names of the targets that are in both lists, but in another order."""
         places = {token: place for place, token in enumerate(other.tokens)}
         common = [(t, e) for t, e in dict(zip(self.tokens, self.targets, strict=True)).items() if t in places]
         kept = set(increasing([places[token] for token, _ in common]))
         return [readable_name(target) for index, (_, target) in enumerate(common) if index not in kept]
 
 
-def _list_wording(old: _Tokens, new: _Tokens) -> tuple[str, str]:
-    removed, added, moved = old.names_beyond(new), new.names_beyond(old), new.names_moved(old)
+def _list_text(old: _Tokens, new: _Tokens) -> tuple[str, str]:
+    removed, added, moved = old.names_missing_in(new), new.names_missing_in(old), new.names_moved(old)
     parts = [f"{word} {_names(names)}" for word, names in (("added", added), ("reordered", moved)) if names]
     return f"removed {_names(removed)}" if removed else "", ", ".join(parts)
 
 
 def _names(names: Iterable[str]) -> str:
     known = list(names)
-    more = len(known) - _MOST_NAMES
-    return ", ".join(known[:_MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
+    more = len(known) - _MAX_NAMES
+    return ", ".join(known[:_MAX_NAMES]) + (f" and {more} more" if more > 0 else "")
 
 
 def _described(part: Element) -> str:
@@ -319,7 +321,7 @@ def _values(feature: Feature, elements: Elements) -> list[Any]:
     return found
 
 
-def _firsts(old: Sequence[Element], new: Sequence[Element]) -> tuple[Element | None, Element | None]:
+def _first_of_each(old: Sequence[Element], new: Sequence[Element]) -> tuple[Element | None, Element | None]:
     return (old[0] if old else None), (new[0] if new else None)
 
 
@@ -327,17 +329,17 @@ def _unknown(element: Element) -> Iterator[tuple[str, tuple[str, ...]]]:
     yield from unknown_content(element.__dict__.get("_extras")).items()
 
 
-def _home(element: Element) -> Element | None:
-    """The nearest container with a name; files and sub-models are no homes."""
+def _owner(element: Element) -> Element | None:
+    """The nearest container with a name; files and sub-models are no owners."""
     holder = element.container
     while holder is not None and not has_identity(holder) and not name_of(holder):
         holder = holder.container
     return holder
 
 
-def _home_text(element: Element) -> str:
-    home = _home(element)
-    return label(home) if home is not None else type(element.container).__name__
+def _owner_text(element: Element) -> str:
+    owner = _owner(element)
+    return label(owner) if owner is not None else type(element.container).__name__
 
 
 def _holding_feature(element: Element) -> Feature:

@@ -16,9 +16,9 @@ from amalthea_uros.metamodel.features import Feature, features_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable
 
-    from amalthea_uros.difference.absence import Absences
+    from amalthea_uros.difference.unset import UnsetAttributes
 
-#: Classes of which the parts follow each other, and the feature that holds them; all other parts stand side by side.
+#: Classes with ordered parts, and the feature that contains them; all other parts are unordered.
 _SEQUENCES = (
     (IActivityGraphItemContainer, "items"),
     (AbstractEventChain, "items"),
@@ -54,20 +54,20 @@ class Fingerprints:
 
     Parameters
     ----------
-    absences : of the models to be compared
-    token : what stands for the target of a reference
+    unset_attributes : of the models to be compared
+    token : the token of the target of a reference
     numbers : the fingerprints given out, shared by the models to be compared
     stops : whether a part counts by its token only, or not at all (None), instead of by its content
     """
 
     def __init__(
         self,
-        absences: Absences,
+        unset_attributes: UnsetAttributes,
         token: Callable[[Element], Hashable],
         numbers: dict[Hashable, int],
         stops: Callable[[Element], bool] | None = None,
     ) -> None:
-        self._absences = absences
+        self._unset_attributes = unset_attributes
         self._token = token
         self._numbers = numbers
         self._stops = stops
@@ -93,27 +93,27 @@ class Fingerprints:
         return self._numbers.setdefault((type(element), *facts), len(self._numbers))
 
     def _facts(self, element: Element) -> list[tuple[str, Hashable]]:
-        """What is set and does not say the same as absence, by feature, in an order that depends on the names only."""
-        absences = self._absences.of(element)
+        """The values that differ from the defaults, by feature, in an order that depends on the names only."""
+        unset_attributes = self._unset_attributes.of(element)
         values = element.__dict__
         facts: list[tuple[str, Any]] = []
         for name, value in values.items():
-            absence = absences.get(name)
-            if absence is not None:
-                value = absence.meaning(value)
-                if value != absence.common:
+            unset = unset_attributes.get(name)
+            if unset is not None:
+                value = unset.meaning(value)
+                if value != unset.common:
                     facts.append((name, value))
             elif value:
                 content = self._content(element, name, value)
                 if content:
                     facts.append((name, content))
-        if len(self._absences.versions) > 1:
-            facts += self._varying(values, absences)
+        if len(self._unset_attributes.versions) > 1:
+            facts += self._varying(values, unset_attributes)
         facts.sort(key=_name)
         return facts
 
-    def _varying(self, values: dict[str, Any], absences: dict[str, Any]) -> list[tuple[str, Any]]:
-        return [(n, a.stands_for) for n, a in absences.items() if n not in values and a.common != a.stands_for]
+    def _varying(self, values: dict[str, Any], unset_attributes: dict[str, Any]) -> list[tuple[str, Any]]:
+        return [(n, a.stands_for) for n, a in unset_attributes.items() if n not in values and a.common != a.stands_for]
 
     def _content(self, element: Element, name: str, value: Any) -> Hashable:
         if type(value) is ContainmentList:

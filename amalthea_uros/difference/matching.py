@@ -11,8 +11,8 @@ from amalthea_uros.metamodel.element import Element
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable
 
-    from amalthea_uros.difference.absence import Absences
     from amalthea_uros.difference.names import Names, Token
+    from amalthea_uros.difference.unset import UnsetAttributes
 
 Pair = tuple[Element, Element]
 
@@ -23,7 +23,7 @@ def pair_up(
     old_key: Callable[[Element], Hashable],
     new_key: Callable[[Element], Hashable],
 ) -> list[Pair]:
-    """Pairs of objects with equal keys, those with the same key in their order; the key None fits nothing."""
+    """Pairs of objects with equal keys, those with the same key in their order; the key None matches none."""
     waiting: dict[Hashable, deque[Element]] = defaultdict(deque)
     for element in new:
         key = new_key(element)
@@ -41,8 +41,8 @@ class Matching:
     removed, added : what is in one of them only
     """
 
-    def __init__(self, old: Names, new: Names, absences: Absences) -> None:
-        self._old, self._new, self._absences = old, new, absences
+    def __init__(self, old: Names, new: Names, unset_attributes: UnsetAttributes) -> None:
+        self._old, self._new, self._unset_attributes = old, new, unset_attributes
         self.pairs: list[Pair] = []
         self.removed: dict[Element, None] = {}
         self.added: dict[Element, None] = {}
@@ -57,7 +57,7 @@ class Matching:
             self.pairs.append((old[0], new[0]))
             return
         # Names that are not unique: those in the same container first.
-        pairs = pair_up(old, new, self._old.home, self._new.home)
+        pairs = pair_up(old, new, self._old.owner, self._new.owner)
         self.pairs += pairs
         rest = _without(old, (a for a, _ in pairs)), _without(new, (b for _, b in pairs))
         common = min(map(len, rest))
@@ -69,10 +69,10 @@ class Matching:
         candidates = self._candidates()
         while candidates:
             self._translate(candidates)
-            carried = self._carried()
+            with_owner = self._renamed_with_owner()
             kept = self._with_equal_content(candidates)
             if len(kept) == len(candidates):
-                self._accept([*candidates, *carried])
+                self._accept([*candidates, *with_owner])
                 return
             candidates = kept
         self._translate([])
@@ -91,30 +91,30 @@ class Matching:
             token = names.token(target)
             return token if token in self._common else (type(target).__name__,)
 
-        fingerprints = Fingerprints(self._absences, loose, numbers, lambda part: names.token(part) in self._common)
+        fingerprints = Fingerprints(self._unset_attributes, loose, numbers, lambda part: names.token(part) in self._common)
         found: dict[Hashable, list[Element]] = defaultdict(list)
         for element in unmatched:
-            home = names.home(element)
+            owner = names.owner(element)
             # A part of something unmatched goes with it.
-            if not home or home in self._common:
-                found[home, fingerprints.nameless(element)].append(element)
+            if not owner or owner in self._common:
+                found[owner, fingerprints.nameless(element)].append(element)
         return found
 
     def _translate(self, pairs: list[Pair]) -> None:
         self._new.translation = {self._new.own_token(new): self._old.own_token(old) for old, new in pairs}
 
-    def _carried(self) -> list[Pair]:
+    def _renamed_with_owner(self) -> list[Pair]:
         """Pairs of which only the names in front changed: ports of a renamed component, members of a namespace."""
-        carried: list[Pair] = []
+        with_owner: list[Pair] = []
         while True:
             translation = self._new.translation
             known = set(translation.values())
             removed = (e for e in self.removed if self._old.own_token(e) not in known)
             added = (e for e in self.added if self._new.own_token(e) not in translation)
-            pairs = pair_up(removed, added, lambda e: _place(e, self._old), lambda e: _place(e, self._new))
+            pairs = pair_up(removed, added, lambda e: _position_key(e, self._old), lambda e: _position_key(e, self._new))
             if not pairs:
-                return carried
-            carried += pairs
+                return with_owner
+            with_owner += pairs
             translation |= {self._new.own_token(new): self._old.own_token(old) for old, new in pairs}
 
     def _with_equal_content(self, candidates: list[Pair]) -> list[Pair]:
@@ -122,7 +122,7 @@ class Matching:
         matched = self._common | set(self._new.translation.values())
 
         def fingerprints(names: Names) -> Fingerprints:
-            return Fingerprints(self._absences, names.token, numbers, lambda part: names.token(part) in matched)
+            return Fingerprints(self._unset_attributes, names.token, numbers, lambda part: names.token(part) in matched)
 
         old, new = fingerprints(self._old), fingerprints(self._new)
         return [(a, b) for a, b in candidates if old.nameless(a) == new.nameless(b)]
@@ -134,12 +134,12 @@ class Matching:
             del self.added[new]
 
 
-def _place(element: Element, names: Names) -> Hashable:
+def _position_key(element: Element, names: Names) -> Hashable:
     namespace = element.__dict__.get("namespace")
     around = names.token(namespace) if namespace is not None else None
-    return (type(element), element.__dict__.get("name"), names.home(element), around)
+    return (type(element), element.__dict__.get("name"), names.owner(element), around)
 
 
 def _without(elements: list[Element], taken: Iterable[Element]) -> list[Element]:
-    gone = set(taken)
-    return [element for element in elements if element not in gone]
+    excluded = set(taken)
+    return [element for element in elements if element not in excluded]

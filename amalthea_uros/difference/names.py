@@ -1,4 +1,4 @@
-"""Tokens that stand for objects when two models are compared: the same token, the same object by meaning."""
+"""Tokens that represent objects when two models are compared: objects with the same token are the same."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Token = tuple[Any, ...]
 
 
 def has_identity(element: Element) -> bool:
-    """Whether an object is found by its unique name wherever it stands.
+    """Whether an object is identified by its unique name, regardless of its position.
 
     Call arguments are not: they belong to their call, of which there may be several with the same names.
     """
@@ -50,14 +50,14 @@ class Names:
         return token
 
     def token(self, element: Element) -> Token:
-        """What stands for an object in comparisons."""
+        """The token that represents an object in comparisons."""
         if type(element) is CallArgument and element.unresolved is None:
             return self._argument_token(element)
         token = self.own_token(element)
         return self.translation.get(token, token)
 
-    def home(self, element: Element) -> Token:
-        """The token of the nearest container with an identity, empty if there is none: files and sub-models are no homes."""
+    def owner(self, element: Element) -> Token:
+        """The token of the nearest container with an identity, empty if there is none: files and sub-models are no owners."""
         holder = element.container
         while holder is not None and not has_identity(holder):
             holder = holder.container
@@ -67,7 +67,12 @@ class Names:
         call = argument.container
         called = call.runnable if isinstance(call, RunnableCall) else None
         involved = (called, argument.parameter)
-        return ("CallArgument", argument.name, self.home(argument), *(self.token(e) if e is not None else () for e in involved))
+        return (
+            "CallArgument",
+            argument.name,
+            self.owner(argument),
+            *(self.token(e) if e is not None else () for e in involved),
+        )
 
 
 def _class_name(element: Element) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from amalthea_uros.difference.alignment import align, increasing
 from amalthea_uros.difference.matching import Pair, pair_up
-from amalthea_uros.difference.wording import first_reference
+from amalthea_uros.difference.value_text import first_reference
 from amalthea_uros.metamodel.classes.base import INamed
 from amalthea_uros.metamodel.element import Element
 
@@ -53,12 +53,12 @@ class PartsMatcher:
         self._places = tuple({part: place for place, part in enumerate(parts)} for parts in (self.old, self.new))
 
     def match(self, is_sequence: bool) -> None:
-        """Match by key, then by equal content, then by what is ever less alike."""
+        """Match by key, then by equal content, then by ever weaker similarity."""
         old, new = self._sides
         self._take(pair_up(self.old, self.new, old.key, new.key))
         anchors = self._take_equal() if is_sequence else []
         self._take(pair_up(self.old, self.new, old.fingerprints.of, new.fingerprints.of))
-        # In a sequence, only what stands between the same neighbours can be the same although it differs.
+        # In a sequence, parts that differ can only be the same if they are between the same neighbours.
         old_gaps, new_gaps = ([places[pair[i]] for pair in anchors] for i, places in enumerate(self._places))
         levels: tuple[tuple[Callable[[Element], Hashable], Callable[[Element], Hashable]], ...] = (
             (old.fingerprints.shallow, new.fingerprints.shallow),
@@ -76,7 +76,7 @@ class PartsMatcher:
             )
 
     def moved(self) -> list[Element]:
-        """The new parts that stand in another order than the old ones, as few as possible."""
+        """A minimal set of new parts whose order differs from that of the old ones."""
         old_places, new_places = self._places
         ordered = sorted(self.pairs, key=lambda pair: old_places[pair[0]])
         kept = set(increasing([new_places[new] for _, new in ordered]))

@@ -1,4 +1,4 @@
-"""What changed since a document was read: only that has to be written anew."""
+"""The modifications of a document since it was read: only they must be serialised again."""
 
 from __future__ import annotations
 
@@ -10,29 +10,29 @@ from amalthea_uros.metamodel.element import Element, references_of
 
 
 class Changes:
-    """What changed in a document since it was read; the rest can be written as it was.
+    """The modifications of a document since it was read; the rest can be copied from the source.
 
     Attributes
     ----------
-    touched : changed objects and everything that they are part of
-    renamed : objects whose unique names may have changed, or which came or went
+    modified : modified objects and all their containers
+    renamed : objects whose unique names may have changed, or which were added or removed
     """
 
     def __init__(self) -> None:
-        self.touched: set[Element] = set()
+        self.modified: set[Element] = set()
         self.renamed: set[Element] = set()
 
     def note(self, path: list[Element], renames: bool) -> None:
         """Note the change of an object, given with its containers."""
-        self.touched.update(path)
+        self.modified.update(path)
         if renames:
             self.renamed.add(path[0])
 
 
-def spread_renames(documents: Iterable[tuple[Element, Changes]]) -> None:
-    """Mark as touched, in all documents (root and changes) of a model, what holds the name of a renamed object.
+def propagate_renames(documents: Iterable[tuple[Element, Changes]]) -> None:
+    """Mark as modified, in all documents (root and changes) of a model, everything in which the name of a renamed object occurs.
 
-    That are its parts, whose own names may be made from it, and the holders of references to it and to them.
+    These are its parts, whose own names may be derived from it, and the holders of references to it and to them.
     """
     documents = tuple(documents)
     renamed = {element for _, changes in documents for element in changes.renamed}
@@ -42,15 +42,15 @@ def spread_renames(documents: Iterable[tuple[Element, Changes]]) -> None:
         for root, changes in documents:
             for holder in root.walk():
                 if holder in affected and holder.is_referable:
-                    changes.touched.update(path_of(holder))
+                    changes.modified.update(path_of(holder))
                 for name, value in references_of(holder):
-                    if not _meets(value, affected):
+                    if not _refers_to_any(value, affected):
                         continue
-                    changes.touched.update(path_of(holder))
-                    # The names of namespace members and of call arguments are made from those of their references.
+                    changes.modified.update(path_of(holder))
+                    # The names of namespace members and of call arguments are derived from those of their references.
                     if name == "namespace" or isinstance(holder, RunnableCall | CallArgument):
                         renamed.add(holder)
 
 
-def _meets(value: Element | list[Element], affected: set[Element]) -> bool:
+def _refers_to_any(value: Element | list[Element], affected: set[Element]) -> bool:
     return not affected.isdisjoint(value) if isinstance(value, list) else value in affected

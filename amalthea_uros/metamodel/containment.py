@@ -1,4 +1,4 @@
-"""Parts and references of objects: lists that know their owner, and the ways into and out of a container."""
+"""Parts and references of objects: lists that know their owner, and attaching and detaching of objects."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ _set = object.__setattr__
 
 
 class Revision:
-    """Counts the changes of names and containment in this process; look-up tables made earlier are stale."""
+    """Counts the changes of names and containment in this process; look-up tables of an earlier revision are stale."""
 
     number: ClassVar[int] = 0
 
 
 class ReferenceList(list[E]):
-    """References of one object, in order; its document learns of every change."""
+    """References of one object, in order; every change marks the object as modified."""
 
     __slots__ = ("_owner",)
 
@@ -31,15 +31,15 @@ class ReferenceList(list[E]):
 
     def append(self, value: E) -> None:
         super().append(value)
-        touch(self._owner)
+        mark_modified(self._owner)
 
     def insert(self, index: SupportsIndex, value: E) -> None:
         super().insert(index, value)
-        touch(self._owner)
+        mark_modified(self._owner)
 
     def extend(self, values: Iterable[E]) -> None:
         super().extend(values)
-        touch(self._owner)
+        mark_modified(self._owner)
 
     def __iadd__(self, values: Iterable[E]) -> Self:  # type: ignore[override, misc]
         self.extend(values)
@@ -47,44 +47,44 @@ class ReferenceList(list[E]):
 
     def __imul__(self, times: SupportsIndex) -> Self:
         super().__imul__(times)
-        touch(self._owner)
+        mark_modified(self._owner)
         return self
 
     def __setitem__(self, index: Any, value: Any) -> None:
         super().__setitem__(index, value)
-        touch(self._owner)
+        mark_modified(self._owner)
 
     def __delitem__(self, index: Any) -> None:
         super().__delitem__(index)
-        touch(self._owner)
+        mark_modified(self._owner)
 
     def remove(self, value: E) -> None:
         super().remove(value)
-        touch(self._owner)
+        mark_modified(self._owner)
 
     def pop(self, index: SupportsIndex = -1) -> E:
         value = super().pop(index)
-        touch(self._owner)
+        mark_modified(self._owner)
         return value
 
     def clear(self) -> None:
         super().clear()
-        touch(self._owner)
+        mark_modified(self._owner)
 
     def sort(self, *, key: Any = None, reverse: bool = False) -> None:
         super().sort(key=key, reverse=reverse)
-        touch(self._owner)
+        mark_modified(self._owner)
 
     def reverse(self) -> None:
         super().reverse()
-        touch(self._owner)
+        mark_modified(self._owner)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (list, (list(self),))
 
 
 class ContainmentList(ReferenceList[E]):
-    """Parts of one object, in order. Every way of putting an object in makes the owner its container."""
+    """Parts of one object, in order. Adding an object makes the owner its container."""
 
     __slots__ = ()
 
@@ -94,11 +94,11 @@ class ContainmentList(ReferenceList[E]):
             self.append(value)
 
     def append(self, value: E) -> None:
-        adopt(self._owner, value)
+        attach(self._owner, value)
         super().append(value)
 
     def insert(self, index: SupportsIndex, value: E) -> None:
-        adopt(self._owner, value)
+        attach(self._owner, value)
         super().insert(index, value)
 
     def extend(self, values: Iterable[E]) -> None:
@@ -116,22 +116,22 @@ class ContainmentList(ReferenceList[E]):
 
     def __delitem__(self, index: Any) -> None:
         for value in self[index] if isinstance(index, slice) else [self[index]]:
-            release(value)
+            detach(value)
         super().__delitem__(index)
 
     def remove(self, value: E) -> None:
         del self[self.index(value)]
 
     def pop(self, index: SupportsIndex = -1) -> E:
-        release(self[index])
+        detach(self[index])
         return super().pop(index)
 
     def clear(self) -> None:
         del self[:]
 
 
-def touch(element: Element, renames: bool = False) -> Document | None:
-    """Tell the document that an object changed, and whether references to it, or to its parts, may have to as well."""
+def mark_modified(element: Element, renames: bool = False) -> Document | None:
+    """Mark an object as modified, and as renamed if references to it or to its parts may be affected."""
     path = path_of(element)
     if renames:
         Revision.number += 1
@@ -149,17 +149,17 @@ def path_of(element: Element) -> list[Element]:
     return path
 
 
-def release(value: Element) -> None:
-    """Take the container from an object that is about to be taken out of it."""
-    document = touch(value, renames=True)
+def detach(value: Element) -> None:
+    """Detach an object from its container, before it is removed from it."""
+    document = mark_modified(value, renames=True)
     if document is not None and document.source is not None:
-        # What changes while it is out goes unnoticed; should it come back, all of it is compared with the source.
-        document.changes.touched.update(value.walk())
+        # Changes of a detached object are not recorded; if it comes back, all of it is compared with the source.
+        document.changes.modified.update(value.walk())
     _set(value, "_container", None)
 
 
-def adopt(owner: Element, value: Element) -> None:
-    """Make `owner` the container of `value`, taking it out of the old one."""
+def attach(owner: Element, value: Element) -> None:
+    """Make `owner` the container of `value`, and remove it from the old one."""
     if not hasattr(value, "_container"):
         raise TypeError(f"{owner!r} cannot contain {value!r}: not a model object")
     ancestor: Element | None = owner
@@ -169,7 +169,7 @@ def adopt(owner: Element, value: Element) -> None:
         ancestor = ancestor._container
     _take_out(value)
     _set(value, "_container", owner)
-    touch(value, renames=True)
+    mark_modified(value, renames=True)
 
 
 def _take_out(value: Element) -> None:
@@ -181,7 +181,7 @@ def _take_out(value: Element) -> None:
     for feature in containments_of(type(holder)):
         held = holder.__dict__.get(feature.name)
         if held is value:
-            release(value)
+            detach(value)
             _set(holder, feature.name, None)
         elif feature.many and held and any(element is value for element in held):
             held.remove(value)

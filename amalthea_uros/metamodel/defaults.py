@@ -1,4 +1,4 @@
-"""What the absence of an attribute stands for; it depends on the AMALTHEA version."""
+"""The values of unset attributes; they depend on the AMALTHEA version."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def enum_class(name: str) -> type[StrEnum]:
 
 
 def defaults_of(version: str, cls: type[Element]) -> dict[str, Any]:
-    """What unset attributes of a class stand for in a version with facts, by Python name; those that stand for nothing are left out."""
+    """The default values of the attributes of a class in a version with facts, by Python name; attributes without one are left out."""
     found = _DEFAULTS.get((version, cls))
     if found is None:
         declared = facts(version)
@@ -39,7 +39,7 @@ _DEFAULTS: dict[tuple[str, type[Element]], dict[str, Any]] = {}
 
 
 def default_value(declared: Facts, class_name: str, feature_name: str) -> Any:
-    """The default of an attribute (names as in files) in one version; None if it stands for nothing."""
+    """The default of an attribute (names as in files) in one version; None if there is none."""
     feature = declared.feature(class_name, feature_name)
     text = declared.default(feature) if feature else None
     if feature is None or text is None:

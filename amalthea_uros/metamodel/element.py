@@ -7,7 +7,7 @@ The generated classes declare one feature per line::
         stimuli: list[Stimulus] = references("stimuli")
 
 A feature is unset (`None`, or an empty list) until something is assigned; defaults are a matter of the AMALTHEA version and are
-asked with `Element.effective`. Values live in the instance dictionary; the descriptors of `features.py` only answer for unset
+requested with `Element.effective`. Values are kept in the instance dictionary; the descriptors of `features.py` only serve unset
 features, so that a read costs no more than that of an ordinary attribute and an object of which three of twenty features are set
 stays small.
 """
@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, ClassVar, Self, SupportsIndex, TypeVar, dataclass_transform
 
-from amalthea_uros.metamodel.containment import ReferenceList, adopt, release, touch
+from amalthea_uros.metamodel.containment import ReferenceList, attach, detach, mark_modified
 from amalthea_uros.metamodel.features import containments_of, features_of
 
 if TYPE_CHECKING:
@@ -35,13 +35,13 @@ _set = object.__setattr__
 
 @dataclass
 class Extras:
-    """What stands at an object in a file and has no place in the metamodel; it is written back.
+    """Content of an object in a file that the metamodel cannot represent; it is preserved when the file is saved.
 
     Attributes
     ----------
-    attributes : unknown attributes, name and value, and known ones whose text is no value of their type
-    content : unknown elements, comments, processing instructions and text as they stand in the file, each with the part in
-        front of which it stands (None: at the end)
+    attributes : unknown attributes, name and value, and known ones with a value of the wrong type
+    content : unknown elements, comments, processing instructions and text as written in the file, each with the part that
+        follows it (None: at the end)
     """
 
     attributes: dict[str, str] = field(default_factory=dict)
@@ -52,7 +52,7 @@ class Extras:
 class Element:
     """Any object of an AMALTHEA model.
 
-    Objects are equal only to themselves. An object has at most one container: putting it into a second one takes it out of the
+    Objects are equal only to themselves. An object has at most one container: adding it to a second one removes it from the
     first.
     """
 
@@ -76,12 +76,12 @@ class Element:
 
     def __init__(self, **features: Any) -> None:
         if self.is_abstract:
-            raise TypeError(f"{type(self).__name__} is abstract, create one of its subclasses")
+            raise TypeError(f"{type(self).__name__} is abstract; create an object of one of its subclasses")
         known, own = features_of(type(self)), self.__dict__
         for name, value in features.items():
             feature = known.get(name)
             if feature is not None and feature.kind == "attribute":
-                own[name] = value  # nobody has to be told: the object is new
+                own[name] = value  # nothing to mark as modified: the object is new
             else:
                 setattr(self, name, value)
 
@@ -102,11 +102,11 @@ class Element:
                 if old is value:
                     return
                 if old is not None and feature.contains(old):
-                    release(old)
+                    detach(old)
                 if value is not None and feature.contains(value):
-                    adopt(self, value)
+                    attach(self, value)
             _set(self, name, value)
-            touch(self, renames=name in _NAMING)
+            mark_modified(self, renames=name in _NAMING)
 
         def __delattr__(self, name: str) -> None:
             feature = features_of(type(self)).get(name)
@@ -134,7 +134,7 @@ class Element:
 
     def __reduce_ex__(self, _protocol: SupportsIndex) -> Any:
         raise TypeError(
-            f"{self!r} is neither pickled nor copied without its parts: use copy.deepcopy, or save and load the model"
+            f"{self!r} cannot be pickled or copied without its parts; use copy.deepcopy, or save and load the model"
         )
 
     def __repr__(self) -> str:
@@ -151,7 +151,7 @@ class Element:
 
     @property
     def document(self) -> Document | None:
-        """The file (to be) that holds this object; None while it is not part of one."""
+        """The document that contains this object; None while it is detached."""
         top: Element = self
         while top._container is not None:
             top = top._container
@@ -159,7 +159,7 @@ class Element:
 
     @property
     def model(self) -> Model | None:
-        """The model that holds this object."""
+        """The model that contains this object."""
         document = self.document
         return document.model if document else None
 
@@ -167,16 +167,16 @@ class Element:
     def unresolved(self) -> str | None:
         """The text of the reference for which no object was found; None for every real object.
 
-        A reference into a file that was not read, or to nothing at all, leads to such a stand-in of the right class.
+        An unresolved reference, also one into a file that was not loaded, refers to such a proxy of the right class.
         """
         return getattr(self, "_reference", None)
 
     @property
     def extras(self) -> Extras | None:
-        """What stands at the object in its file and is unknown to the metamodel, None if nothing. It may be changed."""
+        """Content of the object in its file that is unknown to the metamodel, None if there is none. It may be modified."""
         found: Extras | None = self.__dict__.get("_extras")
         if found is not None:
-            touch(self)
+            mark_modified(self)
         return found
 
     @property
@@ -188,13 +188,13 @@ class Element:
 
     @property
     def qualified_name(self) -> str:
-        """Name with the names that set it apart from others, joined by `.`; for an unnamed object where it stands."""
+        """The name with the names that qualify it, joined by `.`; for an unnamed object its path."""
         from amalthea_uros.metamodel.naming import qualified_name
 
         return qualified_name(self)
 
     def effective(self, feature_name: str) -> Any:
-        """The value of a feature, or what its absence stands for in the AMALTHEA version of the object's document.
+        """The value of a feature, or its default in the AMALTHEA version of the object's document.
 
         Raises
         ------
@@ -225,7 +225,7 @@ class Element:
             stack.extend(reversed(tuple(element.contents())))
 
     def enclosing(self, cls: type[E]) -> E | None:
-        """The nearest container of a class (the Task in which a call stands), None if there is none."""
+        """The nearest container of a class (such as the Task that contains a call), None if there is none."""
         element = self._container
         while element is not None and not isinstance(element, cls):
             element = element._container
@@ -233,13 +233,13 @@ class Element:
 
 
 def extras_of(element: Element) -> Extras:
-    """The extras of an object, to be added to."""
+    """The extras of an object, created if there are none."""
     found: Extras = element.__dict__.setdefault("_extras", Extras())
     return found
 
 
 def extras_if_any(element: Element) -> Extras | None:
-    """The extras of an object, only to be looked at: unlike asking for `Element.extras` it does not count as a change."""
+    """The extras of an object for reading only: unlike `Element.extras`, this does not mark the object as modified."""
     found: Extras | None = element.__dict__.get("_extras")
     return found
 

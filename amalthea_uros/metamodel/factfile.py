@@ -29,7 +29,7 @@ from typing import NamedTuple
 
 
 class Kind(Enum):
-    """How a feature holds its value."""
+    """The kind of a feature."""
 
     ATTRIBUTE = ""
     CONTAINMENT = "<>"
@@ -44,7 +44,7 @@ class FeatureFact(NamedTuple):
 
     Attributes
     ----------
-    lower, upper : the least and the greatest number of values, None: any
+    lower, upper : the minimum and maximum number of values, None: unlimited
     """
 
     name: str
@@ -109,7 +109,7 @@ Fact = ClassFact | EnumFact | NumberFact
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """The text of a fact and the (first, last) versions between which it holds; no ranges means always."""
+    """The text of a fact and the (first, last) versions for which it is valid; no ranges means always."""
 
     module: str
     text: str
@@ -180,7 +180,7 @@ _BOUNDS = re.compile(r"(?:\d+\.\.)?(?:\d+|\*)")
 
 
 def _bounds(text: str) -> tuple[int, int | None]:
-    """The least and the greatest number of values; an upper bound alone says nothing of the lower one, but 1 means exactly one."""
+    """The minimum and maximum number of values; an upper bound alone does not imply a lower one, but 1 means exactly one."""
     if not text:
         return 0, 1
     lower, _, upper = text.rpartition("..")

@@ -1,4 +1,4 @@
-"""The features of the AMALTHEA classes: how one is declared, and what it answers while it is unset."""
+"""The features of the AMALTHEA classes: their declaration, and their values while they are unset."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _set = object.__setattr__
 
 
 class Feature:
-    """One feature of a class; as a descriptor it answers for the unset value."""
+    """One feature of a class; as a descriptor it gives the unset value."""
 
     __slots__ = ("kind", "many", "name", "xml_name")
 
@@ -68,12 +68,12 @@ def attribute(xml_name: str) -> Any:
 
 
 def reference(xml_name: str) -> Any:
-    """A reference to an object that lives elsewhere."""
+    """A reference to an object that is contained elsewhere."""
     return Feature(xml_name, "reference")
 
 
 def references(xml_name: str) -> Any:
-    """Ordered references to objects that live elsewhere."""
+    """Ordered references to objects that are contained elsewhere."""
     return Feature(xml_name, "reference", many=True)
 
 
@@ -108,7 +108,7 @@ def features_of(cls: type[Element]) -> dict[str, Feature]:
 
 
 def containments_of(cls: type[Element]) -> tuple[Feature, ...]:
-    """The features of a class that may hold parts."""
+    """The features of a class that may contain parts."""
     found = _CONTAINMENTS.get(cls)
     if found is None:
         found = tuple(f for f in features_of(cls).values() if f.kind in ("containment", "either"))

@@ -1,4 +1,7 @@
-"""Quantities as exact numbers of one unit. Units without meaning, and quantities that are not given, give None."""
+"""Quantities of AMALTHEA as exact numbers in the internal units of `amalthea_uros.units`.
+
+A quantity that is not given, or whose unit is undefined, gives None.
+"""
 
 from __future__ import annotations
 
@@ -6,56 +9,51 @@ from collections.abc import Mapping
 from enum import StrEnum
 from fractions import Fraction
 from math import isfinite
-from typing import Any
+from typing import TypeVar
 
+from amalthea_uros import units
 from amalthea_uros.metamodel.classes.common import DataRate, DataSize, Frequency, Time
 from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit, FrequencyUnit, TimeUnit
 
+Unit = TypeVar("Unit", bound=StrEnum)
+
+
+def _sizes(literals: type[Unit], dimension: units.Dimension) -> Mapping[Unit | None, int]:
+    """The literals of an enumeration of units, largest first, with their sizes."""
+    found = {unit: dimension.units[unit.value.replace("PerSecond", "/s")] for unit in literals if unit.name != "UNDEFINED"}
+    return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+
 #: Picoseconds.
-TIMES = {TimeUnit.S: 10**12, TimeUnit.MS: 10**9, TimeUnit.US: 10**6, TimeUnit.NS: 10**3, TimeUnit.PS: 1}
+TIMES: Mapping[TimeUnit | None, int] = _sizes(TimeUnit, units.TIME)
 #: Hertz.
-FREQUENCIES = {FrequencyUnit.GHZ: 10**9, FrequencyUnit.MHZ: 10**6, FrequencyUnit.KHZ: 10**3, FrequencyUnit.HZ: 1}
-
-
-def _data_factors(units: type[StrEnum]) -> dict[Any, int]:
-    """Bits of a unit of data, by the prefix and the B or bit in its name."""
-    found = {}
-    for unit in units:
-        word = unit.value.removesuffix("PerSecond")
-        size = 8 if word.endswith("B") else 1
-        prefix = word.removesuffix("B").removesuffix("bit")
-        base, letter = (1024, prefix[:1]) if prefix.endswith("i") else (1000, prefix)
-        if unit.value != "_undefined_":
-            found[unit] = size * base ** " kMGT".upper().index(letter.upper() or " ")
-    return found
-
-
+FREQUENCIES: Mapping[FrequencyUnit | None, int] = _sizes(FrequencyUnit, units.FREQUENCY)
 #: Bits, and bits per second.
-SIZES: Mapping[DataSizeUnit, int] = _data_factors(DataSizeUnit)
-RATES: Mapping[DataRateUnit, int] = _data_factors(DataRateUnit)
+SIZES: Mapping[DataSizeUnit | None, int] = _sizes(DataSizeUnit, units.DATA_SIZE)
+RATES: Mapping[DataRateUnit | None, int] = _sizes(DataRateUnit, units.BIT_RATE)
 
 
 def picoseconds(time: Time | None) -> int | None:
     """A time in picoseconds."""
-    factor = TIMES.get(time.unit) if time is not None and time.unit is not None else None
-    return None if time is None or factor is None else (time.value or 0) * factor
+    return None if time is None else _scaled(time.value, time.unit, TIMES)
 
 
 def hertz(frequency: Frequency | None) -> Fraction | None:
-    """A frequency in hertz: the decimal number that stands in the file, not the binary one that is next to it."""
-    factor = FREQUENCIES.get(frequency.unit) if frequency is not None and frequency.unit is not None else None
-    if frequency is None or factor is None or not isfinite(frequency.value or 0.0):
+    """A frequency in hertz: exactly the decimal number of the file, not the nearest binary one."""
+    if frequency is None or frequency.unit not in FREQUENCIES or not isfinite(frequency.value or 0.0):
         return None
-    return Fraction(repr(frequency.value or 0.0)) * factor
+    return Fraction(repr(frequency.value or 0.0)) * FREQUENCIES[frequency.unit]
 
 
 def bits(size: DataSize | None) -> int | None:
-    """A size in bits."""
-    factor = SIZES.get(size.unit) if size is not None and size.unit is not None else None
-    return None if size is None or factor is None else (size.value or 0) * factor
+    """A data size in bits."""
+    return None if size is None else _scaled(size.value, size.unit, SIZES)
 
 
 def bits_per_second(rate: DataRate | None) -> int | None:
-    """A rate in bits per second."""
-    factor = RATES.get(rate.unit) if rate is not None and rate.unit is not None else None
-    return None if rate is None or factor is None else (rate.value or 0) * factor
+    """A data rate in bits per second."""
+    return None if rate is None else _scaled(rate.value, rate.unit, RATES)
+
+
+def _scaled(value: int | None, unit: Unit | None, sizes: Mapping[Unit | None, int]) -> int | None:
+    return (value or 0) * sizes[unit] if unit in sizes else None

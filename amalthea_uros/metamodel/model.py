@@ -20,7 +20,7 @@ E = TypeVar("E", bound=Element)
 
 
 class Spelling(NamedTuple):
-    """A text of the file and the text we would write for the same; while ours stays the same, the file's is kept."""
+    """A text of the file and its canonical form; as long as the canonical form stays the same, the text of the file is kept."""
 
     written: str
     canonical: str
@@ -42,11 +42,11 @@ class Document:
     version : AMALTHEA version of the file; may be newer than what is known
     path : the file, None for a new one
     source : the text it was read from, None for a new one
-    changes : what changed since it was read
-    prolog : comments and processing instructions before the root element, `epilog` those behind it
-    spellings : odd ids and references, by object and XML name
-    href_features : references that stand as `href` elements although ours would be an attribute (or the reverse: False)
-    origins : where objects come from that were not read from this document, such as a line of a description
+    changes : the modifications since it was read
+    prolog : comments and processing instructions before the root element, `epilog` those after it
+    spellings : ids and references that are not in canonical form, by object and XML name
+    href_features : references that are `href` elements although EMF would write an attribute (or the reverse: False)
+    origins : locations of objects that were not read from this document, such as a line of a description
     """
 
     def __init__(self, root: Amalthea, version: str | None = None, path: Path | None = None) -> None:
@@ -69,7 +69,7 @@ class Document:
         return nearest_version(self.version)
 
     def location_of(self, element: Element) -> Location | None:
-        """Where an object stands in the file, or where it comes from; failing both, the same of what it is part of.
+        """The location of an object in the file, or its origin; failing both, that of its container.
 
         None if the document has no file either.
         """
@@ -93,12 +93,12 @@ class Document:
 
 
 class Model:
-    """Documents that refer to each other by unique names, as the files of one folder do.
+    """Documents that refer to each other by unique names, such as the files of one directory.
 
     Attributes
     ----------
     documents : the files
-    findings : what was odd when they were read
+    findings : problems found while reading
     """
 
     def __init__(self, documents: Iterable[Document]) -> None:
@@ -123,7 +123,7 @@ class Model:
         ValueError : the model has several documents.
         """
         if len(self.documents) != 1:
-            raise ValueError(f"the model has {len(self.documents)} documents, ask each for its root")
+            raise ValueError(f"the model has {len(self.documents)} documents; use the root of each")
         return self.documents[0].root
 
     def walk(self) -> Iterator[Element]:

@@ -1,4 +1,4 @@
-"""Names under which objects are found: the unique name (the id in files) and the qualified name (for people).
+"""Names of objects: the unique name (the id in files) and the qualified name (for messages and look-up).
 
 The unique name is that of APP4MC: segments in Java's form encoding, joined by `/`, then `?type=` and the class. Most objects have
 one segment, their name; the exceptions are listed in `_PREFIXES`, and members of a namespace carry its segments in front.
@@ -51,7 +51,7 @@ def encode(name: str | None) -> str:
 
 
 def decode(segment: str) -> str:
-    """The name behind one segment of a unique name."""
+    """The name that one segment of a unique name encodes."""
     return unquote_plus(segment)
 
 
@@ -88,14 +88,14 @@ def has_prefix(cls: type[Element]) -> bool:
 
 
 def qualified_name(element: Element) -> str:
-    """A name for people: `Board.eth0`; for an object without a name, where it stands: `Task1.activityGraph.items[2]`."""
+    """A readable name: `Board.eth0`; for an object that cannot be referenced, its path: `Task1.activityGraph.items[2]`."""
     if element.is_referable:
         return ".".join(segment or NO_NAME for segment in segments(element))
     return place(element)
 
 
 def place(element: Element) -> str:
-    """Where an object stands, from the nearest referable object on: `Task1.activityGraph.items[2]`."""
+    """The path of an object from the nearest referable object on: `Task1.activityGraph.items[2]`."""
     steps: list[str] = []
     while not element.is_referable and element.container is not None:
         steps.append(_step(element.container, element))

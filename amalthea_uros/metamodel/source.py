@@ -1,7 +1,7 @@
-"""The text that a document was read from, and where its objects stand in it.
+"""The text from which a document was read, and the positions of its objects in it.
 
-The text is kept as long as the document: it answers for line and column of every object and attribute, and it is what a saved
-document is compared with, so that whatever was not changed is written as it was.
+The text is kept as long as the document: it gives line and column of every object and attribute, and saving compares the document
+with it, so that everything that was not modified is written as it was.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class Source:
         return self.character_offset(self.byte_starts[place])
 
     def end(self, place: int) -> int:
-        """Offset behind the content of an object: of its end tag, or behind the tag of an empty element."""
+        """Offset after the content of an object: of its end tag, or after the tag of an empty element."""
         return self.character_offset(self.byte_ends[place])
 
     @cached_property
@@ -87,7 +87,7 @@ class Source:
 
     @cached_property
     def _shifts(self) -> tuple[list[int], list[int]]:
-        """Behind each run of characters outside ASCII: the offset in bytes, and by how much characters are behind."""
+        """After each run of characters outside ASCII: the offset in bytes, and the difference to the offset in characters."""
         offsets, shifts = [0], [0]
         for run in _BEYOND_ASCII.finditer(self.text):
             shift = shifts[-1] + len(run[0].encode()) - len(run[0])
@@ -104,7 +104,7 @@ class Source:
 
     @cached_property
     def index(self) -> dict[Element, int]:
-        """Where an object stands in `elements`."""
+        """The index of each object in `elements`."""
         return {element: i for i, element in enumerate(self.elements)}
 
     @cached_property
@@ -138,7 +138,7 @@ class Source:
 
     def line(self, number: int) -> str:
         """The text of one line, counted from 1, without its end."""
-        # Kept, because all of a file may stand in one line, and each of its objects may be told with it.
+        # Cached, because a file may consist of one line, which is then part of the location of every object.
         if number not in self._lines:
             starts = self._line_starts
             end = starts[number] if number < len(starts) else len(self.text)

@@ -1,4 +1,4 @@
-"""What is in a model, as `amuros info` tells it."""
+"""Summary of a model, for `amuros info`."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class DocumentSummary:
 
 @dataclass(frozen=True, slots=True)
 class CoreSummary:
-    """A processing unit: where it is, its clock, and the schedulers that are responsible for it."""
+    """A processing unit: its structure, clock, and responsible schedulers."""
 
     name: str
     structure: str
@@ -60,7 +60,7 @@ class CoreSummary:
 
 @dataclass(frozen=True, slots=True)
 class ProcessSummary:
-    """A task or ISR: what activates it, what decides about it, and the number of runnable calls in its activity graph."""
+    """A task or ISR: its activation, its scheduler, and the number of runnable calls in its activity graph."""
 
     name: str
     kind: str
@@ -214,7 +214,7 @@ def _priority(allocation: TaskAllocation | ISRAllocation | None) -> str:
 
 
 def stimulus_text(stimulus: Stimulus) -> str:
-    """What a stimulus does, in a word or two: `every 10 ms, offset 2 ms`."""
+    """A short description of a stimulus: `every 10 ms, offset 2 ms`."""
     if isinstance(stimulus, PeriodicStimulus | PeriodicSyntheticStimulus | PeriodicBurstStimulus):
         offset = f", offset {quantity(stimulus.offset)}" if stimulus.offset and stimulus.offset.value else ""
         what = "" if isinstance(stimulus, PeriodicStimulus) else f" ({type(stimulus).__name__})"

@@ -13,10 +13,10 @@ from amalthea_uros.metamodel.factfile import Block, ClassFact, EnumFact, Feature
 
 NAMESPACE_PREFIX = "http://app4mc.eclipse.org/amalthea/"
 
-#: The first version whose models are held as they are; older ones have another structure.
-OLDEST_HELD = "0.9.7"
+#: The oldest version whose models are represented without conversion; older ones have another structure.
+OLDEST_SUPPORTED = "0.9.7"
 
-#: Value of an unset attribute without a default literal, by Ecore type: that of the Java primitive, or nothing at all.
+#: Value of an unset attribute without a default literal, by Ecore type: that of the Java primitive, or none.
 _JAVA_DEFAULTS = {
     "EInt": "0",
     "ELong": "0",
@@ -48,9 +48,9 @@ def known_versions() -> tuple[str, ...]:
     return tuple((files(__package__) / "facts" / "versions.txt").read_text(encoding="utf-8").split())
 
 
-def held_versions() -> tuple[str, ...]:
+def supported_versions() -> tuple[str, ...]:
     """The versions that the typed classes cover, oldest first."""
-    return tuple(v for v in known_versions() if version_key(v) >= version_key(OLDEST_HELD))
+    return tuple(v for v in known_versions() if version_key(v) >= version_key(OLDEST_SUPPORTED))
 
 
 def newest_version() -> str:
@@ -119,11 +119,11 @@ class Facts:
         return frozenset(found)
 
     def concrete_subtypes(self, class_name: str) -> tuple[str, ...]:
-        """Every class of which an instance may stand where `class_name` is declared."""
+        """Every class whose objects are allowed where `class_name` is declared."""
         return tuple(n for n, c in self.classes.items() if not c.abstract and class_name in self.supertypes(n))
 
     def default(self, feature: FeatureFact) -> str | None:
-        """The text an unset attribute stands for, None if it stands for nothing."""
+        """The default value of an attribute as text, None if it has none."""
         if feature.kind is not Kind.ATTRIBUTE:
             return None
         if feature.default is not None:

@@ -1,1 +1,1 @@
-"""The text of an `app.yaml` as a typed description, in which each value knows its place: hardware, middleware, application."""
+"""The text of an `app.yaml` as a typed description, in which each value knows its location: hardware, middleware, application."""

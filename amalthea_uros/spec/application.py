@@ -14,50 +14,50 @@ Reliability = Literal["reliable", "best-effort"]
 
 
 class Callback(Section):
-    """What all callbacks have."""
+    """Keys that all callbacks have."""
 
     name: Name
     """Name of the callback, and of its task."""
     execution_time: ExecutionTime
-    """How long the callback executes."""
+    """Execution time of the callback."""
     reads: list[Name] = Field(default_factory=list)
-    """Labels that it reads when it starts."""
+    """Labels that it reads at its start."""
     writes: list[Name] = Field(default_factory=list)
-    """Labels that it writes when it ends."""
+    """Labels that it writes at its end."""
     publishes: list[Name] = Field(default_factory=list)
     """Topics of its node that it publishes to."""
     requests: list[Name] = Field(default_factory=list)
-    """Clients of its node by which it sends a request."""
+    """Clients of its node that it sends requests with."""
     runs_in: Literal["own-task", "executor"] | None = None
-    """Where it runs; default: what the executor states."""
+    """Where it runs; default: `callbacks` of the executor."""
     task_period: Duration | None = None
-    """Period of its task; default: the longest one on offer that the rules allow."""
+    """Period of its task; default: the longest available period that the rules allow."""
     offset: Offset = 0
     """Time of the first activation of its task."""
     priority: Priority | None = None
     """Priority of its task; default: rate monotonic."""
     core: Name | None = None
-    """Core of its task; default: that of its node."""
+    """Core of its task; default: the core of its node."""
     deadline: Duration | None = None
-    """Relative to the activation of its task."""
+    """Deadline relative to the activation of its task."""
 
 
 class MessageCallback(Callback):
-    """A callback that a message makes ready."""
+    """A callback that becomes ready when a message arrives."""
 
     rate: Rate | None = None
-    """How often messages come at most."""
+    """Maximum rate of messages."""
     interval: Duration | None = None
-    """Least time between two messages; the same as `rate`, said the other way round."""
+    """Minimum time between two messages; the reciprocal of `rate`."""
     buffer: Name | None = None
-    """Label by which the executor hands the message over; default: the name with `_message`."""
+    """Label in which the executor passes the message on; default: the name followed by `_message`."""
 
 
 class Subscription(MessageCallback):
     """A subscription with its callback."""
 
     topic: Name
-    """What it subscribes to."""
+    """Topic that it subscribes to."""
     message_size: Size
     """Size of a message, without headers."""
     reliability: Reliability = "reliable"
@@ -70,14 +70,14 @@ class Timer(Callback):
     period: Duration | None = None
     """Period of the timer."""
     rate: Rate | None = None
-    """The same, said the other way round."""
+    """Rate of the timer; the reciprocal of `period`."""
 
 
 class Publisher(Section):
-    """A publisher, by which callbacks of the node send messages."""
+    """A publisher that callbacks of the node send messages with."""
 
     topic: Name
-    """What it publishes to."""
+    """Topic that it publishes to."""
     message_size: Size
     """Size of a message, without headers."""
     reliability: Reliability = "reliable"
@@ -94,10 +94,10 @@ class Service(MessageCallback):
 
 
 class Client(MessageCallback):
-    """A service client; its callback gets the responses."""
+    """A service client; its callback receives the responses."""
 
     service: Name
-    """The service that it asks."""
+    """Service that it sends requests to."""
     request_size: Size
     """Size of a request, without headers."""
     response_size: Size
@@ -110,7 +110,7 @@ class Node(Section):
     name: Name
     """Name of the node."""
     core: Name | None = None
-    """Core of its callbacks; default: the first one."""
+    """Core of its callbacks; default: the first core."""
     subscriptions: list[Subscription] = Field(default_factory=list)
     """Its subscriptions."""
     publishers: list[Publisher] = Field(default_factory=list)

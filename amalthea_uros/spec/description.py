@@ -7,16 +7,16 @@ from typing import Literal
 from pydantic import Field
 
 from amalthea_uros.spec.application import Application
-from amalthea_uros.spec.demands import Chain, Requirement
 from amalthea_uros.spec.hardware import Hardware
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.processes import Isr, Label, Task
+from amalthea_uros.spec.requirements import Chain, Requirement
 from amalthea_uros.spec.section import Section
 from amalthea_uros.spec.values import Name
 
 
 class Description(Section):
-    """A micro-ROS application on a controller, with what else runs there."""
+    """A micro-ROS application on a controller, and the other software that runs there."""
 
     amuros: Literal[1]
     """Version of the format."""
@@ -29,11 +29,11 @@ class Description(Section):
     application: Application = Field(default_factory=Application)
     """The micro-ROS application."""
     tasks: list[Task] = Field(default_factory=list)
-    """The ordinary tasks of the controller."""
+    """Tasks of the controller that are not part of the micro-ROS application."""
     isrs: list[Isr] = Field(default_factory=list)
-    """The ordinary interrupt service routines of the controller."""
+    """Interrupt service routines of the controller that are not part of the micro-ROS application."""
     labels: dict[Name, Label] = Field(default_factory=dict)
-    """Variables; those that are only read or written somewhere need not be stated."""
+    """Variables; one that is read or written somewhere needs no entry if its size and memory are the default ones."""
     chains: list[Chain] = Field(default_factory=list)
     """Cause-effect chains."""
     requirements: list[Requirement] = Field(default_factory=list)

@@ -1,4 +1,4 @@
-"""How long something executes: a time, bounds, a distribution, a measured histogram; per platform if wanted."""
+"""Execution times: a time, bounds, a distribution or a measured histogram; optionally per platform."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from amalthea_uros.spec.values import Count, Duration, Name, problem
 
 
 class Bucket(Section):
-    """Execution times between two values, and how often they were measured."""
+    """Number of measured execution times between two values."""
 
     min: Duration
-    """Least execution time of the bucket."""
+    """Minimum execution time of the bucket."""
     max: Duration
-    """Greatest execution time of the bucket."""
+    """Maximum execution time of the bucket."""
     count: Count
-    """How often an execution time in the bucket was measured."""
+    """Number of execution times measured in the bucket."""
 
 
 class ExecutionTime(Shorthand):
@@ -36,19 +36,19 @@ class ExecutionTime(Shorthand):
     max: Duration | None = None
     """Worst-case execution time."""
     distribution: Literal["uniform", "gauss", "beta", "weibull"] | None = None
-    """How execution times are distributed between `min` and `max`; left out: not known."""
+    """Distribution of execution times between `min` and `max`; if omitted, it is unknown."""
     deviation: Duration | None = None
-    """Standard deviation of the gauss distribution, whose mean is `avg`."""
+    """Standard deviation of the Gauss distribution, whose mean is `avg`."""
     alpha: float | None = Field(None, gt=0)
-    """First shape of the beta distribution."""
+    """First shape parameter of the beta distribution."""
     beta: float | None = Field(None, gt=0)
-    """Second shape of the beta distribution."""
+    """Second shape parameter of the beta distribution."""
     exceeding: float | None = Field(None, gt=0, lt=1000)
-    """Per mille of execution times that a weibull distribution has above `max`."""
+    """Per mille of the execution times of a Weibull distribution that exceed `max`."""
     histogram: list[Bucket] | None = Field(None, min_length=1)
     """Measured execution times."""
     on: dict[Name, ExecutionTime] | None = Field(None, min_length=1)
-    """Execution times by platform; `default` for all others."""
+    """Execution times by platform or core type; `default` for all others."""
 
     @model_validator(mode="after")
     def _is_complete(self) -> Self:
@@ -66,11 +66,11 @@ class ExecutionTime(Shorthand):
     def _only(self, key: str) -> None:
         others = sorted(self.model_fields_set - {key})
         if others:
-            raise problem(f"{key!r} stands for itself, {', '.join(map(repr, others))} cannot stand beside it")
+            raise problem(f"{key!r} cannot be combined with {', '.join(map(repr, others))}")
 
     def _check_bounds(self) -> None:
         if self.min is None or self.max is None:
-            raise problem("an execution time is a time such as '12 us', or has both 'min' and 'max'")
+            raise problem("an execution time needs both 'min' and 'max', or is a single time such as '12 us'")
         if self.min > self.max:
             raise problem("'min' is greater than 'max'")
         if self.avg is not None and not self.min <= self.avg <= self.max:

@@ -18,9 +18,9 @@ class Core(Shorthand):
     shorthand = ("name",)
 
     name: Name
-    """What tasks, nodes and callbacks call it."""
+    """Name by which tasks, nodes and callbacks refer to it."""
     type: Name | None = None
-    """Type of core; default: the `core_type` of the hardware."""
+    """Core type; default: the `core_type` of the hardware."""
     frequency: Rate | None = None
     """Clock of this core; default: the `frequency` of the hardware."""
 
@@ -30,7 +30,7 @@ def _of_number(value: Any) -> Any:
     return [{"name": f"Core_{index}"} for index in range(min(value, MAX_CORES + 1))] if is_number else value
 
 
-#: The cores themselves, or how many there are: 4 stands for Core_0 to Core_3.
+#: The cores, or their number: 4 means Core_0 to Core_3.
 Cores: TypeAlias = Annotated[
     list[Core],
     Field(min_length=1, max_length=MAX_CORES),
@@ -42,51 +42,51 @@ class Memory(Section):
     """A memory."""
 
     name: Name
-    """What labels call it."""
+    """Name by which labels refer to it."""
     size: Size
-    """How much fits into it."""
+    """Capacity."""
     kind: Literal["SRAM", "DRAM", "flash", "PCM"] | None = None
-    """Its technology."""
+    """Memory technology."""
     read_cycles: CountOrNone | None = None
-    """Cycles of a core that a read takes."""
+    """Core cycles per read access."""
     write_cycles: CountOrNone | None = None
-    """Cycles of a core that a write takes."""
+    """Core cycles per write access."""
 
 
 class Hardware(Shorthand):
-    """The controller that the application runs on: a platform, or a mapping in which more is stated.
+    """The controller that the application runs on: a platform, or a mapping with more.
 
-    What stands beside `platform` replaces what the platform says.
+    Other keys override those of the platform.
     """
 
     shorthand = ("platform",)
 
     platform: Name | None = None
-    """A platform that amuros knows (`bodas-rc18-12-40`, `generic`, `single-core`), or a file such as `./my-controller.yaml`."""
+    """A known platform (`bodas-rc18-12-40`, `generic` or `single-core`), or a file, e.g. `./my-controller.yaml`."""
     title: Name | None = None
-    """What the controller is called in full."""
+    """Full name of the controller."""
     microcontroller: Name | None = None
-    """The microcontroller."""
+    """Name of the microcontroller."""
     core_type: Name | None = None
-    """The type of all cores that do not state theirs."""
+    """Type of all cores without a `type`."""
     frequency: Rate | None = None
-    """The clock of all cores that do not state theirs; beside `platform`: of all cores."""
+    """Clock of all cores without a `frequency`; together with `platform`: clock of all cores."""
     cores: Cores | None = None
-    """The cores, or how many there are."""
+    """The cores, or their number."""
     memories: list[Memory] | None = None
     """The memories."""
     label_memory: Name | None = None
-    """The memory of labels that do not state theirs; default: the first SRAM."""
+    """Memory of all labels without a `memory`; default: the first SRAM."""
 
 
 class Platform(Section):
-    """A controller that applications can name."""
+    """A controller that applications refer to by name."""
 
     amuros: Literal[1]
     """Version of the format."""
     platform: Name
-    """The name by which execution times refer to it."""
+    """Name by which execution times refer to it."""
     hardware: Hardware
     """The hardware itself."""
     source: str | None = None
-    """Where the figures come from."""
+    """Source of the figures."""

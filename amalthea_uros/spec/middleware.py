@@ -1,4 +1,4 @@
-"""The generic micro-ROS model: the executor, the transport and the limits of the middleware, as they were ported to a platform."""
+"""The generic micro-ROS model: executor, transport and limits of the middleware, as ported to a platform."""
 
 from __future__ import annotations
 
@@ -12,31 +12,31 @@ from amalthea_uros.spec.values import BitRate, Count, CountOrNone, Duration, Nam
 
 
 class MessageCost(Shorthand):
-    """What a message costs: a time, or a fixed part and a part per byte."""
+    """Execution time per message: a time, or a fixed part and a part per byte."""
 
     shorthand = ("fixed",)
     nested = ExecutionTime
 
     fixed: ExecutionTime | None = None
-    """The part that each message costs."""
+    """Execution time per message, independent of its size."""
     per_byte: Offset = 0
-    """The part that each byte of the message costs."""
+    """Additional execution time per byte of the message."""
 
 
 class ExecutorCost(Shorthand):
-    """What an activation of the executor costs: a time, or parts that depend on what there is to do."""
+    """Execution time of an activation of the executor: a time, or parts that depend on the callbacks and messages to serve."""
 
     shorthand = ("base",)
     nested = ExecutionTime
 
     base: ExecutionTime | None = None
-    """What every activation costs."""
+    """Execution time of every activation."""
     per_ready_callback: ExecutionTime | None = None
-    """What each callback costs that is ready."""
+    """Additional execution time per ready callback."""
     per_message: MessageCost = Field(default_factory=MessageCost)
-    """What each message costs that is taken."""
+    """Additional execution time per message taken."""
     per_timer: ExecutionTime | None = None
-    """What each timer costs that is looked at, in every activation."""
+    """Additional execution time per timer, in every activation."""
 
 
 class Trigger(Shorthand):
@@ -45,7 +45,7 @@ class Trigger(Shorthand):
     shorthand = ("when",)
 
     when: Literal["any", "all"] = "any"
-    """As soon as any callback is ready, or not before all are."""
+    """`any`: as soon as any callback is ready; `all`: when all callbacks are ready."""
     one: Name | None = None
     """As soon as this callback is ready."""
 
@@ -56,23 +56,23 @@ class Executor(Section):
     name: Name = "Executor_Task"
     """Name of the task."""
     period: Duration | None = None
-    """Default: the longest period on offer that no callback is faster than."""
+    """Period of its activation; default: the longest available period that is not longer than the interval of any callback."""
     offset: Offset = 0
     """Time of the first activation."""
     priority: Priority | None = None
-    """Default: rate monotonic, before all other tasks of the same period."""
+    """Priority of its task; default: rate monotonic, above all other tasks with the same period."""
     core: Name | None = None
-    """Default: the first core."""
+    """Core of its task; default: the first core."""
     deadline: Duration | None = None
-    """Relative to the activation."""
+    """Deadline relative to the activation."""
     execution_time: ExecutorCost = Field(default_factory=ExecutorCost)
-    """What an activation costs."""
+    """Execution time of an activation."""
     callbacks: Literal["own-task", "in-executor"] = "own-task"
-    """Where callbacks run that do not state it: each in a task of its own, or in the executor one after the other."""
+    """Where callbacks without `runs_in` run: each in a separate task, or one after the other in the executor."""
     order: list[Name] = Field(default_factory=list)
-    """Order in which callbacks were added to the executor; those not named follow as they stand in the file."""
+    """Order in which callbacks were added to the executor; callbacks not listed follow in the order of the file."""
     semantics: Literal["ROS", "LET"] = "ROS"
-    """Each message is taken just before its callback (ROS), or all are taken first (LET)."""
+    """`ROS`: each message is taken just before its callback runs; `LET`: all messages are taken before the first callback runs."""
     trigger: Trigger = Field(default_factory=Trigger)
     """Condition under which callbacks in the executor run."""
 
@@ -83,40 +83,40 @@ class Interrupt(Shorthand):
     name: Name = "CAN_Receive"
     """Name of the interrupt service routine."""
     execution_time: ExecutionTime
-    """What a frame costs."""
+    """Execution time per frame."""
     priority: Priority = 1
     """Priority among interrupt service routines."""
     core: Name | None = None
-    """Default: that of the executor."""
+    """Core that it runs on; default: the core of the executor."""
 
     shorthand = ("execution_time",)
     nested = ExecutionTime
 
 
 class Can(Section):
-    """XRCE-DDS over CAN: blocks of 7 bytes behind a header byte."""
+    """XRCE-DDS over CAN: frames of a header byte and up to 7 bytes of data."""
 
     bitrate: BitRate
     """Bit rate of the bus."""
     identifier: Literal["standard", "extended"] = "standard"
-    """Identifiers of 11 or of 29 bits."""
+    """`standard`: identifiers of 11 bits; `extended`: 29 bits."""
     interrupt: Interrupt | None = None
-    """The interrupt of each received frame; left out: it is part of other execution times."""
+    """The interrupt for each received frame; if omitted, its cost is part of other execution times."""
 
 
 class Transport(Section):
-    """The way of messages between the controller and the agent."""
+    """The transport between the controller and the agent."""
 
     can: Can | None = None
-    """The CAN bus, where that is the way."""
+    """The CAN bus, if messages are sent over CAN."""
     overhead: SizeOrNothing = 12 * 8
-    """What XRCE-DDS adds to a message: message header, submessage header and object ids; default 12 B."""
+    """Overhead of XRCE-DDS per message: message header, submessage header and object ids; default: 12 B."""
     acknowledgement: Duration | None = None
-    """Most time until a reliable message is acknowledged."""
+    """Maximum time until a reliable message is acknowledged."""
 
 
 class ResponseTime(Shorthand):
-    """Least and most time from a request to the agent until its response."""
+    """Time from a request to the agent to its response: a time, or a mapping with minimum and maximum."""
 
     shorthand = (
         "min",
@@ -124,16 +124,16 @@ class ResponseTime(Shorthand):
     )
 
     min: Duration
-    """Least time."""
+    """Minimum time."""
     max: Duration
-    """Most time."""
+    """Maximum time."""
 
 
 class Initialisation(Section):
     """Creation of the entities, one after the other."""
 
     response_time: ResponseTime | None = None
-    """How long the agent takes for an answer; left out: only the least number of cycles is known."""
+    """Response time of the agent; if omitted, only the minimum number of cycles is known."""
 
 
 class PoolSizes(Section):
@@ -154,7 +154,7 @@ class PoolSizes(Section):
     RMW_UXRCE_MAX_CLIENTS: CountOrNone | None = None
     """Service clients."""
     RMW_UXRCE_MTU: Size | None = None
-    """Most bytes of a message of the transport."""
+    """Maximum size of a message of the transport."""
     RMW_UXRCE_STREAM_HISTORY: Count | None = None
     """MTU-sized buffers of a reliable stream."""
 
@@ -165,13 +165,13 @@ class Middleware(Section):
     policy: Literal["FixedPriorityPreemptive", "OSEK"] = "FixedPriorityPreemptive"
     """Scheduling policy of the operating system."""
     task_periods: list[Duration] = Field(default_factory=list)
-    """Task periods on offer; left out: every period is."""
+    """Available task periods; if omitted, any period is available."""
     executor: Executor = Field(default_factory=Executor)
     """The executor."""
     publish: MessageCost = Field(default_factory=MessageCost)
-    """What it costs a callback to publish a message."""
+    """Execution time of publishing a message, added to that of the callback."""
     transport: Transport = Field(default_factory=Transport)
-    """The way to the agent."""
+    """The transport to the agent."""
     initialisation: Initialisation = Field(default_factory=Initialisation)
     """Creation of the entities."""
     limits: PoolSizes = Field(default_factory=PoolSizes)

@@ -1,7 +1,7 @@
-"""YAML text -> nodes with their places.
+"""YAML text -> nodes with their locations.
 
 The text is untrusted: its size, its depth and what its aliases expand to are limited, tags are refused. Scalars follow the core
-schema of YAML 1.2 (`on` and `no` are text, `1:30` is no number). All mistakes that do not stop the parser are reported.
+schema of YAML 1.2 (`on` and `no` are text, `1:30` is not a number). All errors that do not stop the parser are reported.
 """
 
 from __future__ import annotations
@@ -17,10 +17,9 @@ import yaml
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 
-MAX_SIZE = 5_000_000
 MAX_DEPTH = 40
 MAX_NODES = 400_000
-#: More mistakes are not told in one run; a person mends the first ones first.
+#: Further errors are not reported in one run.
 MAX_FINDINGS = 100
 
 _INTEGER = re.compile(r"[-+]?\d{1,30}")
@@ -78,47 +77,51 @@ class Source:
     lines: list[str]
 
     def location(self, place: Place) -> Location:
-        """A place as a location that carries its line."""
+        """A place as a location with the text of its line."""
         text = self.lines[place.line] if place.line < len(self.lines) else ""
         return Location(self.path, place.line + 1, place.column + 1, text)
 
 
 def read_nodes(path: Path, text: str) -> tuple[Node, Source, list[Finding]]:
-    """The content of a YAML document, and what is wrong with it as far as that does not stop reading.
+    """The content of a YAML document, and the errors in it that do not stop the parser.
 
     Raises
     ------
-    ReadError : the text is no YAML document, or goes beyond a limit.
+    ReadError : the text is not a YAML document, or exceeds a limit.
     """
     source = Source(path, text.split("\n"))
-    if len(text) > MAX_SIZE:
-        message = f"the file has {len(text) / 1e6:.1f} million characters, more than {MAX_SIZE / 1e6:g} million are refused"
-        raise ReadError(
-            [Finding("YML002", Severity.ERROR, message, Location(path), "Split the application, or generate less.")]
-        )
     reader = _Reader(source)
     try:
         node = reader.document(text)
     except yaml.MarkedYAMLError as error:
-        raise reader.stop("YML001", _reason(error), error.problem_mark or error.context_mark) from None
+        raise reader.stop("YML001", _reason(error, source), error.problem_mark or error.context_mark) from None
     except yaml.reader.ReaderError as error:
         raise ReadError([_unreadable(source, text, error)]) from None
     return node, source, reader.findings
 
 
-def _reason(error: yaml.MarkedYAMLError) -> str:
-    parts = [part for part in (error.context, error.problem) if part]
-    return f"this is no YAML: {', '.join(parts)}"
+def _reason(error: yaml.MarkedYAMLError, source: Source) -> str:
+    problem, context = error.problem or "", error.context or ""
+    mark = error.problem_mark
+    if mark is not None and "cannot start any token" in problem:
+        character = source.lines[mark.line][mark.column : mark.column + 1]
+        problem = (
+            "tabs cannot be used for indentation"
+            if character == "\t"
+            else f"a value cannot start with {character!r} without quotes"
+        )
+        context = ""
+    return f"not valid YAML: {problem}{f' ({context})' if context else ''}"
 
 
 def _unreadable(source: Source, text: str, error: yaml.reader.ReaderError) -> Finding:
     match = re.search(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]", text)
     if match is None:
-        return Finding("YML001", Severity.ERROR, f"this is no YAML: {error.reason}", Location(source.path))
+        return Finding("YML001", Severity.ERROR, f"not valid YAML: {error.reason}", Location(source.path))
     line = text.count("\n", 0, match.start())
     place = Place(line, match.start() - text.rfind("\n", 0, match.start()) - 1)
     location = Location(source.path, place.line + 1, place.column + 1)
-    return Finding("YML001", Severity.ERROR, f"this is no YAML: the character U+{ord(match[0]):04X} is not allowed", location)
+    return Finding("YML001", Severity.ERROR, f"not valid YAML: the character U+{ord(match[0]):04X} is not allowed", location)
 
 
 class _Reader:
@@ -142,7 +145,7 @@ class _Reader:
             next(events)
             extra = next(events)
             if isinstance(extra, yaml.DocumentStartEvent):
-                raise self.stop("YML001", "the file holds several YAML documents, expected one", extra.start_mark)
+                raise self.stop("YML001", "the file contains several YAML documents, expected one", extra.start_mark)
             return node
         finally:
             parser.dispose()
@@ -150,7 +153,7 @@ class _Reader:
     def node(self, event: _Event, events: Iterator[_Event], depth: int) -> Node:
         """The node that begins with an event."""
         if depth > MAX_DEPTH:
-            raise self.stop("YML002", f"the content is nested more than {MAX_DEPTH} deep", event.start_mark)
+            raise self.stop("YML002", f"the content is nested more than {MAX_DEPTH} levels deep", event.start_mark)
         if isinstance(event, yaml.AliasEvent):
             return self.alias(event)
         if getattr(event, "tag", None) not in (None, "!"):
@@ -178,13 +181,13 @@ class _Reader:
         return found
 
     def mapping(self, place: Place, events: Iterator[_Event], depth: int) -> Mapping:
-        """The nodes of a mapping; of a key that occurs twice the first value counts."""
+        """The nodes of a mapping; of a duplicate key the first value is used."""
         found = Mapping(place, {}, {})
         for event in events:
             if isinstance(event, yaml.MappingEndEvent):
                 break
             if not isinstance(event, yaml.ScalarEvent):
-                raise self.stop("YML001", "a key has to be a plain text", event.start_mark)
+                raise self.stop("YML001", "a key must be a plain string", event.start_mark)
             value = self.node(next(events), events, depth + 1)
             where = _place(event.start_mark)
             if event.value in found.items:
@@ -195,29 +198,31 @@ class _Reader:
         return found
 
     def second(self, key: str, first: Place, where: Place) -> None:
-        """Note a key that occurs again."""
-        message = f"the key {key!r} stands here a second time, first in line {first.line + 1}"
-        self.findings.append(Finding("YML003", Severity.ERROR, message, self.source.location(where), "Keep one of the two."))
+        """Report a duplicate key."""
+        message = f"duplicate key {key!r} (first defined on line {first.line + 1})"
+        self.findings.append(Finding("YML003", Severity.ERROR, message, self.source.location(where), "Remove one of them."))
         if len(self.findings) == MAX_FINDINGS:
             raise ReadError(self.findings)
 
     def alias(self, event: _Event) -> Node:
-        """The node that an alias stands for; it counts with everything in it, once more."""
+        """The node that an alias refers to; it is counted again with everything in it."""
         node = self.anchors.get(event.anchor)
         if node is None:
-            raise self.stop("YML001", f"there is no complete anchor &{event.anchor} above", event.start_mark)
+            raise self.stop(
+                "YML001", f"undefined alias *{event.anchor}: no complete anchor &{event.anchor} before it", event.start_mark
+            )
         for _ in _walk(node):
             self.tally(event.start_mark)
         return node
 
     def tally(self, mark: Any) -> None:
-        """Count a node, and stop where there are too many."""
+        """Count a node, and stop at the limit."""
         self.count += 1
         if self.count > MAX_NODES:
-            raise self.stop("YML002", f"the content has more than {MAX_NODES:,} values, counted with expanded aliases", mark)
+            raise self.stop("YML002", f"the content has more than {MAX_NODES:,} values, including expanded aliases", mark)
 
     def stop(self, rule: str, message: str, mark: Any, help_text: str = "") -> ReadError:
-        """The error that ends reading, together with what was found before."""
+        """The error that stops reading, together with the findings so far."""
         location = self.source.location(_place(mark)) if mark else Location(self.source.path)
         return ReadError([*self.findings, Finding(rule, Severity.ERROR, message, location, help_text)])
 

@@ -1,4 +1,4 @@
-"""The platforms that an application can name, and the users' own ones."""
+"""The platforms that come with amuros, and platform files of users."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ def known_platforms() -> list[str]:
 
 
 def whole_hardware(stated: Hardware, folder: Path, other: str | None = None) -> tuple[Hardware, str | None]:
-    """What an application states about its hardware, completed by its platform; and the name of the platform.
+    """The hardware of an application, completed by its platform, and the name of the platform.
 
     Parameters
     ----------
-    folder : where the file of the application lies; platform files are found from there
-    other : the platform to take instead of the one that is stated
+    folder : the directory of the application; platform files are relative to it
+    other : replaces the platform of the application
 
     Raises
     ------
@@ -37,7 +37,7 @@ def whole_hardware(stated: Hardware, folder: Path, other: str | None = None) -> 
     platform = read_section(_file(stated, named, folder), Platform)
     added = {key: getattr(platform.hardware, key) for key in platform.hardware.model_fields_set - stated.model_fields_set}
     if stated.frequency is not None and "cores" in added:
-        # One clock for everything, whatever the cores of the platform state.
+        # One clock for all cores, whatever the platform says.
         added["cores"] = [core.model_copy(update={"frequency": None}) for core in added["cores"]]
     return stated.model_copy(update=added), platform.platform
 
@@ -47,12 +47,14 @@ def _file(stated: Hardware, name: str, folder: Path) -> Path:
         path = folder / name
         if path.is_file():
             return path
-        message, advice = f"there is no platform file {str(path)!r}", "The path is relative to the folder of this file."
+        message, advice = f"platform file {str(path)!r} not found", "Give a path relative to the directory of this file."
     else:
         known = known_platforms()
         if name in known:
             return PLATFORMS / f"{name}.yaml"
         near = get_close_matches(name, known, n=1)
-        message = f"{name!r} is not a known platform"
-        advice = f"Did you mean {near[0]!r}?" if near else f"Platforms are {', '.join(known)}, and files such as './mine.yaml'."
+        message = f"unknown platform {name!r}"
+        advice = (
+            f"Did you mean {near[0]!r}?" if near else f"Known platforms: {', '.join(known)}; or give a file, e.g. ./mine.yaml."
+        )
     raise ReadError([Finding("APP001", Severity.ERROR, message, stated.location("platform"), advice)])

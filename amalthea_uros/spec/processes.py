@@ -1,4 +1,4 @@
-"""The ordinary load of the controller: tasks, interrupt service routines and labels."""
+"""Tasks, interrupt service routines and labels outside the micro-ROS application."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, Offset
 
 
 class Sporadic(Shorthand):
-    """Activation at varying distances: the least distance, or a mapping with both."""
+    """Sporadic activation: the minimum interarrival time, or a mapping with minimum and maximum."""
 
     shorthand = ("min",)
 
     min: Duration
-    """Least time between two activations."""
+    """Minimum time between two activations."""
     max: Duration | None = None
-    """Most time between two activations; default: the least."""
+    """Maximum time between two activations; default: `min`."""
 
 
 class Burst(Section):
@@ -28,52 +28,52 @@ class Burst(Section):
     period: Duration
     """Period of the bursts."""
     count: Count
-    """Activations in a burst."""
+    """Number of activations in a burst."""
     distance: Duration
     """Time between two activations of a burst."""
     offset: Offset = 0
-    """Time of the first burst."""
+    """Start of the first burst."""
 
 
 class Times(Section):
     """A list of activations that repeats."""
 
     period: Duration
-    """After which time the list starts again."""
+    """Time after which the list repeats."""
     at: list[Offset] = Field(min_length=1)
-    """Activations, relative to the start of the period."""
+    """Times of the activations, relative to the start of the period."""
     offset: Offset = 0
-    """Time of the first period."""
+    """Start of the first period."""
 
 
 class Steps(Section):
-    """What a function or a process does."""
+    """Execution time, accesses and triggers of a function or a process."""
 
     execution_time: ExecutionTime | None = None
-    """How long it executes."""
+    """Execution time."""
     reads: list[Name] = Field(default_factory=list)
-    """Labels that it reads when it starts."""
+    """Labels that it reads at its start."""
     writes: list[Name] = Field(default_factory=list)
-    """Labels that it writes when it ends."""
+    """Labels that it writes at its end."""
     triggers: list[Name] = Field(default_factory=list)
-    """Tasks that it activates when it ends."""
+    """Tasks that it activates at its end."""
     locks: list[Name] = Field(default_factory=list)
-    """Resources that it holds while it executes; the priority ceiling protocol applies."""
+    """Resources that it holds during its execution (priority ceiling protocol)."""
 
 
 class Runnable(Steps):
     """A function of a task or interrupt service routine."""
 
     name: Name
-    """Name of the function; the same name in several processes is the same function."""
+    """Name of the function; the same name in several processes means the same function."""
     every: Count = 1
-    """Runs every n-th time only."""
+    """It runs only in every n-th job of the process."""
     first: CountOrNone = 0
-    """Number of the first time, counted from 1; default: the n of `every`."""
+    """Number of the first job in which it runs, counted from 1; default: the n of `every`."""
 
 
 class Process(Steps):
-    """What tasks and interrupt service routines have; exactly one kind of activation is stated."""
+    """Keys that tasks and interrupt service routines have; exactly one kind of activation is given."""
 
     name: Name
     """Name of the process."""
@@ -82,7 +82,7 @@ class Process(Steps):
     offset: Offset = 0
     """Time of the first activation, for `period`."""
     jitter: Duration | None = None
-    """Most delay of an activation against the ideal grid, for `period`."""
+    """Maximum deviation from the nominal activation time, for `period`."""
     sporadic: Sporadic | None = None
     """Sporadic activation."""
     burst: Burst | None = None
@@ -92,22 +92,22 @@ class Process(Steps):
     once: Offset | None = None
     """A single activation."""
     core: Name | None = None
-    """Default: the first core."""
+    """Core that it runs on; default: the first core."""
     deadline: Duration | None = None
-    """Relative to the activation."""
+    """Deadline relative to the activation."""
     runnables: list[Runnable] = Field(default_factory=list)
-    """Its functions, in order; a process with one function needs none."""
+    """Its functions, in order; unnecessary for a process with one function."""
 
 
 class Task(Process):
     """A task of the controller."""
 
     priority: Priority | None = None
-    """Higher numbers are served first; default: rate monotonic."""
+    """Priority; a higher number is a higher priority; default: rate monotonic."""
     preemption: Literal["preemptive", "cooperative", "non-preemptive"] = "preemptive"
     """When other tasks may preempt it."""
     activation_limit: Count = 1
-    """Most jobs at a time; further activations are lost."""
+    """Maximum number of pending jobs; further activations are lost."""
 
 
 class Isr(Process):
@@ -116,7 +116,7 @@ class Isr(Process):
     priority: Priority = 1
     """Priority among interrupt service routines."""
     category: Literal[1, 2] = 2
-    """Category of OSEK."""
+    """OSEK category."""
 
 
 class Label(Shorthand):
@@ -125,6 +125,6 @@ class Label(Shorthand):
     shorthand = ("size",)
 
     size: SizeOrNothing = 4 * 8
-    """Default: 4 B."""
+    """Size; default: 4 B."""
     memory: Name | None = None
-    """The memory that holds it; default: the `label_memory` of the hardware."""
+    """Memory in which it is stored; default: the `label_memory` of the hardware."""

@@ -1,4 +1,4 @@
-"""`app.yaml` -> description, with all mistakes of the file in one run."""
+"""`app.yaml` -> description, with all errors of the file in one run."""
 
 from __future__ import annotations
 
@@ -11,12 +11,16 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from amalthea_uros._internal.files import FileError, FileTooLargeError, read_text
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.nodes import MAX_FINDINGS, Mapping, Node, Place, Scalar, Sequence, Source, plain, read_nodes
-from amalthea_uros.spec.section import Section, settle
+from amalthea_uros.spec.section import Section, attach_locations
 from amalthea_uros.units import shortened
+
+#: In bytes.
+MAX_SIZE = 5 * 2**20
 
 S = TypeVar("S", bound=Section)
 
@@ -26,7 +30,7 @@ def read_description(path: Path) -> Description:
 
     Raises
     ------
-    ReadError : the file cannot be read, or something in it is wrong; carries a finding for each mistake.
+    ReadError : the file cannot be read, or something in it is wrong; carries a finding for each error.
     """
     return read_section(path, Description)
 
@@ -43,34 +47,32 @@ def read_section(path: Path, kind: type[S]) -> S:
         findings += [_finding(details, node, source, kind) for details in error.errors(include_url=False)]
     if section is None or findings:
         raise ReadError(_in_order(findings))
-    settle(section, node, source)
+    attach_locations(section, node, source)
     return section
 
 
 def _text(path: Path) -> str:
     try:
-        return path.read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        message = f"the file is not UTF-8, see byte {error.start}"
-        raise ReadError([Finding("YML001", Severity.ERROR, message, Location(path), "Save it as UTF-8.")]) from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        message = f"the file cannot be read: {reason.lower()}"
-        raise ReadError([Finding("YML001", Severity.ERROR, message, Location(path))]) from None
+        return read_text(path, MAX_SIZE)
+    except FileTooLargeError as error:
+        advice = "Split the application, or generate less."
+        raise ReadError([Finding("YML002", Severity.ERROR, error.reason, Location(path), advice)]) from None
+    except FileError as error:
+        raise ReadError([Finding("YML001", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
 
 
 def _in_order(findings: list[Finding]) -> list[Finding]:
-    """The findings from top to bottom, not more than a person mends in one go."""
+    """The findings from top to bottom, each once, up to the limit."""
 
     def position(finding: Finding) -> tuple[int, int]:
         place = finding.location
         return ((place.line or 0, place.column or 0)) if place else (0, 0)
 
-    return sorted(findings, key=position)[:MAX_FINDINGS]
+    return sorted(dict.fromkeys(findings), key=position)[:MAX_FINDINGS]
 
 
 def _finding(details: ErrorDetails, node: Node, source: Source, kind: type[Section]) -> Finding:
-    """What a person is told of an error that pydantic found."""
+    """The finding for an error of pydantic."""
     places = list(_places(details["loc"], node))
     place, value = places[-1]
     if details["type"] == "extra_forbidden":
@@ -83,7 +85,7 @@ def _finding(details: ErrorDetails, node: Node, source: Source, kind: type[Secti
             "YML010", Severity.ERROR, message, source.location(place), _advice(key, _keys(details["loc"][:-1], kind))
         )
     if details["type"] == "missing":
-        message = f"the key {details['loc'][-1]!r} is missing"
+        message = f"missing key {details['loc'][-1]!r}"
         return Finding("YML011", Severity.ERROR, message, source.location(place), "")
     key = next((f"{part}: " for part in reversed(details["loc"]) if isinstance(part, str) and _is_key(part, node, places)), "")
     message, help_text = _sentence(details, value)
@@ -95,7 +97,7 @@ def _is_key(part: str, node: Node, places: list[tuple[Place, Node]]) -> bool:
 
 
 def _places(loc: tuple[int | str, ...], node: Node) -> Iterator[tuple[Place, Node]]:
-    """The nodes on the way to an error, each with the place to point at; parts that only pydantic knows are skipped."""
+    """The nodes on the path to an error, each with its place; parts that exist only in pydantic are skipped."""
     yield node.place, node
     for part in loc:
         if isinstance(node, Mapping) and part in node.items:
@@ -107,7 +109,7 @@ def _places(loc: tuple[int | str, ...], node: Node) -> Iterator[tuple[Place, Nod
 
 
 def _sentence(details: ErrorDetails, node: Node) -> tuple[str, str]:
-    """What is wrong, and what to do."""
+    """Message and help of an error."""
     context: dict[str, Any] = details.get("ctx", {})
     given = shortened(repr(node.value)) if isinstance(node, Scalar) else {Mapping: "a mapping", Sequence: "a list"}[type(node)]
     match details["type"]:
@@ -115,17 +117,17 @@ def _sentence(details: ErrorDetails, node: Node) -> tuple[str, str]:
             allowed = [word.strip("'") for word in str(context["expected"]).replace(" or ", ", ").split(", ")]
             return f"expected {context['expected']}, found {given}", _near(str(details["input"]), allowed)
         case "model_type" | "model_attributes_type" | "dict_type":
-            return f"expected keys and values, found {given}", ""
+            return f"expected a mapping, found {given}", "Write key: value pairs."
         case "list_type":
-            return f"expected a list, found {given}", "Write [a, b], or one item per line behind '- '."
+            return f"expected a list, found {given}", "Write [a, b], or one item per line after '- '."
         case "too_short":
-            return f"expected {context['min_length']} or more, found {context['actual_length']}", ""
+            return f"expected at least {context['min_length']}, found {context['actual_length']}", ""
         case "too_long":
-            return f"expected {context['max_length']} or fewer, found {context['actual_length']}", ""
+            return f"expected at most {context['max_length']}, found {context['actual_length']}", ""
         case "greater_than_equal":
-            return f"must be {context['ge']} or more, found {given}", ""
+            return f"must be at least {context['ge']}, found {given}", ""
         case "less_than_equal":
-            return f"must be {context['le']} or less, found {given}", ""
+            return f"must be at most {context['le']}, found {given}", ""
         case "greater_than":
             return f"must be greater than {context['gt']:g}, found {given}", ""
         case "less_than":
@@ -135,7 +137,7 @@ def _sentence(details: ErrorDetails, node: Node) -> tuple[str, str]:
         case "float_type" | "float_parsing" | "finite_number":
             return f"expected a number, found {given}", ""
         case "string_type":
-            return f"expected a text, found {given}", ""
+            return f"expected a string, found {given}", ""
     return details["msg"], ""
 
 
@@ -149,11 +151,11 @@ def _advice(key: str, known: list[str]) -> str:
     near = get_close_matches(key.replace("-", "_").lower(), folded, n=1)
     if near:
         return f"Did you mean {folded[near[0]]!r}?"
-    return f"Keys here are: {', '.join(known)}." if known else ""
+    return f"Known keys: {', '.join(known)}." if known else ""
 
 
 def _keys(loc: tuple[int | str, ...], kind: type[Section]) -> list[str]:
-    """The keys that are known at a place, found by way of the JSON schema."""
+    """The keys that the JSON schema allows at a place."""
     schema = _schema(kind)
     level = [schema]
     for part in loc:
@@ -168,7 +170,7 @@ def _schema(kind: type[Section]) -> dict[str, Any]:
 
 
 def _variants(schema: dict[str, Any], whole: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """A schema and all that it stands for."""
+    """A schema and its alternatives."""
     if "$ref" in schema:
         yield from _variants(whole["$defs"][schema["$ref"].rpartition("/")[2]], whole)
         return

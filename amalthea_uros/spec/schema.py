@@ -6,7 +6,7 @@ from typing import Any
 
 from amalthea_uros.spec.description import Description
 
-#: What editors understand; pydantic speaks a later draft, from which the sections of this format need only other key words.
+#: The draft that editors support; pydantic writes a later one, of which this format needs only other keywords.
 _DRAFT = "http://json-schema.org/draft-07/schema#"
 
 
@@ -19,7 +19,7 @@ def json_schema() -> dict[str, Any]:
 
 
 def _tidied(schema: Any) -> Any:
-    """Without the titles that repeat keys, and without `null`, which nobody writes."""
+    """The schema without titles that repeat keys, and without `null` as a value."""
     if isinstance(schema, list):
         return [_tidied(item) for item in schema]
     if not isinstance(schema, dict):
@@ -36,6 +36,6 @@ def _tidied(schema: Any) -> Any:
         else:
             found["anyOf"] = kept
     if "$ref" in found and len(found) > 1:
-        # Draft-07 ignores whatever stands beside a reference.
+        # Draft-07 ignores other keywords next to a reference.
         found["allOf"] = [{"$ref": found.pop("$ref")}]
     return found

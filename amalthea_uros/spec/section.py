@@ -1,4 +1,4 @@
-"""What all sections of an `app.yaml` have in common: their keys are known, and they know their places."""
+"""Base of all sections of an `app.yaml`: their keys are known, and they know their locations."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Section(BaseModel):
     _where: tuple[Mapping, Source] | None = PrivateAttr(None)
 
     def location(self, key: str | None = None, index: int | None = None) -> Location | None:
-        """Where the section begins, or the value of a key, or an item of that value; None if it was not read from a file.
+        """Location of the section, of the value of a key, or of an item of that value; None if it was not read from a file.
 
-        A key that is not stated stands where the section stands.
+        A key that is not given has the location of the section.
         """
         where = self._where
         if where is None:
@@ -41,12 +41,12 @@ class Section(BaseModel):
 
 
 class Shorthand(Section):
-    """A section for which a plain value may stand.
+    """A section that may be written as a plain value.
 
     Attributes
     ----------
     shorthand : the keys that get the plain value
-    nested : the section of that value, where it may be a mapping itself
+    nested : the section of that value, if it may be a mapping itself
     """
 
     shorthand: ClassVar[tuple[str, ...]]
@@ -79,20 +79,20 @@ class Shorthand(Section):
         return reference
 
 
-def settle(value: Any, node: Node, source: Source) -> None:
-    """Tell a section and all within it where they stand."""
+def attach_locations(value: Any, node: Node, source: Source) -> None:
+    """Attach their locations to a section and everything in it."""
     if isinstance(value, Section) and isinstance(node, Mapping):
         value._where = node, source
         for name, field in type(value).model_fields.items():
-            # A section that is not stated, or for which a shorthand stands, is where the outer one is.
+            # A section that is not given, or given as a shorthand, has the location of the outer one.
             inner = node.items.get(field.alias or name, node)
             if inner is not node or isinstance(getattr(value, name), Section):
-                settle(getattr(value, name), inner, source)
+                attach_locations(getattr(value, name), inner, source)
     elif isinstance(value, Section):
-        settle(value, Mapping(node.place, {}, {}), source)
+        attach_locations(value, Mapping(node.place, {}, {}), source)
     elif isinstance(value, list | tuple) and isinstance(node, Sequence):
         for item, inner in zip(value, node.items, strict=True):
-            settle(item, inner, source)
+            attach_locations(item, inner, source)
     elif isinstance(value, dict) and isinstance(node, Mapping):
         for key, item in value.items():
-            settle(item, node.items[key], source)
+            attach_locations(item, node.items[key], source)

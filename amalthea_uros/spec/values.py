@@ -10,12 +10,12 @@ from pydantic_core import PydanticCustomError
 
 from amalthea_uros import units
 
-#: Longer names serve nobody.
-LONGEST_NAME = 200
+#: In characters.
+MAX_NAME_LENGTH = 200
 
 
 def problem(message: str) -> PydanticCustomError:
-    """The exception by which a validator says what is wrong with a value."""
+    """The exception that a validator raises for a wrong value."""
     # Braces would be taken for placeholders.
     return PydanticCustomError("value", message.replace("{", "{{").replace("}", "}}"))
 
@@ -54,8 +54,9 @@ def _name(value: Any) -> Any:
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         raise problem("expected a name")
     text = str(value)
-    if not text.strip() or text != text.strip() or len(text) > LONGEST_NAME or not text.isprintable():
-        raise problem(f"{units.shortened(text)!r} is no name: 1 to {LONGEST_NAME} printable characters without blanks around")
+    if not text.strip() or text != text.strip() or len(text) > MAX_NAME_LENGTH or not text.isprintable():
+        allowed = f"1 to {MAX_NAME_LENGTH} printable characters without leading or trailing blanks"
+        raise problem(f"{units.shortened(text)!r} is not a name; use {allowed}")
     return text
 
 
@@ -76,11 +77,11 @@ Size: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_positive), _text_sc
 SizeOrNothing: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_not_negative), _text_schema(units.DATA_SIZE)]
 #: A bit rate above zero, in bits per second.
 BitRate: TypeAlias = Annotated[int, _BIT_RATE, AfterValidator(_positive), _text_schema(units.BIT_RATE)]
-#: What an object is called.
+#: Name of an object.
 Name: TypeAlias = Annotated[str, BeforeValidator(_name), WithJsonSchema({"type": "string", "minLength": 1})]
-#: How many there are.
+#: A number of things.
 Count: TypeAlias = Annotated[int, Field(strict=True, ge=1, le=1_000_000)]
-#: How many there are, possibly none.
+#: A number of things, possibly zero.
 CountOrNone: TypeAlias = Annotated[int, Field(strict=True, ge=0, le=1_000_000)]
-#: A scheduling priority; higher numbers are served first.
+#: A scheduling priority; a higher number is a higher priority.
 Priority: TypeAlias = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]

@@ -1,8 +1,8 @@
 """Which core or server executes a process, by which policy and with which rank.
 
 Hierarchies of schedulers are read as in the help of APP4MC on hierarchical scheduling: the parent decides first, by the parameters of
-the association; its children decide only while they are served. The priorities of all levels form a rank that is compared from the left.
-Below a server, everything shares the server's budget.
+the association; its children decide only while they are served. The priorities of all levels form a rank that is compared from the
+left. Below a server, everything shares the server's budget.
 """
 
 from __future__ import annotations

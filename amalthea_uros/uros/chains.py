@@ -9,7 +9,7 @@ from itertools import pairwise
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf import events as perf
 from amalthea_uros.perf.constraints import LatencyConstraint, LatencyKind
-from amalthea_uros.spec.demands import Chain, Moment
+from amalthea_uros.spec.requirements import Chain, Moment
 from amalthea_uros.uros.chain_elements import ChainElement
 from amalthea_uros.uros.notes import Notes
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from amalthea_uros.perf.constraints import Bound, Requirement, Severity, TimeLimit, TimeMetric
-from amalthea_uros.spec import demands as spec
+from amalthea_uros.spec import requirements as spec
 from amalthea_uros.uros.chain_elements import ChainElement
 from amalthea_uros.uros.notes import Notes
 

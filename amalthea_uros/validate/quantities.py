@@ -1,15 +1,13 @@
-"""Bounds of deviations and clock frequencies as exact numbers, and quantities formatted for messages."""
+"""Bounds of deviations and clocks as exact numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from decimal import Decimal
 from fractions import Fraction
 
 from amalthea_uros.metamodel.classes import (
     ContinuousValueConstant,
     ContinuousValueHistogram,
-    DataSizeUnit,
     DiscreteValueConstant,
     DiscreteValueHistogram,
     IContinuousValueDeviation,
@@ -19,13 +17,9 @@ from amalthea_uros.metamodel.classes import (
     Time,
     TimeConstant,
     TimeHistogram,
-    TimeUnit,
 )
 from amalthea_uros.metamodel.element import Element
-from amalthea_uros.metamodel.magnitudes import SIZES, TIMES, hertz, picoseconds
-
-#: Units for messages, largest first.
-_SIZES_SHOWN = ("GiB", "GB", "MiB", "MB", "KiB", "kB", "B", "bit")
+from amalthea_uros.metamodel.magnitudes import hertz, picoseconds
 
 Deviation = ITimeDeviation | IDiscreteValueDeviation | IContinuousValueDeviation
 
@@ -58,22 +52,3 @@ def _of_all(choose: Callable[[Iterable[float]], float], entries: Sequence[Elemen
 def _number(element: Element, feature: str) -> float | None:
     value: Time | float | None = element.effective(feature)
     return picoseconds(value) if isinstance(value, Time) else value
-
-
-def time_text(time: int | Fraction) -> str:
-    """A time for messages, in the largest unit in which it is at least 1: `2.5 ms`."""
-    value = Fraction(time)
-    unit = next((unit for unit, size in TIMES.items() if abs(value) >= size), TimeUnit.S)
-    return f"{number_text(value / TIMES[unit])} {unit}"
-
-
-def size_text(size: int) -> str:
-    """A data size for messages, in the largest unit that needs no decimals: `240 KiB`."""
-    unit = next(unit for unit in map(DataSizeUnit, _SIZES_SHOWN) if size % SIZES[unit] == 0) if size else DataSizeUnit.B
-    return f"{number_text(Fraction(size, SIZES[unit]))} {unit}"
-
-
-def number_text(number: Fraction) -> str:
-    """A number of any size with at most twelve digits."""
-    # Quantities may exceed the range of float.
-    return f"{Decimal(number.numerator) / Decimal(number.denominator):.12g}"

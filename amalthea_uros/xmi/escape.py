@@ -1,4 +1,4 @@
-"""Attribute values as they stand between quotes."""
+"""Attribute values as they are written between quotes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import re
 _SPECIAL = re.compile(r'[&<"\t\n\r]')
 _ESCAPES = {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\t": "&#x9;", "\n": "&#xA;", "\r": "&#xD;"}
 
-#: Characters that XML 1.0 has no way to write, not even escaped.
+#: Characters that XML 1.0 does not allow, not even escaped.
 _IMPOSSIBLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 _REFERENCE = re.compile(r"&(?:#x([0-9a-fA-F]+)|#([0-9]+)|(amp|lt|gt|quot|apos));|(\r\n|[\t\n\r])")
@@ -23,7 +23,7 @@ def escape(value: str) -> str:
 
 
 def impossible_character(value: str) -> str | None:
-    """The first character that XML cannot hold, None if there is none."""
+    """The first character that XML does not allow, None if there is none."""
     found = _IMPOSSIBLE.search(value)
     return found[0] if found else None
 

@@ -1,4 +1,4 @@
-"""The root element: is it an AMALTHEA model, of which version, and which prefixes does it use."""
+"""The root element: whether it is an AMALTHEA model, its version, and the prefixes that it uses."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from amalthea_uros.metamodel.versions import (
     NAMESPACE_PREFIX,
-    OLDEST_HELD,
+    OLDEST_SUPPORTED,
     known_versions,
     nearest_version,
     newest_version,
@@ -21,14 +21,14 @@ _VERSION = re.compile(r"[0-9]{1,4}(\.[0-9]{1,4}){1,3}").fullmatch
 
 
 class Header(NamedTuple):
-    """What the root element says.
+    """The declarations of the root element.
 
     Attributes
     ----------
     version : AMALTHEA version as declared
-    facts_version : the version with whose facts the model is read
+    facts_version : the version as which the model is read
     xmi_id, xsi_type : names of the special attributes in this document
-    type_prefix : what stands in front of class names in `xsi:type`
+    type_prefix : prefix of class names in `xsi:type`
     own_attributes : attributes of the root that belong to XML and XMI, not to the model
     """
 
@@ -40,13 +40,13 @@ class Header(NamedTuple):
     own_attributes: frozenset[str]
 
     @property
-    def remark(self) -> str:
-        """What is to be said about the version, "" if it is a known one."""
+    def version_note(self) -> str:
+        """What a finding says about an unknown version, "" for a known one."""
         if self.version in known_versions():
             return ""
         newer = version_key(self.version) > version_key(newest_version())
-        known = "newer than the known versions" if newer else "not among the known versions"
-        return f"AMALTHEA {self.version} is {known}, the model is read as {self.facts_version}"
+        known = "newer than the known versions" if newer else "not a known version"
+        return f"AMALTHEA {self.version} is {known}; the model is read as {self.facts_version}"
 
 
 class NotAModelError(Exception):
@@ -54,7 +54,7 @@ class NotAModelError(Exception):
 
     Attributes
     ----------
-    rule, message, help : what a finding about it says
+    rule, message, help : content of the finding
     """
 
     def __init__(self, rule: str, message: str, help_text: str = "") -> None:
@@ -63,7 +63,7 @@ class NotAModelError(Exception):
 
 
 def read_header(name: str, attributes: dict[str, str]) -> Header:
-    """What the root element says.
+    """The declarations of a root element.
 
     Raises
     ------
@@ -72,24 +72,26 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
     prefix, _, local = name.rpartition(":")
     namespace = attributes.get(f"xmlns:{prefix}" if prefix else "xmlns", "")
     if "itea2.org/model" in namespace:
-        raise NotAModelError("XMI006", "the model is of an ITEA version of AMALTHEA, from before APP4MC 0.7", _MIGRATE)
+        raise NotAModelError("XMI006", "the model has an ITEA version of AMALTHEA, older than APP4MC 0.7", _MIGRATE)
     if local != "Amalthea" or not prefix or not namespace.startswith(NAMESPACE_PREFIX):
         within = f" in namespace {namespace}" if namespace else ""
         raise NotAModelError(
             "XMI005",
-            f"the root element is <{name}>{within}, not <am:Amalthea>: this is not an AMALTHEA model",
+            f"not an AMALTHEA model: the root element is <{name}>{within}, expected <am:Amalthea>",
             f'A model starts with <am:Amalthea xmlns:am="{NAMESPACE_PREFIX}{newest_version()}" ...>.',
         )
     version = namespace.removeprefix(NAMESPACE_PREFIX)
     if not _VERSION(version):
-        raise NotAModelError("XMI005", f"namespace {namespace} names no AMALTHEA version")
-    if version_key(version) < version_key(OLDEST_HELD):
-        raise NotAModelError("XMI006", f"the model is of AMALTHEA {version}, older than {OLDEST_HELD}", _MIGRATE)
+        raise NotAModelError("XMI005", f"namespace {namespace} does not end with an AMALTHEA version")
+    if version_key(version) < version_key(OLDEST_SUPPORTED):
+        raise NotAModelError(
+            "XMI006", f"AMALTHEA {version} is not supported, {OLDEST_SUPPORTED} is the oldest supported version", _MIGRATE
+        )
     prefixes = {uri: key.partition(":")[2] for key, uri in attributes.items() if key.startswith("xmlns:")}
     for usual, uri in (("xmi", XMI_NAMESPACE), ("xsi", XSI_NAMESPACE)):
         given = attributes.get(f"xmlns:{usual}", uri)
         if given != uri:
-            raise NotAModelError("XMI005", f"the prefix {usual!r} stands for {given!r}", f'It has to be xmlns:{usual}="{uri}".')
+            raise NotAModelError("XMI005", f"the prefix {usual!r} is bound to {given!r}", f'Write xmlns:{usual}="{uri}".')
     xmi, xsi = prefixes.get(XMI_NAMESPACE, "xmi"), prefixes.get(XSI_NAMESPACE, "xsi")
     return Header(
         version=version,
@@ -101,4 +103,4 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
     )
 
 
-_MIGRATE = f"Such models have another structure; migrate it with Eclipse APP4MC to {OLDEST_HELD} or newer."
+_MIGRATE = f"Migrate the model with Eclipse APP4MC to AMALTHEA {OLDEST_SUPPORTED} or newer."

@@ -1,4 +1,4 @@
-"""The library's doors: files -> model -> files."""
+"""Files -> model."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros._internal.files import MAX_SIZE, FileError, is_directory, list_directory
+from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
 from amalthea_uros.garbage import paused_garbage_collection
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.xmi.files import MAX_SIZE, is_folder, not_readable, read_text
+from amalthea_uros.xmi.files import not_readable, read_text
 from amalthea_uros.xmi.reader import ReadResult, read
 from amalthea_uros.xmi.references import resolve
 
@@ -24,17 +25,17 @@ def load(*paths: StrPath | Iterable[StrPath], max_size: int = MAX_SIZE) -> Model
 
     Parameters
     ----------
-    paths : files (plain or zipped), folders, which stand for all `.amxmi` files in them, or lists of such. Several files make
-        one model, in which every object can refer to every other
-    max_size : bytes, unpacked, beyond which a file is refused
+    paths : files (plain or zipped), directories, which stand for all `.amxmi` files in them, or lists of these. Several files
+        form one model, in which every object can refer to every other
+    max_size : largest size of a file, unpacked, in bytes
 
     Returns
     -------
-    Model : its `findings` tell what was odd: dangling references, unknown elements, an unknown version
+    Model : its `findings` list what was found while reading: unresolved references, unknown elements, an unknown version
 
     Raises
     ------
-    ReadError : a file is missing, not a model, too old or refused for safety; carries all findings.
+    ReadError : a file is missing, not a model, too old, or refused for safety; carries the findings of all files.
     """
     results: list[ReadResult] = []
     refused: list[Finding] = []
@@ -60,26 +61,25 @@ def _flat(paths: Iterable[StrPath | Iterable[StrPath]]) -> Iterator[StrPath]:
 
 
 def model_files(paths: Iterable[StrPath]) -> list[Path]:
-    """The files behind paths: a folder stands for the `.amxmi` files in it.
+    """The files that some paths stand for: a directory stands for the `.amxmi` files in it.
 
     Raises
     ------
-    ReadError : a folder has none.
+    ReadError : a directory contains none, or cannot be read.
     """
     found: dict[Path, None] = {}
     for path in map(Path, paths):
-        if is_folder(path):
-            try:
-                inside = sorted(entry for entry in path.iterdir() if entry.suffix == SUFFIX and entry.is_file())
-            except OSError as error:
-                raise not_readable(path, error) from None
-            if not inside:
-                raise ReadError(
-                    [Finding("XMI001", Severity.ERROR, f"there is no {SUFFIX} file in this folder", Location(path))]
-                )
-            found |= dict.fromkeys(inside)
-        else:
-            found[path] = None
+        found |= dict.fromkeys(_files_in(path) if is_directory(path) else [path])
     if not found:
         raise TypeError("load() needs at least one path")
     return list(found)
+
+
+def _files_in(directory: Path) -> list[Path]:
+    try:
+        found = list_directory(directory, SUFFIX)
+        if not found:
+            raise FileError(directory, f"the directory contains no {SUFFIX} file")
+    except FileError as error:
+        raise not_readable(error) from None
+    return found

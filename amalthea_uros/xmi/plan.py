@@ -1,4 +1,4 @@
-"""How objects of each class are read and written in one AMALTHEA version: the facts, prepared for the inner loops."""
+"""How objects of each class are read and written in one AMALTHEA version: the facts in a form for the inner loops."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.factfile import FeatureFact, Kind
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.versions import Facts, facts
-from amalthea_uros.xmi.literals import Literal, Memo, literal_of
+from amalthea_uros.xmi.data_types import DataType, ValueCache, data_type_of
 
-#: What stands in front of class names in `xsi:type`.
+#: Prefix of class names in `xsi:type`.
 TYPE_PREFIX = "am:"
 
 
@@ -23,19 +23,19 @@ class FeaturePlan:
     Attributes
     ----------
     name, xml_name : the Python name and that of the file format
-    many : whether it is held as a list; `only_one` if the version nevertheless takes one value at most
-    literal : how values are spelled, None for references and parts
+    many : whether it is held as a list; `only_one` if this version nevertheless allows one value only
+    data_type : how values are written, None for references and parts
     parse : text -> value for the reader, None where the text is the value
-    omitted : the value that EMF does not write because absence says the same; None if there is no such value
+    omitted : the value that EMF does not write because absence means the same; None if there is no such value
     default_text : what EMF writes for an unset attribute (it has an explicit default), None if nothing
     target : the class of references and parts
     """
 
     __slots__ = (
+        "data_type",
         "default_text",
         "is_reference",
         "is_string",
-        "literal",
         "many",
         "name",
         "omitted",
@@ -53,37 +53,37 @@ class FeaturePlan:
         self.many = many
         self.only_one = many and not fact.many
         self.is_reference = fact.kind is Kind.REFERENCE
-        self.literal: Literal | None = None
+        self.data_type: DataType | None = None
         self.target: type[Element] = Element
         self.target_is_abstract = False
         self.default_text: str | None = None
         self.omitted: Any = None
         if fact.kind is Kind.ATTRIBUTE:
-            self.literal = literal_of(declared, fact.type)
+            self.data_type = data_type_of(declared, fact.type)
             self.default_text = fact.default
             default = declared.default(fact)
             if default is not None:
-                value = self.literal.parse(default)
+                value = self.data_type.parse(default)
                 if fact.default is None:
                     self.omitted = value
                 else:
-                    self.default_text = self.literal.format(value)
+                    self.default_text = self.data_type.format(value)
         else:
             self.target = getattr(classes, fact.type)
             self.target_is_abstract = declared.classes[fact.type].abstract
         self.is_string = fact.type == "EString"
-        self.parse = _quick_parse(self.literal) if self.literal and not self.is_string else None
-        #: Plans of the objects that may stand here, by `xsi:type`; filled as the reader meets them.
+        self.parse = _quick_parse(self.data_type) if self.data_type and not self.is_string else None
+        #: Plans of the objects that this feature may contain, by `xsi:type`; filled while reading.
         self.parts: dict[str | None, ClassPlan] = {}
 
 
-def _quick_parse(literal: Literal) -> Callable[[str], Any]:
-    # Whole numbers are parsed as fast as they are looked up, and too often different.
-    return literal.parse if literal.python_type is int else Memo(literal.parse).__getitem__
+def _quick_parse(data_type: DataType) -> Callable[[str], Any]:
+    # Whole numbers are parsed as fast as they are looked up, and are too often different.
+    return data_type.parse if data_type.python_type is int else ValueCache(data_type.parse).__getitem__
 
 
 def reference_texts(feature: FeaturePlan, value: str) -> list[str]:
-    """The ids in an attribute. A single reference is one id, also if somebody left the blanks of a name in it."""
+    """The ids in an attribute. A single reference is one id, even if it contains unencoded blanks."""
     return value.split() if feature.many or not value.strip() else [value.strip()]
 
 
@@ -93,8 +93,8 @@ class ClassPlan:
     Attributes
     ----------
     features : every stored feature in the order of serialisation
-    attributes : by XML name, what may stand as an XML attribute: data and references
-    children : by XML name, what may stand as a child element: parts, and references as `href`
+    attributes : by XML name, features that may be XML attributes: values and references
+    children : by XML name, features that may be child elements: parts, and references as `href`
     """
 
     __slots__ = ("attributes", "children", "cls", "features", "referable")
@@ -107,13 +107,13 @@ class ClassPlan:
             for fact in declared.features(class_name)
             if fact.stored
         )
-        self.attributes = {f.xml_name: f for f in self.features if f.literal or f.is_reference}
-        self.children = {f.xml_name: f for f in self.features if not f.literal}
+        self.attributes = {f.xml_name: f for f in self.features if f.data_type or f.is_reference}
+        self.children = {f.xml_name: f for f in self.features if not f.data_type}
         self.referable = self.cls.is_referable
 
 
 class Plans:
-    """The class plans of one version, made when first asked for."""
+    """The class plans of one version, made on demand."""
 
     def __init__(self, version: str) -> None:
         self.facts = facts(version)
@@ -130,7 +130,7 @@ class Plans:
         return plan
 
     def part(self, feature: FeaturePlan, xsi_type: str | None) -> ClassPlan | None:
-        """The plan of an object that stands in a containment; None if its class (without `xsi:type` the declared one) cannot."""
+        """The plan of an object in a containment; None if its class (without `xsi:type` the declared one) is not allowed there."""
         name = feature.target.__name__
         if xsi_type is not None:
             prefix, mark, name = xsi_type.partition(":")

@@ -1,7 +1,7 @@
 """Text of one file -> document: objects, and the references that are still to be resolved.
 
-The parser is expat, driven in one pass; where objects stand is kept as offsets, so that line and column (also of attributes, also
-beyond line 65,535, where libxml2 stops counting) can be told at any time.
+The parser is expat, driven in one pass. The offsets of all objects are kept, so that line and column can be computed at any time,
+also of attributes, and beyond line 65,535, where libxml2 stops counting.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from amalthea_uros.metamodel.element import Element, extras_of
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.xmi.files import FileText
+from amalthea_uros.xmi.finding_collector import CollectedFinding, FindingCollector, location
 from amalthea_uros.xmi.header import XSI_NAMESPACE, Header, NotAModelError, read_header
 from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
-from amalthea_uros.xmi.remarks import Remark, Remarks, location
 
-#: Real models nest about 15 deep; far beyond, recursion over a model would fail with less clear words.
+#: Real models nest about 15 deep; far deeper, recursion over a model would fail with a less helpful message.
 MAX_DEPTH = 200
 
-_KEPT = "It is kept and written back, but not understood."
+_KEPT = "Unknown content is ignored, but preserved when the file is saved."
 
 _set = object.__setattr__
 _new = object.__new__
@@ -45,7 +45,7 @@ class PendingReference(NamedTuple):
     Attributes
     ----------
     texts : the ids, in order
-    is_href : whether it stands as `href` elements rather than as an attribute
+    is_href : whether it is written as `href` elements rather than as an attribute
     """
 
     holder: Element
@@ -54,9 +54,9 @@ class PendingReference(NamedTuple):
     is_href: bool
 
 
-#: An open element: its object and plan (None for an `href` element), where the object stands in document order (else -1), and by
-#: feature name what was read in it so far: the list of parts or of `href` texts, or True where there can be no more. A plain tuple,
-#: one is made for every element.
+#: An open element: its object and plan (None for an `href` element), the index of the object in document order (else -1), and by
+#: feature name what was read in it so far: the list of parts or of `href` texts, or True if there can be no more. A plain tuple,
+#: because one is made for every element.
 Frame = tuple[Any, Any, int, dict[str, Any]]
 
 
@@ -67,7 +67,7 @@ class ReadResult(NamedTuple):
     ----------
     referables : every object that can be referred to
     xmi_ids : the `xmi:id` of every object that has one
-    findings : what was odd; nothing of it prevented reading
+    findings : problems that did not prevent reading
     """
 
     document: Document
@@ -105,15 +105,15 @@ class _Reader:
         self.references: list[PendingReference] = []
         self.referables: list[Element] = []
         self.xmi_ids: list[tuple[Element, str]] = []
-        #: Comments and the like that wait for the part in front of which they stand.
-        self.loose: dict[Element, list[str]] = {}
+        #: Comments and the like, until the part that follows them is read.
+        self.pending_extras: dict[Element, list[str]] = {}
         self.prolog: list[str] = []
         self.epilog: list[str] = []
         self.skipped_depth = 0
         self.skipped_start = 0
         self.start_part: StartHandler | None = None
         self.end_part: EndHandler = self.end_handler()
-        self.remarks = Remarks()
+        self.collector = FindingCollector()
 
     def read(self) -> ReadResult:
         parser = self.parser
@@ -148,7 +148,7 @@ class _Reader:
             content.text, header.version, content.encoding, content.zip_entry, prefixes, self.elements, self.starts, self.ends
         )
         document.prolog, document.epilog = self.prolog, self.epilog
-        findings = [remark.finding(self.path, source) for remark in self.remarks]
+        findings = [collected.finding(self.path, source) for collected in self.collector]
         return ReadResult(document, self.references, self.referables, self.xmi_ids, findings)
 
     @cached_property
@@ -164,11 +164,11 @@ class _Reader:
         except NotAModelError as error:
             raise self.refuse(error.rule, error.message, error.help) from None
         if "xsi:type" in self.content.text and "xmlns:xsi" not in self.content.text:
-            message = "not well-formed XML: the prefix 'xsi' is not declared"
+            message = "not well-formed XML: undeclared namespace prefix 'xsi'"
             raise self.refuse("XMI002", message, f'Add xmlns:xsi="{XSI_NAMESPACE}" to the root element.')
-        if header.remark:
-            added = "What that version added is kept and written back, but not understood."
-            self.remark("XMI007", Severity.WARNING, header.remark, added)
+        if header.version_note:
+            added = "Additions of that version are preserved when the file is saved, but ignored otherwise."
+            self.report("XMI007", Severity.WARNING, header.version_note, added)
         self.parser.StartElementHandler = self.start_part = self.start_handler(header)
         plan = plans(header.facts_version).of("Amalthea")
         assert plan is not None
@@ -188,7 +188,7 @@ class _Reader:
         foreign_prefix = None if header.type_prefix == TYPE_PREFIX else header.type_prefix
         elements, add_element, add_start, add_end = self.elements, self.elements.append, self.starts.append, self.ends.append
         add_referable, add_id, add_reference = self.referables.append, self.xmi_ids.append, self.references.append
-        loose = self.loose
+        pending_extras = self.pending_extras
 
         def start(name: str, attributes: dict[str, str]) -> None:
             parent, parent_plan, _, held = stack[-1]
@@ -215,11 +215,11 @@ class _Reader:
                     parts._owner = parent
                     _set(parent, feature_name, parts)
                 elif feature.only_one:
-                    self.start_second(feature)
+                    self.start_duplicate(feature)
                     return
                 _append(parts, element)
             elif feature_name in held:
-                self.start_second(feature)
+                self.start_duplicate(feature)
                 return
             else:
                 held[feature_name] = True
@@ -252,9 +252,9 @@ class _Reader:
                     try:
                         _set(element, attribute.name, attribute.parse(value))
                     except ValueError as error:
-                        self.no_value(element, key, value, error)
-            if loose:
-                self.settle_loose(parent, element)
+                        self.invalid_value(element, key, value, error)
+            if pending_extras:
+                self.attach_extras(parent, element)
             if len(stack) > MAX_DEPTH:
                 raise self.too_deep()
 
@@ -262,14 +262,14 @@ class _Reader:
 
     def end_handler(self) -> EndHandler:
         """The handler of end tags."""
-        parser, stack, ends, loose = self.parser, self.stack, self.ends, self.loose
+        parser, stack, ends, pending_extras = self.parser, self.stack, self.ends, self.pending_extras
 
         def end(_name: str) -> None:
             element, _, place, _ = stack.pop()
             if place >= 0:
                 ends[place] = parser.CurrentByteIndex
-                if loose:
-                    self.settle_loose(element, None)
+                if pending_extras:
+                    self.attach_extras(element, None)
 
         return end
 
@@ -286,7 +286,7 @@ class _Reader:
             texts = held[feature.name] = []
             self.references.append(PendingReference(holder, feature, texts, True))
         elif texts is True or not feature.many:
-            self.start_second(feature)
+            self.start_duplicate(feature)
             return
         texts.append(text)
         self.stack.append((None, None, -1, {}))
@@ -296,32 +296,43 @@ class _Reader:
     def start_unknown(self, name: str) -> None:
         holder, plan, *_ = self.stack[-1]
         where = type(holder).__name__ if plan is not None else "a reference"
-        message = f"AMALTHEA {self.version} knows no <{name}> in {where}"
-        self.remarks.add(Remark("XMI010", Severity.WARNING, message, _KEPT, self.offset), name, plan.children if plan else ())
+        message = f"unknown element <{name}> in {where} (AMALTHEA {self.version})"
+        self.collector.add(
+            CollectedFinding("XMI010", Severity.WARNING, message, _KEPT, self.offset),
+            name,
+            plan.children if plan else (),
+        )
         self.skip()
 
     def start_misplaced(self, feature: FeaturePlan, type_name: str | None) -> None:
         where, target = type(self.stack[-1][0]).__name__, feature.target.__name__
         if type_name is None:
-            message = f"<{feature.xml_name}> in {where} has no xsi:type, but {target} is abstract"
-            hint = "Add xsi:type to say which object it is. "
+            message = f"<{feature.xml_name}> in {where} has no xsi:type, and its declared class {target} is abstract"
+            hint = "Add an xsi:type. "
         else:
             given = type_name.removeprefix(TYPE_PREFIX)
-            message = f"<{feature.xml_name}> in {where} must be a {target} of AMALTHEA {self.version}, not a {given}"
-            hint = ""
-        self.remark("XMI012", Severity.ERROR, message, hint + _KEPT)
+            message = (
+                f"<{feature.xml_name}> in {where} has type {given}, expected {target} or a subclass of AMALTHEA {self.version}"
+            )
+            hint = "Correct the xsi:type. "
+        self.report("XMI012", Severity.ERROR, message, hint + _KEPT)
         self.skip()
 
-    def start_second(self, feature: FeaturePlan) -> None:
+    def start_duplicate(self, feature: FeaturePlan) -> None:
         where = type(self.stack[-1][0]).__name__
-        message = f"{where} takes only one <{feature.xml_name}>, this is a second one"
+        message = f"{where} can have only one <{feature.xml_name}>, this is another one"
         if feature.is_reference and feature.many:
-            message = f"{feature.xml_name!r} of {where} stands as an attribute and as an element"
-        self.remark("XMI014", Severity.ERROR, message, "The first one counts; the second is kept and written back.")
+            message = f"{feature.xml_name!r} of {where} is given as an attribute and as an element"
+        self.report(
+            "XMI014",
+            Severity.ERROR,
+            message,
+            "The first one is used; this one is preserved when the file is saved, but ignored otherwise.",
+        )
         self.skip()
 
     def skip(self) -> None:
-        """Pass over the element of the current start tag and everything in it."""
+        """Skip the element of the current start tag and everything in it."""
         self.skipped_depth = 1
         self.skipped_start = self.offset
         self.parser.StartElementHandler = self.start_skipped
@@ -337,7 +348,7 @@ class _Reader:
         self.parser.StartElementHandler = self.start_part
         self.parser.EndElementHandler = self.end_part
         start, end = self.skipped_start, self.offset
-        # Expat stands at the end tag of an element with content, but behind the tag of an empty one.
+        # The position of expat is at the end tag of an element with content, but after the tag of an empty one.
         is_empty = self.encoded[end - 2 : end] == b"/>" and self.encoded.find(b"<", start + 1, end) < 0
         if not is_empty:
             end = self.encoded.index(b">", end) + 1
@@ -346,8 +357,8 @@ class _Reader:
     def characters(self, data: str) -> None:
         if data.isspace() or self.skipped_depth:
             return
-        message = f"text {data.strip()[:30]!r} stands between the elements, where a model has none"
-        self.remark("XMI015", Severity.WARNING, message, "It is kept and written back; remove it.")
+        message = f"text {data.strip()[:30]!r} between the elements"
+        self.report("XMI015", Severity.WARNING, message, "Remove it; a model has no text between its elements.")
         self.keep_extra(data.strip().replace("&", "&amp;").replace("<", "&lt;"))
 
     def comment(self, data: str) -> None:
@@ -357,31 +368,37 @@ class _Reader:
         self.keep_extra(f"<?{target} {data}?>" if data else f"<?{target}?>")
 
     def keep_extra(self, raw: str) -> None:
-        """Keep what has no place in the metamodel at the element that is open."""
+        """Keep what the metamodel cannot represent at the open element."""
         if self.skipped_depth:
             return
         holder = next((element for element, *_ in reversed(self.stack) if element is not None), None)
         if holder is not None:
-            self.loose.setdefault(holder, []).append(raw)
+            self.pending_extras.setdefault(holder, []).append(raw)
         else:
             (self.epilog if self.elements else self.prolog).append(raw)
 
-    def settle_loose(self, holder: Element, anchor: Element | None) -> None:
-        """Tie what was kept inside `holder` to the part in front of which it stands."""
-        for raw in self.loose.pop(holder, ()):
+    def attach_extras(self, holder: Element, anchor: Element | None) -> None:
+        """Attach what was kept inside `holder` to the part that follows it."""
+        for raw in self.pending_extras.pop(holder, ()):
             extras_of(holder).content.append((anchor, raw))
 
     def unknown_attribute(self, element: Element, plan: ClassPlan, key: str, value: str) -> None:
         extras_of(element).attributes[key] = value
         if key.startswith("xmlns"):
             return
-        message = f"AMALTHEA {self.version} knows no attribute {key!r} of {type(element).__name__}"
-        self.remarks.add(Remark("XMI011", Severity.WARNING, message, _KEPT, self.offset, key), key, plan.attributes)
+        message = f"unknown attribute {key!r} of {type(element).__name__} (AMALTHEA {self.version})"
+        self.collector.add(CollectedFinding("XMI011", Severity.WARNING, message, _KEPT, self.offset, key), key, plan.attributes)
 
-    def no_value(self, element: Element, key: str, value: str, error: ValueError) -> None:
+    def invalid_value(self, element: Element, key: str, value: str, error: ValueError) -> None:
         extras_of(element).attributes[key] = value
         message = f"attribute {key!r} of {type(element).__name__}: {error}"
-        self.remark("XMI013", Severity.ERROR, message, "It is kept and written back, but counts as not set.", key)
+        self.report(
+            "XMI013",
+            Severity.ERROR,
+            message,
+            "Correct the value. It is preserved when the file is saved, but the attribute counts as unset.",
+            key,
+        )
 
     # Findings
 
@@ -393,27 +410,27 @@ class _Reader:
     def version(self) -> str:
         return self.header.facts_version if self.header else ""
 
-    def remark(self, rule: str, severity: Severity, message: str, help_text: str, attribute: str = "") -> None:
-        self.remarks.add(Remark(rule, severity, message, help_text, self.offset, attribute))
+    def report(self, rule: str, severity: Severity, message: str, help_text: str, attribute: str = "") -> None:
+        self.collector.add(CollectedFinding(rule, severity, message, help_text, self.offset, attribute))
 
     def refuse(self, rule: str, message: str, help_text: str, offset: int | None = None) -> ReadError:
         where = location(self.path, Source(self.content.text), self.offset if offset is None else offset)
         return ReadError([Finding(rule, Severity.ERROR, message, where, help_text)])
 
     def refuse_doctype(self, *_declaration: Any) -> None:
-        message = "the file has a document type declaration (DTD), which may define entities"
-        raise self.refuse("XMI003", message, "Models have none; for safety it is refused. Remove the declaration.")
+        message = "the file has a document type declaration (DTD)"
+        raise self.refuse("XMI003", message, "Remove it; it is refused because it may define entities.")
 
     def too_deep(self) -> ReadError:
-        message = f"the elements are nested more than {MAX_DEPTH} deep"
-        return self.refuse("XMI004", message, "No real model is; for safety it is refused.")
+        message = f"the elements are nested more than {MAX_DEPTH} levels deep"
+        return self.refuse("XMI004", message, "Check how the file was generated; no real model is nested that deep.")
 
     def malformed(self, error: expat.ExpatError) -> ReadError:
         if not self.content.text.lstrip().startswith("<"):
-            return self.refuse("XMI002", "this is not XML", "AMALTHEA models are XML files, plain or zipped.", 0)
+            return self.refuse("XMI002", "not XML", "AMALTHEA models are XML files in UTF-8, plain or zipped.", 0)
         reason = expat.errors.messages[error.code]
         if self.stack and reason == expat.errors.XML_ERROR_NO_ELEMENTS:
             element, _, place, _ = next(frame for frame in reversed(self.stack) if frame[0] is not None)
             line = self.encoded.count(b"\n", 0, self.starts[place]) + 1
-            reason = f"the file ends in the middle, the {type(element).__name__} of line {line} is still open"
+            reason = f"unexpected end of file, the {type(element).__name__} on line {line} is not closed"
         return self.refuse("XMI002", f"not well-formed XML: {reason}", "", self.parser.ErrorByteIndex)

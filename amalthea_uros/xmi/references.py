@@ -1,7 +1,7 @@
-"""References between objects, also of several files: text -> object.
+"""Resolution of references between objects, also across files: text -> object.
 
-Objects are found by unique name over all documents. A reference for which there is no object leads to an unresolved stand-in that
-keeps the text, so that nothing is lost and everything else can go on.
+Objects are found by their unique names in all documents. A reference without target refers to an unresolved proxy that keeps the
+text, so that nothing is lost and everything else can continue.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from amalthea_uros.metamodel.containment import ReferenceList
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Spelling
 from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix, unique_name
+from amalthea_uros.xmi.finding_collector import location
 from amalthea_uros.xmi.plan import FeaturePlan, plans
 from amalthea_uros.xmi.reader import PendingReference, ReadResult
-from amalthea_uros.xmi.remarks import location
 
-#: After so many comparisons no more similar names are searched: it would take longer than reading.
-MOST_COMPARED = 20_000
+#: After so many comparisons no more similar names are searched, because that would take longer than reading.
+MAX_COMPARISONS = 20_000
 
 _set = object.__setattr__
 
 
 def resolve(results: Sequence[ReadResult]) -> list[Finding]:
-    """Resolve the references of all documents in place; tells which have no target, several, or one of a wrong class."""
+    """Resolve the references of all documents in place; the findings name those with no target, several, or one of a wrong class."""
     resolver = _Resolver(results)
     # The names of namespace members need their namespace; those of call arguments need the call and the parameter.
     waves: list[list[tuple[ReadResult, PendingReference]]] = [[], [], []]
@@ -46,12 +46,12 @@ def resolve(results: Sequence[ReadResult]) -> list[Finding]:
     resolver.index(_referables(results, CallArgument))
     resolver.link_all(waves[2])
     for result in results:
-        resolver.note_odd_ids(result)
+        resolver.check_xmi_ids(result)
     return resolver.findings()
 
 
 def _referables(results: Sequence[ReadResult], cls: type[Element] | None) -> Iterable[Element]:
-    """The objects of a class to which references are possible; None: all that need no wave of their own."""
+    """The objects of a class to which references are possible; None: all that can be resolved in the main wave."""
     for result in results:
         if cls is None:
             yield from (e for e in result.referables if type(e) is not Namespace and type(e) is not CallArgument)
@@ -60,7 +60,7 @@ def _referables(results: Sequence[ReadResult], cls: type[Element] | None) -> Ite
 
 
 class Use(NamedTuple):
-    """A reference that has to be talked about."""
+    """A reference that a finding is about."""
 
     document: Document
     holder: Element
@@ -72,25 +72,25 @@ class _Resolver:
     def __init__(self, results: Sequence[ReadResult]) -> None:
         self.results = results
         self.by_id: dict[str, Element] = {}
-        #: Ids that several objects share; the first one of a document is meant by its references.
+        #: Ids that several objects share; a reference means the first one in its own document.
         self.shared: dict[str, list[Element]] = {}
         self.suffixes: dict[type[Element], str] = {}
         self.in_namespace = {p.holder for r in results for p in r.references if p.feature.target is Namespace}
         #: The unique name of every object that can be referred to.
         self.names: dict[Element, str] = {}
-        self.stand_ins: dict[tuple[str, type[Element]], Element] = {}
+        self.proxies: dict[tuple[str, type[Element]], Element] = {}
         self.problems: dict[tuple[str, str], list[Use]] = {}
         self.comparisons = 0
 
     def index(self, elements: Iterable[Element]) -> None:
-        """Make objects known under their unique names."""
+        """Enter objects under their unique names."""
         by_id, names, in_namespace, suffixes = self.by_id, self.names, self.in_namespace, self.suffixes
         for element in elements:
             cls = type(element)
             suffix = suffixes.get(cls)
             if suffix is None:
                 suffix = suffixes[cls] = "" if has_prefix(cls) else TYPE_MARK + cls.__name__
-            # Most names are just that; the general way takes three times as long.
+            # The usual case; the general function takes three times as long.
             name = encode(element.name) + suffix if suffix and element not in in_namespace else unique_name(element)  # type: ignore[attr-defined]
             names[element] = name
             first = by_id.setdefault(name, element)
@@ -98,7 +98,7 @@ class _Resolver:
                 self.shared.setdefault(name, [first]).append(element)
 
     def link_all(self, wave: list[tuple[ReadResult, PendingReference]]) -> None:
-        """Give every holder its targets; remember where the form (attribute or `href`) is not the usual one."""
+        """Assign the targets of all references; note where the form (attribute or `href`) is not the one that EMF would write."""
         by_id, shared, is_single = self.by_id, self.shared, len(self.results) == 1
         for result, (holder, feature, texts, is_href) in wave:
             document = result.document
@@ -117,13 +117,13 @@ class _Resolver:
                 document.href_features[holder, feature.xml_name] = is_href
 
     def find(self, use: Use, text: str) -> Element:
-        """The target of a reference that the plain look-up does not settle."""
+        """The target of a reference that is not exactly the unique name of one fitting object."""
         document, holder, feature, _ = use
         candidates = self.candidates(document, text)
         fitting = [element for element in candidates if isinstance(element, feature.target)]
         if not fitting:
             self.problem("XMI023" if candidates else "XMI020", text, use)
-            return self.stand_in(text, feature)
+            return self.proxy(text, feature)
         if len(fitting) > 1:
             self.problem("XMI021", text, use)
         target = next((element for element in fitting if element.document is document), fitting[0])
@@ -144,47 +144,47 @@ class _Resolver:
         found = self.by_xmi_id[document].get(text)
         if found is not None:
             return [found]
-        # APP4MC before 0.9.7 encoded the whole id of some hrefs a second time; people type names as they are.
-        for respelled in (unquote(text), _respell(text)):
-            if respelled in self.by_id:
-                return self.shared.get(respelled, [self.by_id[respelled]])
+        # APP4MC before 0.9.7 encoded the whole id of some hrefs a second time; people type names without encoding.
+        for canonical_references in (unquote(text), _reencoded(text)):
+            if canonical_references in self.by_id:
+                return self.shared.get(canonical_references, [self.by_id[canonical_references]])
         return []
 
     @cached_property
     def by_xmi_id(self) -> dict[Document, dict[str, Element]]:
-        """Objects by the `xmi:id` in their file, the first of several; for files whose ids are no names."""
+        """Objects by the `xmi:id` in their file, the first of several; for files whose ids are not unique names."""
         return {
             result.document: {xmi_id: element for element, xmi_id in reversed(result.xmi_ids) if element in self.names}
             for result in self.results
         }
 
-    def stand_in(self, text: str, feature: FeaturePlan) -> Element:
-        """An unresolved object of the class that the text names, or else of the class that the feature expects."""
+    def proxy(self, text: str, feature: FeaturePlan) -> Element:
+        """The unresolved proxy for a text, of the class that the text names, or else of the class that the feature expects."""
         name, mark, class_name = text.rpartition(TYPE_MARK)
         document_plans = [plans(result.document.facts_version) for result in self.results]
         plan = document_plans[0].of(class_name) if mark else None
         cls = plan.cls if plan and issubclass(plan.cls, feature.target) else feature.target
-        found = self.stand_ins.get((text, cls))
+        found = self.proxies.get((text, cls))
         if found is None:
-            found = self.stand_ins[text, cls] = object.__new__(cls)
+            found = self.proxies[text, cls] = object.__new__(cls)
             _set(found, "_container", None)
             _set(found, "_reference", text)
             _set(found, "name", decode((name if mark else text).rpartition("/")[2]))
         return found
 
-    def note_odd_ids(self, result: ReadResult) -> None:
-        """Remember every `xmi:id` that is not the unique name, as after renaming an object with a text editor."""
+    def check_xmi_ids(self, result: ReadResult) -> None:
+        """Keep and report every `xmi:id` that is not the unique name, as after renaming an object with a text editor."""
         for element, xmi_id in result.xmi_ids:
             canonical = self.names.get(element, "")
             if canonical == xmi_id:
                 continue
             result.document.spellings[element, "xmi:id"] = Spelling(xmi_id, canonical)
             if canonical:
-                message = f"xmi:id {xmi_id!r} is not the name of the object, {canonical!r}"
-                help_text = "References find it by its name. Rename the object or correct the id."
+                message = f"xmi:id {xmi_id!r} is not the unique name of the object, {canonical!r}"
+                help_text = "Correct the id or rename the object; references are resolved by name."
             else:
-                message = f"a {type(element).__name__} has an xmi:id, {xmi_id!r}, but cannot be referred to"
-                help_text = "It is kept and written back."
+                message = f"{type(element).__name__} has the xmi:id {xmi_id!r}, but objects of this class cannot be referenced"
+                help_text = "Remove the id; it has no effect."
             result.findings.append(
                 self.finding("XMI022", Severity.INFO, message, help_text, result.document, element, "xmi:id")
             )
@@ -202,41 +202,53 @@ class _Resolver:
                     elsewhere.setdefault(use.document, []).append((text, use))
                 continue
             severity, message, help_text = self.describe(rule, text, feature)
-            times = f" ({len(uses)} references, the first one is here)" if len(uses) > 1 else ""
+            times = f" ({len(uses)} references, this is the first)" if len(uses) > 1 else ""
             found.append(self.finding(rule, severity, message + times, hint + help_text, document, holder, feature.xml_name))
         found += [self.missing_files(document, uses) for document, uses in elsewhere.items()]
         paths = [result.document.path for result in self.results]
         return sorted(found, key=lambda f: _file_order(f, paths))
 
     def missing_files(self, document: Document, uses: list[tuple[str, Use]]) -> Finding:
-        """One finding for all references that lead out of a document to files that were not read."""
+        """One finding for all references from a document to files that were not loaded."""
         texts = list(dict.fromkeys(text for text, _ in uses))
         shown = ", ".join(map(repr, texts[:3])) + (f" and {len(texts) - 3} more" if len(texts) > 3 else "")
-        message = f"{_count(len(uses), 'reference')} to {_count(len(texts), 'object')} of other files: {shown}"
-        help_text = "Load the folder, or name the files that hold them too. The references are kept and written back."
+        message = f"{_count(len(uses), 'reference')} to {_count(len(texts), 'object')} in files that were not loaded: {shown}"
+        help_text = "Load these files too, or the whole directory. The references are preserved when the file is saved."
         _, first = uses[0]
         return self.finding("XMI025", Severity.WARNING, message, help_text, document, first.holder, first.feature.xml_name)
 
     def describe(self, rule: str, text: str, feature: FeaturePlan) -> tuple[Severity, str, str]:
         where = f"{feature.xml_name!r} refers to {text!r}"
         if rule == "XMI020":
-            return Severity.WARNING, f"{where}, which is not there", "The reference is kept and written back."
+            return (
+                Severity.WARNING,
+                f"unresolved reference: {where}, which does not exist",
+                "Correct the reference, or add the object.",
+            )
         if rule == "XMI021":
             places = [self.place(element) for element in self.candidates(self.results[0].document, text)]
-            return Severity.WARNING, f"{where}, which is there {len(places)} times", f"Taken: the first of {', '.join(places)}."
+            return (
+                Severity.WARNING,
+                f"ambiguous reference: {where}, and {len(places)} objects match",
+                f"The first one is used. Rename all but one of them: {', '.join(places)}.",
+            )
         if rule == "XMI023":
             return (
                 Severity.ERROR,
-                f"{where}, but must refer to a {feature.target.__name__}",
-                "It is kept, but counts as unresolved.",
+                f"{where}, which is not a {feature.target.__name__}",
+                "Refer to an object of the right class. The reference counts as unresolved.",
             )
         target = self.candidates(self.results[0].document, text)[0]
-        return Severity.INFO, f"{where}, an odd spelling of {self.names[target]!r}", "It is understood and kept."
+        return (
+            Severity.INFO,
+            f"{where} instead of {self.names[target]!r}",
+            "Write the unique name of the object. The reference is resolved nevertheless.",
+        )
 
     def near(self, text: str) -> str:
-        """A hint which object might be meant."""
+        """A suggestion of the object that may be meant, "" if there is none."""
         self.comparisons += len(self.by_id)
-        near = get_close_matches(text, self.by_id, n=1, cutoff=0.8) if self.comparisons < MOST_COMPARED else []
+        near = get_close_matches(text, self.by_id, n=1, cutoff=0.8) if self.comparisons < MAX_COMPARISONS else []
         return f"Did you mean {near[0]!r}? " if near else ""
 
     def place(self, element: Element) -> str:
@@ -261,8 +273,8 @@ def _count(number: int, noun: str) -> str:
     return f"{number:,} {noun}" + ("" if number == 1 else "s")
 
 
-def _respell(text: str) -> str:
-    """The unique name for a reference whose segments are not, or oddly, encoded."""
+def _reencoded(text: str) -> str:
+    """The unique name for a reference whose segments are not encoded, or in another way."""
     path, mark, class_name = text.rpartition(TYPE_MARK)
     return "/".join(encode(decode(segment)) for segment in path.split("/")) + mark + class_name
 

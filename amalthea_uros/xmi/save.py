@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
+from amalthea_uros._internal import files
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.model import Document, Model
-from amalthea_uros.xmi.files import ZIP_ENTRY, FileText, is_folder, not_writable, write_text
+from amalthea_uros.xmi.files import ZIP_ENTRY, FileText, not_writable, write_text
 from amalthea_uros.xmi.load import SUFFIX, StrPath
 from amalthea_uros.xmi.writer import document_text
 
@@ -18,15 +19,15 @@ def save(model: Model, path: StrPath | None = None, *, canonical: bool = False, 
 
     Parameters
     ----------
-    path : the file for a model of one document; the folder for one of several, which keep their names. None: where it was
-        read from
-    canonical : lay everything out as EMF does; otherwise what was read and not changed is written to the letter
-    compress : as a ZIP (as EMF's OPTION_ZIP), or not; None: as it was read
+    path : the file, for a model of one document; the directory, for a model of several, whose files keep their names.
+        None: where it was read from
+    canonical : write everything in EMF's layout; otherwise what was read and not modified is preserved byte for byte
+    compress : write a ZIP (like EMF's OPTION_ZIP), or not; None: as it was read
 
     Raises
     ------
-    WriteError : values that the AMALTHEA version does not allow (all of them are named), or a file that cannot be written.
-        Either all files are prepared without error or none is touched.
+    WriteError : values that the AMALTHEA version does not allow (all are listed), or a file that cannot be written.
+        No file is written unless all of them can be serialised.
     """
     _save([(document, target, canonical) for document, target in _targets(model, path)], compress)
 
@@ -36,7 +37,7 @@ def save_documents(documents: Iterable[Document], canonical: Collection[Document
 
     Parameters
     ----------
-    canonical : those of them that are laid out as EMF does
+    canonical : those that are written in EMF's layout
 
     Raises
     ------
@@ -74,20 +75,20 @@ def _targets(model: Model, path: StrPath | None) -> list[tuple[Document, Path]]:
     if path is None:
         return [(document, _own_path(document)) for document in model.documents]
     given = Path(path)
-    if len(model.documents) == 1 and not is_folder(given):
+    if len(model.documents) == 1 and not files.is_directory(given):
         return [(model.documents[0], given)]
     try:
         given.mkdir(parents=True, exist_ok=True)
     except FileExistsError:
-        message = f"the model has {len(model.documents)} files, but this is one file and no folder"
-        raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(given), "Name a folder.")]) from None
+        message = f"the model has {len(model.documents)} files, so it is saved to a directory, but this is a file"
+        raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(given), "Give a directory.")]) from None
     except (OSError, ValueError) as error:
-        raise not_writable(given, error) from None
+        raise not_writable(files.not_writable(given, error)) from None
     return [(document, given / _own_path(document).name) for document in model.documents]
 
 
 def _own_path(document: Document) -> Path:
     if document.path is None:
-        message = "a new document has no path yet"
-        raise WriteError([Finding("XMI101", Severity.ERROR, message, None, f"Set document.path, such as hw{SUFFIX}.")])
+        advice = f'Set its path, e.g. document.path = Path("hw{SUFFIX}").'
+        raise WriteError([Finding("XMI101", Severity.ERROR, "a new document has no path", None, advice)])
     return document.path

@@ -1,4 +1,4 @@
-"""Validation of a file against the XML schema of its AMALTHEA version, with problems told in words."""
+"""Validation of a file against the XML schema of its AMALTHEA version, with readable problems."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, cast
 from lxml import etree
 
 from amalthea_uros.metamodel.factfile import Kind
-from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, Facts, facts, held_versions
+from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, Facts, facts, supported_versions
 from amalthea_uros.resources import resource_folder
 
 if TYPE_CHECKING:
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
 
     from amalthea_uros.metamodel.factfile import FeatureFact
 
-#: So many problems are told; more are only counted.
-MOST_PROBLEMS = 100
+#: Further problems are only counted.
+MAX_PROBLEMS = 100
 
-#: A reason and advice, and where they belong; words and paths are made only for the problems told.
-_Words = tuple[str, str | None]
-_Finding = tuple[etree._Element, Callable[[], _Words]]
+#: A reason and advice, and the element concerned; texts and paths are made only for the problems that are reported.
+_Text = tuple[str, str | None]
+_Finding = tuple[etree._Element, Callable[[], _Text]]
 
 _XSI = "{http://www.w3.org/2001/XMLSchema-instance}"
 _XMI = "{http://www.omg.org/XMI}"
 _LOCATIONS = (f"{_XSI}schemaLocation", f"{_XSI}noNamespaceSchemaLocation")
 
-#: How xmlschema words what is told by its reason only.
+#: Fragments of messages of xmlschema by which a kind of error is recognised.
 _CANNOT_SUBSTITUTE = "cannot substitute"
 _IS_ABSTRACT = "is abstract"
 
@@ -51,13 +51,13 @@ class NoSchemaError(LookupError):
     """There is no schema of an AMALTHEA version."""
 
     def __init__(self, version: str) -> None:
-        super().__init__(f"there is no schema of AMALTHEA {version}, only of {', '.join(held_versions())}")
+        super().__init__(f"no XML schema for AMALTHEA {version}; there is one for {', '.join(supported_versions())}")
         self.version = version
 
 
 @dataclass(frozen=True, slots=True)
 class SchemaProblem:
-    """A place where a file breaks the schema of its version.
+    """A violation of the schema of a version.
 
     Attributes
     ----------
@@ -82,13 +82,13 @@ def schema_path(version: str) -> Path:
     ------
     NoSchemaError : if there is none.
     """
-    if version not in held_versions():
+    if version not in supported_versions():
         raise NoSchemaError(version)
     return resource_folder("schemas") / f"amalthea-{version}.xsd"
 
 
 def validate(data: bytes, version: str) -> list[SchemaProblem]:
-    """Everything in which the text of a file breaks the schema of a version, in the order of the lines.
+    """All violations of the schema of a version in the text of a file, in the order of the lines.
 
     Raises
     ------
@@ -102,11 +102,11 @@ def validate(data: bytes, version: str) -> list[SchemaProblem]:
         line, column = error.position
         return [SchemaProblem(line, column, "/", "not well-formed XML: " + error.msg.split(", line ")[0])]
     if entities := list(_entities(root)):
-        return _told(entities)
+        return _sorted_problems(entities)
     _drop_locations(root)
     if schema.validate(root):
         return []
-    return _told(_Explanation(root, facts(version)).findings()) or _plain(schema)
+    return _sorted_problems(_Diagnosis(root, facts(version)).findings()) or _plain(schema)
 
 
 @cache
@@ -115,18 +115,22 @@ def _schema(version: str) -> etree.XMLSchema:
 
 
 @cache
-def _explaining_schema(version: str) -> xmlschema.XMLSchema10:
+def _diagnosing_schema(version: str) -> xmlschema.XMLSchema10:
     import xmlschema  # slow to import, and needed for invalid files only
 
     return xmlschema.XMLSchema10(str(schema_path(version)), allow="local")
 
 
-def _told(findings: list[_Finding]) -> list[SchemaProblem]:
-    """The problems by line, those at the end of a long list as a number only."""
+def _sorted_problems(findings: list[_Finding]) -> list[SchemaProblem]:
+    """The problems by line; those at the end of a long list are only counted."""
     findings.sort(key=lambda finding: cast("int", finding[0].sourceline))
-    problems = [_at(element, *words()) for element, words in findings[:MOST_PROBLEMS]]
-    more = findings[MOST_PROBLEMS:]
-    return [*problems, _at(more[0][0], f"from here on {len(more)} more problems, not listed")] if more else problems
+    problems = [_at(element, *words()) for element, words in findings[:MAX_PROBLEMS]]
+    more = findings[MAX_PROBLEMS:]
+    return (
+        [*problems, _at(more[0][0], f"{len(more)} more problem{'s' if len(more) > 1 else ''} from here on, not listed")]
+        if more
+        else problems
+    )
 
 
 def _at(element: etree._Element, reason: str, advice: str | None = None) -> SchemaProblem:
@@ -140,12 +144,12 @@ def _entities(root: etree._Element) -> Iterator[_Finding]:
         yield cast("etree._Element", entity.getparent()), partial(_unreplaced, entity)
 
 
-def _unreplaced(entity: etree._Element) -> _Words:
-    return f"{entity.text} is not allowed between the elements", None
+def _unreplaced(entity: etree._Element) -> _Text:
+    return f"entity reference {entity.text} between the elements", "remove it"
 
 
 def _drop_locations(root: etree._Element) -> None:
-    """Keep the validators from loading what the file names as its schema."""
+    """Prevent the validators from loading the schema that the file names."""
     for element in root.iter("*"):
         for name in _LOCATIONS:
             if name in element.attrib:
@@ -163,7 +167,7 @@ def _quoted(names: Sequence[str]) -> str:
 
 
 def _nearest(name: str, allowed: Sequence[str]) -> str | None:
-    """Advice which name might have been meant, or which there are."""
+    """Advice: the most similar name, or all that are allowed."""
     close = get_close_matches(name, allowed, n=1)
     if close:
         return f'did you mean "{close[0]}"?'
@@ -177,19 +181,19 @@ def _is_of_class(error: xmlschema.XMLSchemaValidationError) -> bool:
 
 
 def _repeats(error: xmlschema.XMLSchemaValidationError) -> bool:
-    """Whether the error is said of the parent of a faulty element."""
+    """Whether the error repeats that of a faulty child for its parent."""
     from xmlschema.validators import XsdGroup
 
     return _CANNOT_SUBSTITUTE in (error.reason or "") and isinstance(error.validator, XsdGroup)
 
 
-class _Explanation:
-    """Finds the problems of an invalid file one by one and puts them into words."""
+class _Diagnosis:
+    """Finds the problems of an invalid file one by one and describes them in the terms of AMALTHEA."""
 
     def __init__(self, root: etree._Element, declared: Facts) -> None:
         self.root = root
         self.declared = declared
-        #: Elements of unknown or wrong class: nothing can be said about what they have and contain.
+        #: Elements of an unknown or wrong class: their attributes and content cannot be checked.
         self.opaque: set[etree._Element] = set()
 
     def findings(self) -> list[_Finding]:
@@ -197,10 +201,10 @@ class _Explanation:
         if self.root.tag != f"{{{self.declared.namespace}}}Amalthea":
             return [(self.root, self._wrong_root)]
         found = list(self._unknown_classes())
-        for error in _explaining_schema(self.declared.version).iter_errors(self.root):
+        for error in _diagnosing_schema(self.declared.version).iter_errors(self.root):
             element = cast("etree._Element", error.invalid_child if error.invalid_tag else error.elem)
             if not self._hidden(element) and not _repeats(error):
-                found.append((element, partial(self._words, element, error)))
+                found.append((element, partial(self._text, element, error)))
                 if _is_of_class(error):
                     self.opaque.add(element)
         return found
@@ -208,16 +212,18 @@ class _Explanation:
     def _hidden(self, element: etree._Element) -> bool:
         return bool(self.opaque) and (element in self.opaque or any(e in self.opaque for e in element.iterancestors()))
 
-    def _wrong_root(self) -> _Words:
+    def _wrong_root(self) -> _Text:
         name = etree.QName(self.root)
         if name.namespace == self.declared.namespace:
-            return f'the root element is "{name.localname}"', 'only "Amalthea" can be the root element'
+            return f'wrong root element "{name.localname}"', 'expected: "Amalthea"'
         other = (name.namespace or "").removeprefix(NAMESPACE_PREFIX)
-        advice = f"it is a file of AMALTHEA {other}" if other in held_versions() else f'expected: "{self.declared.namespace}"'
-        return f'the namespace of the root element is "{name.namespace or ""}"', advice
+        advice = (
+            f"validate it as AMALTHEA {other}" if other in supported_versions() else f'expected: "{self.declared.namespace}"'
+        )
+        return f'wrong namespace of the root element: "{name.namespace or ""}"', advice
 
     def _unknown_classes(self) -> Iterator[_Finding]:
-        """Elements of a class that does not exist or has no instances; their `xsi:type` is taken away."""
+        """Elements of a class that does not exist or is abstract; their `xsi:type` is removed."""
         for element in self.root.iter("*"):
             text = element.get(f"{_XSI}type")
             if text is None:
@@ -226,12 +232,12 @@ class _Explanation:
             fact = self.declared.classes.get(name)
             if fact is not None and not fact.abstract and element.nsmap.get(prefix or None) == self.declared.namespace:
                 continue
-            what = "an abstract class" if fact and fact.abstract else f"no class of AMALTHEA {self.declared.version}"
+            what = "an abstract class" if fact and fact.abstract else f"not a class of AMALTHEA {self.declared.version}"
             yield element, partial(self._unknown_class, element, name, f'xsi:type="{text}" is {what}')
             del element.attrib[f"{_XSI}type"]
             self.opaque.add(element)
 
-    def _unknown_class(self, element: etree._Element, name: str, reason: str) -> _Words:
+    def _unknown_class(self, element: etree._Element, name: str, reason: str) -> _Text:
         return reason, self._class_advice(element, name)
 
     def _class_advice(self, element: etree._Element, name: str) -> str | None:
@@ -242,7 +248,7 @@ class _Explanation:
         return _nearest(f"{prefix}:{name}", [f"{prefix}:{c}" for c in self.declared.concrete_subtypes(expected)])
 
     def _feature(self, element: etree._Element) -> FeatureFact | None:
-        """The feature that an element stands for."""
+        """The feature that an element belongs to."""
         parent = element.getparent()
         owner = self._class_of(parent) if parent is not None else None
         return self.declared.feature(owner, element.tag) if owner else None
@@ -263,12 +269,12 @@ class _Explanation:
         return feature.type if feature and feature.kind is Kind.CONTAINMENT else None
 
     def _names(self, class_name: str | None, *kinds: Kind) -> list[str]:
-        """What an object of a class may have, or a bare reference."""
+        """The names of the features of a class, or of a bare reference."""
         if class_name is None:
             return ["href"] if Kind.ATTRIBUTE in kinds else []
         return [f.name for f in self.declared.features(class_name) if f.stored and f.kind in kinds]
 
-    def _words(self, element: etree._Element, error: xmlschema.XMLSchemaValidationError) -> _Words:
+    def _text(self, element: etree._Element, error: xmlschema.XMLSchemaValidationError) -> _Text:
         reason = error.reason or ""
         if error.invalid_tag:
             return self._unknown_child(element)
@@ -281,42 +287,42 @@ class _Explanation:
         if match := re.match(r"attribute (\S+?)=['\"]", reason):
             return self._wrong_value(element, match[1])
         if reason.startswith("character data"):
-            return "text between the tags, where only elements are allowed", None
+            return "text between the elements", "remove it"
         return reason, None
 
-    def _unknown_child(self, element: etree._Element) -> _Words:
+    def _unknown_child(self, element: etree._Element) -> _Text:
         owner = self._class_of(cast("etree._Element", element.getparent()))
         name = etree.QName(element).localname
         written = f"{element.prefix}:{name}" if element.prefix else name
         advice = _nearest(name, self._names(owner, Kind.CONTAINMENT, Kind.REFERENCE))
         return f'{owner or "a reference"} has no element "{written}"', advice
 
-    def _unknown_attribute(self, element: etree._Element, name: str) -> _Words:
+    def _unknown_attribute(self, element: etree._Element, name: str) -> _Text:
         owner = self._class_of(element)
         advice = _nearest(name, self._names(owner, Kind.ATTRIBUTE, Kind.REFERENCE))
         return f'{owner or "a reference"} has no attribute "{name.replace(_XMI, "xmi:")}"', advice
 
-    def _wrong_class(self, element: etree._Element) -> _Words:
+    def _wrong_class(self, element: etree._Element) -> _Text:
         name = self._class_of(element) or ""
-        reason = f'xsi:type is {name}, but "{element.tag}" holds objects of class {self._declared_class(element)}'
+        reason = f'wrong xsi:type {name}: "{element.tag}" contains objects of class {self._declared_class(element)}'
         return reason, self._class_advice(element, name)
 
-    def _missing_class(self, element: etree._Element) -> _Words:
-        reason = f"xsi:type is missing: {self._declared_class(element)} is an abstract class"
+    def _missing_class(self, element: etree._Element) -> _Text:
+        reason = f"missing xsi:type: {self._declared_class(element)} is an abstract class"
         return reason, self._class_advice(element, "")
 
-    def _wrong_value(self, element: etree._Element, name: str) -> _Words:
+    def _wrong_value(self, element: etree._Element, name: str) -> _Text:
         value = element.get(name)
         feature = self.declared.feature(self._class_of(element) or "", name)
         what, advice = self._value_advice(feature.type if feature else "")
         return f'attribute {name}="{value}" is not {what}', advice
 
     def _value_advice(self, type_name: str) -> tuple[str, str | None]:
-        """What a value of a type has to be, and which or what kind of values that are."""
+        """What a value of a type must be, and advice on the allowed values."""
         if type_name in self.declared.enums:
             return f"a literal of {type_name}", f"allowed: {_quoted(self.declared.enums[type_name].literals)}"
         if type_name == "EBoolean":
-            return "a truth value", 'allowed: "true", "false"'
+            return "a boolean", 'allowed: "true", "false"'
         if type_name == "Address":
             return "an address", 'allowed: hexadecimal numbers such as "0x1a" and decimal numbers such as "26"'
         if type_name in _WHOLE_NUMBERS:

@@ -1,4 +1,4 @@
-"""A file against the XML schema of its version, as findings."""
+"""Violations of the XML schema as findings."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from amalthea_uros.xmi.schema import NoSchemaError, validate
 
 
 def schema_findings(document: Document) -> list[Finding]:
-    """What the XML schema of its version says about a file; nothing, if the document has no file."""
+    """The violations of the XML schema of its version in a file; none if the document has no file."""
     source, path = document.source, document.path
     if source is None or path is None:
         return []

@@ -30,9 +30,9 @@ def test_a_name_that_leads_nowhere_points_to_who_says_it(tmp_path):
     with pytest.raises(WriteError) as caught:
         build_model(System(software=Software(tasks=(task, PerfTask(name="T")))))
     assert {(finding.message, finding.location) for finding in caught.value.findings} == {
-        ("T: there is no stimulus named 'never'", place),
-        ("T: there is no runnable named 'nothing'", place),
-        ("T: there are two objects of the kind process named 'T'", None),
+        ("T: undefined stimulus 'never'", place),
+        ("T: undefined runnable 'nothing'", place),
+        ("T: duplicate name 'T': two objects of kind process have it", None),
     }
 
 

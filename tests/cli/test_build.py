@@ -91,7 +91,7 @@ def test_mistakes_are_told_and_nothing_is_written(advanced, tmp_path):
     assert run.returncode == 2
     assert run.stdout == ""
     lines = run.stderr.splitlines()
-    assert lines[0].endswith("app.yaml:9:43: YML012 error: period: '1' has no unit; a time looks like '10 ms'")
+    assert lines[0].endswith("app.yaml:9:43: YML012 error: period: '1' has no unit; write a time such as '10 ms'")
     assert lines[1] == "  9 |   executor: {name: Executor_Task, period: 1, execution_time: {base: 12 us, per_message: 13 us}}"
     assert lines[2].index("^") == lines[1].index("1, execution")
     assert not (tmp_path / "out.amxmi").exists()
@@ -120,7 +120,10 @@ def test_what_a_version_cannot_hold_is_told_with_its_line(tmp_path):
     run = amuros("build", sample, "--amalthea", "1.2.0")
     assert run.returncode == 2
     line = next(n for n, text in enumerate(sample.read_text().splitlines(), 1) if "name: Task_Log" in text)
-    assert f"drive-and-lift.yaml:{line}:5: BLD001 error: Task_Log: the scheduling parameter 'deadline'" in run.stderr
+    assert (
+        f"drive-and-lift.yaml:{line}:5: BLD001 error: Task_Log: AMALTHEA 1.2.0 cannot represent the scheduling parameter 'deadline'"
+        in run.stderr
+    )
     assert not sample.with_suffix(".amxmi").exists()
 
 

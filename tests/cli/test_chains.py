@@ -33,7 +33,7 @@ def test_a_path_becomes_a_chain_of_the_model(tmp_path):
     assert "3 differences: 3 added" in difference
     again = amuros("chains", output, "--from", "Executor_Task", "--to", "Control_Function", "--add", "found", "-o", output)
     assert again.returncode == 2
-    assert "has a chain 'found' already" in again.stderr
+    assert "already has a chain 'found'" in again.stderr
 
 
 def test_a_description_is_not_rewritten(tmp_path):

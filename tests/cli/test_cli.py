@@ -74,9 +74,9 @@ def test_info_shows_the_place_of_a_finding(brake):
     run = amuros("info", brake)
     assert run.returncode == 0
     first, line, caret, advice = run.stderr.splitlines()
-    assert first == f"{brake}:12:66: XMI011 warning: AMALTHEA 3.0.0 knows no attribute 'acess' of LabelAccess"
+    assert first == f"{brake}:12:66: XMI011 warning: unknown attribute 'acess' of LabelAccess (AMALTHEA 3.0.0)"
     assert line[caret.index("^") :].startswith("acess=")
-    assert advice == "  help: Did you mean 'access'? It is kept and written back, but not understood."
+    assert advice == "  help: Did you mean 'access'? Unknown content is ignored, but preserved when the file is saved."
 
 
 def test_info_validates_against_the_schema(brake):

@@ -515,9 +515,9 @@ def test_saving_and_reading_makes_no_difference(tmp_path, names: set[str], numbe
 
 def test_models_are_left_as_they_are() -> None:
     old, new = system(), system()
-    before = {document: set(document.changes.touched) for model in (old, new) for document in model.documents}
+    before = {document: set(document.changes.modified) for model in (old, new) for document in model.documents}
     difference(old, new)
-    assert {document: set(document.changes.touched) for document in before} == before
+    assert {document: set(document.changes.modified) for document in before} == before
 
 
 def test_nothing_against_everything() -> None:

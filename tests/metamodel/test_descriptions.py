@@ -4,11 +4,11 @@ from pathlib import Path
 
 from amalthea_uros.metamodel import classes
 from amalthea_uros.metamodel.features import Feature
-from amalthea_uros.metamodel.versions import facts, held_versions
+from amalthea_uros.metamodel.versions import facts, supported_versions
 
 TEXT = (Path(__file__).parents[2] / "tools" / "metamodel_descriptions.txt").read_text(encoding="utf-8")
 ENTRIES = [(name, text.strip()) for name, colon, text in (line.partition(":") for line in TEXT.splitlines()) if colon]
-DECLARED = [facts(version) for version in held_versions()]
+DECLARED = [facts(version) for version in supported_versions()]
 TYPES = {name for declared in DECLARED for name in declared.classes.keys() | declared.enums.keys()}
 FEATURES = {
     f"{cls.name}.{feature.name}"

@@ -28,8 +28,8 @@ requirements:
 @pytest.mark.parametrize(
     ("old", "new", "line", "rule", "message"),
     [
-        ("single-core,", "singel-core,", 3, "APP001", "'singel-core' is not a known platform"),
-        ("single-core,", "./none.yaml,", 3, "APP001", "there is no platform file"),
+        ("single-core,", "singel-core,", 3, "APP001", "unknown platform 'singel-core'"),
+        ("single-core,", "./none.yaml,", 3, "APP001", "platform file"),
         ("platform: single-core, ", "", 3, "APP005", "the frequency of core 'Core_0' is unknown"),
         ("cores: 2", "cores: [A, A]", 3, "APP002", "duplicate core name 'A' (first defined on line 3)"),
         ("cores: 2", "memories: [{name: M, size: 1 B}, {name: M, size: 1 B}]", 3, "APP002", "duplicate memory name 'M'"),

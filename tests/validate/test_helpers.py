@@ -26,7 +26,7 @@ from amalthea_uros.metamodel.classes import (
     TimeHistogramEntry,
 )
 from amalthea_uros.metamodel.magnitudes import bits, picoseconds
-from amalthea_uros.validate.quantities import bounds, clock, size_text, time_text
+from amalthea_uros.validate.quantities import bounds, clock
 from amalthea_uros.validate.wording import counted, joined, listed
 
 
@@ -115,35 +115,6 @@ def test_sizes(size, value):
 )
 def test_bounds(deviation, expected):
     assert bounds(deviation) == expected
-
-
-@pytest.mark.parametrize(
-    ("time", "text"),
-    [
-        (0, "0 s"),
-        (1, "1 ps"),
-        (999, "999 ps"),
-        (1000, "1 ns"),
-        (2_500_000, "2.5 us"),
-        (-5 * 10**9, "-5 ms"),
-        (90 * 10**12, "90 s"),
-        (Fraction(10**9, 3), "333.333333333 us"),
-    ],
-)
-def test_texts_of_times(time, text):
-    assert time_text(time) == text
-
-
-def test_a_time_beyond_what_a_float_holds():
-    assert time_text(10**5000) == "1.00000000000e+4988 s"
-
-
-@pytest.mark.parametrize(
-    ("size", "text"),
-    [(0, "0 B"), (1, "1 bit"), (8, "1 B"), (8192, "1 KiB"), (8000, "1 kB"), (12000, "1500 B"), (2**33, "1 GiB")],
-)
-def test_texts_of_sizes(size, text):
-    assert size_text(size) == text
 
 
 def test_lists():

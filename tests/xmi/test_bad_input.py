@@ -30,18 +30,18 @@ UNREADABLE = {
     "not utf-8": (HEAD + b'<am:Amalthea name="\xff\xfe"/>', "XMI002", "utf-8"),
     "unknown encoding": (GOOD.replace(b"UTF-8", b"klingon"), "XMI002", "klingon"),
     "truncated": (GOOD[:900], "XMI002", "not well-formed"),
-    "truncated between elements": (GOOD[: GOOD.index(b"</swModel>")], "XMI002", "SWModel of line 3 is still open"),
+    "truncated between elements": (GOOD[: GOOD.index(b"</swModel>")], "XMI002", "SWModel on line 3 is not closed"),
     "attribute twice": (GOOD.replace(b'name="Act"', b'name="Act" name="Act"'), "XMI002", "duplicate attribute"),
     "NUL": (GOOD.replace(b"Pedal", b"Pe\x00dal"), "XMI002", "not well-formed"),
     "document type": (HEAD + b"<!DOCTYPE x>" + GOOD[len(HEAD) :], "XMI003", "DTD"),
-    "entities": (HEAD + LAUGHS + GOOD[len(HEAD) :], "XMI003", "entities"),
+    "entities": (HEAD + LAUGHS + GOOD[len(HEAD) :], "XMI003", "document type declaration"),
     "external entity": (HEAD + b'<!DOCTYPE x SYSTEM "file:///etc/passwd">' + GOOD[len(HEAD) :], "XMI003", "DTD"),
-    "undeclared prefix": (GOOD.replace(b"xmlns:xsi", b"xmlns:xs"), "XMI002", "prefix 'xsi' is not declared"),
+    "undeclared prefix": (GOOD.replace(b"xmlns:xsi", b"xmlns:xs"), "XMI002", "undeclared namespace prefix 'xsi'"),
     "undefined entity": (GOOD.replace(b"Pedal", b"&pedal;"), "XMI002", "undefined entity"),
     "nested": (NESTED, "XMI004", "nested"),
     "other root": (HEAD + b"<html/>", "XMI005", "<html>"),
     "other root of the namespace": (HEAD + b"<am:SWModel " + NAMESPACES + b"/>", "XMI005", "<am:SWModel>"),
-    "no version": (GOOD.replace(b"3.0.0", b"3.0.0/../.."), "XMI005", "names no AMALTHEA version"),
+    "no version": (GOOD.replace(b"3.0.0", b"3.0.0/../.."), "XMI005", "does not end with an AMALTHEA version"),
     "old version": (GOOD.replace(b"3.0.0", b"0.8.1"), "XMI006", "0.8.1"),
     "ITEA version": (
         b'<central:AMALTHEA xmlns:central="http://www.amalthea.itea2.org/model/1.3.0/central"/>',
@@ -89,11 +89,11 @@ def refused(*paths, **options):
 
 
 def test_a_missing_file(tmp_path):
-    assert refused(tmp_path / "none.amxmi") == ["there is no such file"]
+    assert refused(tmp_path / "none.amxmi") == ["file not found"]
 
 
 def test_a_folder_without_models(tmp_path):
-    assert refused(tmp_path) == ["there is no .amxmi file in this folder"]
+    assert refused(tmp_path) == ["the directory contains no .amxmi file"]
 
 
 def test_a_file_without_permission(tmp_path, monkeypatch):
@@ -117,7 +117,7 @@ def test_a_zip_bomb_is_refused_before_it_is_unpacked(tmp_path):
     path = tmp_path / "bomb.amxmi"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("ResourceContents", b" " * 20_000_000)
-    assert refused(path, max_size=10 * 2**20) == ["the content is larger than 10 MiB"]
+    assert refused(path, max_size=10 * 2**20) == ["the unpacked content is larger than 10 MiB"]
 
 
 def test_a_zip_of_several_files(tmp_path):
@@ -125,13 +125,13 @@ def test_a_zip_of_several_files(tmp_path):
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("one", GOOD)
         archive.writestr("two", GOOD)
-    assert refused(path) == ["the archive holds 2 files instead of one"]
+    assert refused(path) == ["the archive contains 2 files, expected one"]
 
 
 def test_a_file_that_is_too_large(tmp_path):
     path = tmp_path / "large.amxmi"
     path.write_bytes(GOOD)
-    assert refused(path, max_size=1000) == ["the content is larger than 0 MiB"]
+    assert refused(path, max_size=1000) == ["the file is larger than 1,000 bytes"]
 
 
 @pytest.mark.parametrize("end", range(1, len(GOOD) - 1, 7))
@@ -163,7 +163,7 @@ def test_any_damage_is_told_or_kept(tmp_path):
             continue
         amuros.save(model, copy)
         assert copy.read_bytes() == bytes(data)
-        model.documents[0].changes.touched.update(model.walk())
+        model.documents[0].changes.modified.update(model.walk())
         amuros.save(model, copy)
         assert copy.read_bytes() == bytes(data)
 
@@ -183,14 +183,14 @@ def test_values_of_a_wrong_kind_count_as_not_set_and_are_kept(tmp_path):
     ("old", "new", "rule", "words"),
     [
         (b"<labels", b"<label", "XMI002", "mismatched tag"),
-        (b'xsi:type="am:Ticks"', b'xsi:type="am:Label"', "XMI012", "must be a ActivityGraphItem"),
+        (b'xsi:type="am:Ticks"', b'xsi:type="am:Label"', "XMI012", "has type Label, expected ActivityGraphItem"),
         (b' xsi:type="am:Ticks"', b"", "XMI012", "no xsi:type"),
         (b'access="read"', b'acess="read"', "XMI011", "'acess'"),
         (b'<size value="16" unit="bit"/>', b'<size value="1"/><size value="2"/>', "XMI014", "only one <size>"),
         (b'<size value="16" unit="bit"/>', b"sixteen", "XMI015", "'sixteen'"),
-        (b'data="Pedal?type=Label"', b'data="Pedel?type=Label"', "XMI020", "'Pedel?type=Label', which is not there"),
-        (b'data="Pedal?type=Label"', b'data="Act?type=Runnable"', "XMI023", "must refer to a Label"),
-        (b'xmi:id="Pedal?type=Label"', b'xmi:id="Brake?type=Label"', "XMI022", "not the name"),
+        (b'data="Pedal?type=Label"', b'data="Pedel?type=Label"', "XMI020", "'Pedel?type=Label', which does not exist"),
+        (b'data="Pedal?type=Label"', b'data="Act?type=Runnable"', "XMI023", "which is not a Label"),
+        (b'xmi:id="Pedal?type=Label"', b'xmi:id="Brake?type=Label"', "XMI022", "not the unique name"),
         (b"amalthea/3.0.0", b"amalthea/9.0.0", "XMI007", "read as 3.3.0"),
     ],
 )
@@ -233,14 +233,14 @@ class TestWriting:
         assert len(messages) == 4
         assert any("Brake (left)" in m and "'preemption'" in m and "'sometimes'" in m for m in messages)
         assert any("'multiple_task_activation_limit' must be of type int, not 1.5" in m for m in messages)
-        assert any("'stimuli' takes Stimulus" in m for m in messages)
+        assert any("'stimuli' must be Stimulus" in m for m in messages)
         assert any("U+0007" in m for m in messages)
         assert (tmp_path / "model.amxmi").read_bytes() == GOOD
 
     def test_what_the_version_does_not_have_is_named(self, model):
         model[amuros.Runnable, "Act"].activity_graph = amuros.ActivityGraph(items=[amuros.ModeSwitch()])
         with pytest.raises(
-            amuros.WriteError, match=r"Act\.activityGraph\.items\[0\]: class ModeSwitch does not exist in AMALTHEA 3\.0\.0"
+            amuros.WriteError, match=r"Act\.activityGraph\.items\[0\]: the class ModeSwitch does not exist in AMALTHEA 3\.0\.0"
         ):
             amuros.save(model)
 
@@ -275,10 +275,10 @@ def test_what_the_reader_would_refuse_as_too_deep_is_not_written(tmp_path):
     text = path.read_text()
     assert sum(1 for _ in amuros.load(path).all(amuros.Group)) == 196
     for levels in (197, 3000):
-        with pytest.raises(amuros.WriteError, match="is nested more than 200 deep"):
+        with pytest.raises(amuros.WriteError, match="nested more than 200 levels deep"):
             amuros.save(nested(levels), path)
     assert path.read_text() == text
     innermost = '<items xsi:type="am:Group" name="G" ordered="true" interruptible="true"/>'
     path.write_text(text.replace(innermost, innermost.replace("/>", f">{innermost}</items>")))
-    with pytest.raises(amuros.ReadError, match="200 deep"):
+    with pytest.raises(amuros.ReadError, match="200 levels deep"):
         amuros.load(path)

@@ -128,7 +128,7 @@ def test_a_rename_reaches_every_reference(neat):
 
 
 def test_ugly_files_are_written_as_they_are(ugly):
-    ugly.documents[0].changes.touched.update(ugly.walk())
+    ugly.documents[0].changes.modified.update(ugly.walk())
     expect(ugly)
 
 

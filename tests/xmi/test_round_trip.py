@@ -23,7 +23,7 @@ def test_an_unchanged_model_is_written_to_the_letter(path, tmp_path):
 @pytest.mark.parametrize("path", [*LOCAL, *corpus(), *hand_written()])
 def test_objects_that_were_touched_but_say_the_same_are_written_to_the_letter(path, tmp_path):
     model = amuros.load(path)
-    model.documents[0].changes.touched.update(model.walk())
+    model.documents[0].changes.modified.update(model.walk())
     assert saved(model, tmp_path) == path.read_bytes()
 
 

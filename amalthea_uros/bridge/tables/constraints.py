@@ -218,7 +218,7 @@ def extract_requirement(element: am.Requirement, context: Extracting) -> perf.Re
             return None
     limit = None if element.limit is None else _LIMIT.extract(element.limit, context, element)
     if limit is None or (process is None and runnable is None):
-        context.note("EXT004", f"a {type(element).__name__} without object or limit is left out", element)
+        context.note("EXT004", f"{type(element).__name__} ignored: it has no object or no limit", element)
         return None
     return perf.Requirement(
         name=element.name or "",

@@ -18,22 +18,22 @@ def _table(prefix: str, number: Codec, mean: Codec) -> Table:
     mean : codec of averages and deviations
     """
 
-    def theirs(suffix: str) -> type[Element]:
+    def amalthea_class(suffix: str) -> type[Element]:
         found: type[Element] = getattr(am, f"{prefix}{suffix}")
         return found
 
     lower, upper = Field("lower", "lower_bound", number), Field("upper", "upper_bound", number)
     average = Field("average", "average", mean)
     sampling = Field("sampling", "sampling_type", same_names(perf.Sampling, am.SamplingType))
-    bucket = Table(Entry(perf.Bucket, theirs("HistogramEntry"), lower, upper, Field("occurrences", "occurrences")))
+    bucket = Table(Entry(perf.Bucket, amalthea_class("HistogramEntry"), lower, upper, Field("occurrences", "occurrences")))
     return Table(
-        Entry(perf.Constant, theirs("Constant"), Field("value", "value", number)),
-        Entry(perf.Boundaries, theirs("Boundaries"), lower, upper, sampling),
-        Entry(perf.Statistics, theirs("Statistics"), lower, average, upper),
-        Entry(perf.Uniform, theirs("UniformDistribution"), lower, upper),
+        Entry(perf.Constant, amalthea_class("Constant"), Field("value", "value", number)),
+        Entry(perf.Boundaries, amalthea_class("Boundaries"), lower, upper, sampling),
+        Entry(perf.Statistics, amalthea_class("Statistics"), lower, average, upper),
+        Entry(perf.Uniform, amalthea_class("UniformDistribution"), lower, upper),
         Entry(
             perf.Gauss,
-            theirs("GaussDistribution"),
+            amalthea_class("GaussDistribution"),
             Field("mean", "mean", mean),
             Field("deviation", "sd", mean),
             lower,
@@ -41,14 +41,14 @@ def _table(prefix: str, number: Codec, mean: Codec) -> Table:
         ),
         Entry(
             perf.Weibull,
-            theirs("WeibullEstimatorsDistribution"),
+            amalthea_class("WeibullEstimatorsDistribution"),
             lower,
             average,
             upper,
             Field("exceeding", "p_remain_promille"),
         ),
-        Entry(perf.Beta, theirs("BetaDistribution"), Field("alpha", "alpha"), Field("beta", "beta"), lower, upper),
-        Entry(perf.Histogram, theirs("Histogram"), Field("buckets", "entries", parts(bucket))),
+        Entry(perf.Beta, amalthea_class("BetaDistribution"), Field("alpha", "alpha"), Field("beta", "beta"), lower, upper),
+        Entry(perf.Histogram, amalthea_class("Histogram"), Field("buckets", "entries", parts(bucket))),
     )
 
 

@@ -107,7 +107,7 @@ def _extract_item(item: Any, context: Extracting) -> perf.ChainItem | None:
         name = _CHAIN.extract(inner, context, item)
         return None if name is None else perf.ChainReference(chain=name)
     if inner is None:
-        context.note("EXT004", "an EventChainContainer without a chain is left out", item)
+        context.note("EXT004", "EventChainContainer ignored: it has no chain", item)
         return None
     return perf.Segment(
         name=inner.name or "",

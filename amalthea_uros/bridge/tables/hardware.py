@@ -62,7 +62,7 @@ class HardwareBuilder:
 
     def build(self, hardware: perf.Hardware) -> am.HWModel:
         """The whole model."""
-        clocks: Any = CLOCKS.shells(hardware.clocks, self.context)
+        clocks: Any = CLOCKS.create_all(hardware.clocks, self.context)
         CLOCKS.fill(clocks, hardware.clocks, self.context)
         for core_type in hardware.core_types:
             self.core_type(core_type)
@@ -190,7 +190,7 @@ class HardwareBuilder:
 
     def _port(self, module: Any, connection: perf.Connection, kind: am.PortType) -> am.HwPort | None:
         if not isinstance(module, am.HwModule):
-            self.context.refuse(connection, f"{module.name!r} is no module that a connection can join")
+            self.context.refuse(connection, f"a connection cannot end at {module.name!r}")
             return None
         # Nothing is known of the width; one that is not zero is what other tools ask for.
         port = am.HwPort(name=connection.name, port_type=kind, port_interface=am.PortInterface.CUSTOM, bit_width=32)
@@ -275,7 +275,7 @@ class HardwareExtractor:
         """What an access costs; None, with a note, if it leads nowhere."""
         memory = _MODULE.extract(element.destination, self.context, element)
         if memory is None:
-            self.context.note("EXT004", "a HwAccessElement without destination is left out", element)
+            self.context.note("EXT004", "HwAccessElement ignored: it has no destination", element)
             return None
         path = element.access_path.path_elements if element.access_path else []
         return perf.Access(

@@ -109,7 +109,7 @@ def _extract_tasks(allocations: Iterable[am.TaskAllocation], context: Extracting
         task = _PROCESS.extract(allocation.task, context, allocation)
         scheduler = _SCHEDULER.extract(allocation.scheduler, context, allocation)
         if task is None or scheduler is None:
-            context.note("EXT004", "a TaskAllocation without task or scheduler is left out", allocation)
+            context.note("EXT004", "TaskAllocation ignored: it has no task or no scheduler", allocation)
             continue
         definition = allocation.scheduler.definition if allocation.scheduler is not None else None
         given = extract_parameters(allocation, context, definition.process_parameters if definition is not None else ())

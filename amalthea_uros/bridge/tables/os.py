@@ -27,7 +27,7 @@ SEMAPHORES = Table(
     )
 )
 
-#: Services whose feature is not their name behind `api_`.
+#: Services whose feature is not their name after `api_`.
 _SERVICES = {service: f"api_{service.name.lower()}" for service in perf.Service} | {
     perf.Service.SUSPEND_INTERRUPTS: "api_suspend_os_interrupts",
     perf.Service.RESUME_INTERRUPTS: "api_resume_os_interrupts",

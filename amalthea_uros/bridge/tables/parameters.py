@@ -141,7 +141,7 @@ class Definitions:
         algorithm = getattr(am, policy, None)
         wanted = am.InterruptSchedulingAlgorithm if isinstance(element, am.InterruptController) else am.TaskSchedulingAlgorithm
         if algorithm is None or not issubclass(algorithm, wanted) or algorithm.is_abstract:
-            self.context.refuse(item, f"the policy {policy!r} does not exist in AMALTHEA {self.context.version}")
+            self.context.refuse(item, f"AMALTHEA {self.context.version} has no scheduling policy {policy!r}")
         else:
             element.scheduling_algorithm = algorithm()
 
@@ -211,7 +211,7 @@ class Definitions:
                 self._refuse_old(item, PRIORITY)
 
     def _refuse_old(self, item: Named, name: str) -> None:
-        self.context.refuse(item, f"the scheduling parameter {name!r} cannot be held by AMALTHEA {self.context.version}")
+        self.context.refuse(item, f"AMALTHEA {self.context.version} cannot represent the scheduling parameter {name!r}")
 
 
 def extract_policy(scheduler: Any) -> str | None:
@@ -228,7 +228,7 @@ def extract_parameters(element: Any, context: Extracting, defaults: Iterable[am.
 
     Parameters
     ----------
-    defaults : definitions whose default values count where nothing is stated
+    defaults : definitions whose default values apply where no value is given
     """
     priority: int | None = None
     deadline: int | None = None
@@ -265,7 +265,7 @@ def _stated(element: Any, context: Extracting) -> Iterable[tuple[str, tuple[Para
         if key and values:
             yield key, values
         else:
-            context.note("EXT004", "a SchedulingParameter without key or value is left out", element)
+            context.note("EXT004", "SchedulingParameter ignored: it has no key or no value", element)
 
 
 def _stated_before(stated: am.SchedulingParameters) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:

@@ -36,7 +36,7 @@ def _extract_demand(ticks: Any, context: Extracting, _element: Element) -> perf.
         if name is not None and value is not None:
             by_core_type.append((name, value))
     if default is None and not by_core_type:
-        context.note("EXT004", "ticks without a value are left out", ticks)
+        context.note("EXT004", "Ticks ignored: they have no value", ticks)
         return None
     return perf.Demand(default, tuple(by_core_type))
 
@@ -386,7 +386,7 @@ LABELS = Table(
         Field(
             "protection",
             "data_stability",
-            enumeration({perf.Protection[ours]: am.LabelDataStability[theirs] for ours, theirs in PROTECTIONS.items()}),
+            enumeration({perf.Protection[name]: am.LabelDataStability[other] for name, other in PROTECTIONS.items()}),
         ),
     )
 )

@@ -38,9 +38,9 @@ class OutputEventModel(EventModel):
     """The completions of the jobs of a task.
 
     Jobs of one task end at least their minimum execution time apart. The q-th job of a busy window ends at its completion at the
-    latest, and the one `count` - 1 later is activated after delta- at the earliest and takes its minimum execution time, which bounds
-    how close two completions can be (S. Schliecker, J. Rox, M. Ivers, R. Ernst, "Providing accurate event models for the analysis of heterogeneous multiprocessor
-    systems", CODES+ISSS 2008).
+    latest; the one `count` - 1 later is activated after delta- at the earliest and takes its minimum execution time. That bounds how
+    close two completions can be (S. Schliecker, J. Rox, M. Ivers, R. Ernst, "Providing accurate event models for the analysis of
+    heterogeneous multiprocessor systems", CODES+ISSS 2008).
 
     Attributes
     ----------

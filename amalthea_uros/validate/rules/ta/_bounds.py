@@ -12,7 +12,7 @@ from amalthea_uros.metamodel.classes import (
     TimeGaussDistribution,
 )
 from amalthea_uros.metamodel.magnitudes import picoseconds
-from amalthea_uros.validate.quantities import time_text
+from amalthea_uros.units import time_text
 
 
 def outside(gauss: DiscreteValueGaussDistribution | ContinuousValueGaussDistribution | TimeGaussDistribution) -> Iterator[str]:

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.timing.releases import response_time_limits
-from amalthea_uros.units import Time
-from amalthea_uros.validate.quantities import time_text
+from amalthea_uros.units import Time, time_text
 from amalthea_uros.validate.rule import Problem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 

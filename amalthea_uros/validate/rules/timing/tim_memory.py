@@ -15,8 +15,8 @@ from amalthea_uros.metamodel.classes import (
     Section,
 )
 from amalthea_uros.metamodel.magnitudes import bits
+from amalthea_uros.units import data_size_text
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.quantities import size_text
 from amalthea_uros.validate.rule import ModelRule
 
 
@@ -25,7 +25,7 @@ def _check(element: Memory, context: Context) -> Iterator[str]:
     mapped = context.once(_mapped).get(element, {})
     needed = sum(bits(part.size) or 0 for part in mapped)
     if size is not None and needed > size:
-        yield f"{element.name!r} has a size of {size_text(size)}, but the objects mapped to it need {size_text(needed)}"
+        yield f"{element.name!r} has a size of {data_size_text(size)}, but the objects mapped to it need {data_size_text(needed)}"
 
 
 def _mapped(context: Context) -> dict[Memory, dict[AbstractMemoryElement, None]]:

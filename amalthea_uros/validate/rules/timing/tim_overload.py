@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import ceil
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.validate.quantities import number_text
+from amalthea_uros.units import number_text
 from amalthea_uros.validate.rule import Problem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined

@@ -1,6 +1,6 @@
 """What EMF would write for an object: its attributes and children, in order.
 
-Values are checked on the way; whatever the metamodel of the version does not allow becomes a finding that names the object.
+Values are checked at the same time; what the metamodel of the version does not allow becomes a finding that names the object.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Href(NamedTuple):
 
     Attributes
     ----------
-    reference : the id behind `amlt:/#`
+    reference : the id after `amlt:/#`
     tag : the whole element as text
     """
 
@@ -40,13 +40,13 @@ class Href(NamedTuple):
 Child = Part | Href
 
 
-class Shape(NamedTuple):
-    """What is to be written for objects of one class of which the same features are set.
+class WritePlan(NamedTuple):
+    """The features to write for objects of one class that have the same features set.
 
     Attributes
     ----------
-    attributes : (text in front of the value, feature, whether it is set)
-    children : features that may give child elements
+    attributes : (text before the value, feature, whether it is set)
+    children : features that may be written as child elements
     """
 
     attributes: tuple[tuple[str, FeaturePlan, bool], ...]
@@ -54,8 +54,8 @@ class Shape(NamedTuple):
     has_extras: bool
 
 
-class Speller:
-    """Spells the objects of one document."""
+class EmfSerializer:
+    """Serialises the objects of one document."""
 
     def __init__(self, document: Document, prefixes: Prefixes) -> None:
         self.document = document
@@ -63,8 +63,8 @@ class Speller:
         self.prefixes = prefixes
         self.findings: list[Finding] = []
         self.uses_xsi = False
-        self._shapes: dict[tuple[type[Element], tuple[str, ...]], Shape] = {}
-        #: Reference text of a target, and whether it lives in this document.
+        self._write_plans: dict[tuple[type[Element], tuple[str, ...]], WritePlan] = {}
+        #: Reference text of a target, and whether it is in this document.
         self._targets: dict[Element, tuple[str, bool]] = {}
 
     def plan(self, element: Element) -> ClassPlan | None:
@@ -72,40 +72,40 @@ class Speller:
         plan = self.plans.of(type(element).__name__)
         if plan is None:
             kind = "is abstract" if type(element).is_abstract else "does not exist"
-            self.refuse(element, f"class {type(element).__name__} {kind} in AMALTHEA {self.document.facts_version}")
+            self.refuse(element, f"the class {type(element).__name__} {kind} in AMALTHEA {self.document.facts_version}")
         return plan
 
-    def shape(self, plan: ClassPlan, element: Element) -> Shape:
-        """What is to be written of the object."""
+    def write_plan(self, plan: ClassPlan, element: Element) -> WritePlan:
+        """The features to write for the object."""
         present = tuple(element.__dict__)
-        shape = self._shapes.get((plan.cls, present))
-        if shape is None:
-            shape = self._shapes[plan.cls, present] = self._new_shape(plan, element)
-        return shape
+        write_plan = self._write_plans.get((plan.cls, present))
+        if write_plan is None:
+            write_plan = self._write_plans[plan.cls, present] = self._new_write_plan(plan, element)
+        return write_plan
 
-    def _new_shape(self, plan: ClassPlan, element: Element) -> Shape:
+    def _new_write_plan(self, plan: ClassPlan, element: Element) -> WritePlan:
         present = element.__dict__
         unknown = present.keys() - {feature.name for feature in plan.features} - {"_extras"}
         for name in sorted(unknown):
             if present[name] not in (None, []):
                 version = self.document.facts_version
-                self.refuse(element, f"{name!r} does not exist in {type(element).__name__} of AMALTHEA {version}")
+                self.refuse(element, f"{type(element).__name__} has no feature {name!r} in AMALTHEA {version}")
         attributes = []
         for feature in plan.features:
             is_set = feature.name in present
             if feature.xml_name in plan.attributes and (is_set or feature.default_text is not None):
                 attributes.append((f' {feature.xml_name}="', feature, is_set))
         children = tuple(f for f in plan.features if f.xml_name in plan.children and f.name in present)
-        # A shape with features unknown to the version is not shared, so that every object with one is named.
-        shape = Shape(tuple(attributes), children, "_extras" in present)
+        # A plan with features unknown to the version is not shared, so that every object with one is reported.
+        write_plan = WritePlan(tuple(attributes), children, "_extras" in present)
         if unknown:
-            self._shapes.pop((plan.cls, tuple(present)), None)
-        return shape
+            self._write_plans.pop((plan.cls, tuple(present)), None)
+        return write_plan
 
     # Attributes
 
-    def tag(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, shape: Shape) -> str:
-        """The start tag behind the element name and without its end, as EMF writes it."""
+    def tag(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, write_plan: WritePlan) -> str:
+        """The start tag after the element name and without its end, as EMF writes it."""
         pieces = []
         if part is not None and plan.cls is not part.target:
             self.uses_xsi = True
@@ -113,7 +113,7 @@ class Speller:
         if plan.referable:
             pieces.append(f' {self.prefixes.xmi_id}="{escape(self.target(element)[0])}"')
         values = element.__dict__
-        for opening, feature, is_set in shape.attributes:
+        for opening, feature, is_set in write_plan.attributes:
             value = values[feature.name] if is_set else None
             if value is None:
                 if feature.default_text is not None:
@@ -124,14 +124,14 @@ class Speller:
                 pieces.append(f'{opening}{escape(text)}"')
         return "".join(pieces)
 
-    def attributes(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, shape: Shape) -> dict[str, str]:
-        """The same as `tag`, one by one: attribute name -> value."""
+    def attributes(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, write_plan: WritePlan) -> dict[str, str]:
+        """The same as `tag` as a mapping: attribute name -> value."""
         found = {}
         if part is not None and plan.cls is not part.target:
             found[self.prefixes.xsi_type] = f"{self.prefixes.type_prefix}{plan.cls.__name__}"
         if plan.referable:
             found[self.prefixes.xmi_id] = self.target(element)[0]
-        for _, feature, is_set in shape.attributes:
+        for _, feature, is_set in write_plan.attributes:
             value = element.__dict__[feature.name] if is_set else None
             text = feature.default_text if value is None else self.value_text(element, feature, value)
             if text is not None:
@@ -139,36 +139,36 @@ class Speller:
         return found
 
     def value_text(self, element: Element, feature: FeaturePlan, value: Any) -> str | None:
-        """A set value as text; None if it is not to stand as an attribute."""
+        """A set value as text; None if it is not written as an attribute."""
         if feature.is_reference:
             return self.reference_text(element, feature, value)
-        literal = feature.literal
-        assert literal
-        if type(value) is not literal.python_type:
-            checked = _converted(value, literal.python_type)
+        data_type = feature.data_type
+        assert data_type
+        if type(value) is not data_type.python_type:
+            checked = _converted(value, data_type.python_type)
             if checked is None:
-                expected = literal.python_type.__name__
+                expected = data_type.python_type.__name__
                 self.refuse(element, f"{feature.name!r} must be of type {expected}, not {value!r}")
                 return None
             value = checked
         if feature.is_string:
             wrong = impossible_character(value)
             if wrong is not None:
-                self.refuse(element, f"{feature.name!r} holds the character U+{ord(wrong):04X}, which XML cannot hold")
+                self.refuse(element, f"{feature.name!r} contains the character U+{ord(wrong):04X}, which XML does not allow")
                 return None
             return str(value)
         if value == feature.omitted:
             return None
         try:
-            text: str = literal.format(value)
-            literal.parse(text)
+            text: str = data_type.format(value)
+            data_type.parse(text)
         except ValueError as error:
             self.refuse(element, f"{feature.name!r}: {error}")
             return None
         return text
 
     def reference_text(self, element: Element, feature: FeaturePlan, value: Any) -> str | None:
-        """The ids of the targets, None if they stand as `href` elements (or there are none)."""
+        """The ids of the targets, None if they are written as `href` elements (or there are none)."""
         if not feature.many:
             if not isinstance(value, feature.target):
                 self.refuse_target(element, feature, value)
@@ -184,7 +184,7 @@ class Speller:
         return " ".join([self.target(target)[0] for target in targets])
 
     def is_attribute(self, element: Element, feature: FeaturePlan, is_local: bool) -> bool:
-        """Whether a reference stands as an attribute: if all its targets live in this file, or as it was read."""
+        """Whether a reference is written as an attribute: as it was read, or else if all its targets are in this file."""
         forms = self.document.href_features
         if forms:
             is_href = forms.get((element, feature.xml_name))
@@ -193,7 +193,7 @@ class Speller:
         return is_local
 
     def checked_targets(self, element: Element, feature: FeaturePlan, value: Any) -> list[Element]:
-        """The targets that fit; the others become findings."""
+        """The targets of the right class; the others become findings."""
         if not isinstance(value, list):
             self.refuse_target(element, feature, value)
             return []
@@ -204,7 +204,7 @@ class Speller:
         return fitting
 
     def target(self, element: Element) -> tuple[str, bool]:
-        """The reference text of an object and whether it lives in this document."""
+        """The reference text of an object and whether it is in this document."""
         found = self._targets.get(element)
         if found is None:
             document = element.document
@@ -212,18 +212,20 @@ class Speller:
             if document is None and element.unresolved is None:
                 self.findings.append(
                     self.finding(
-                        element, f"{element!r} is referred to, but is not part of the model", "Add it, or clear the references."
+                        element,
+                        f"{element!r} is referenced, but not part of the model",
+                        "Add it to the model, or remove the references to it.",
                     )
                 )
         return found
 
     # Children
 
-    def children(self, element: Element, shape: Shape) -> list[Child]:
+    def children(self, element: Element, write_plan: WritePlan) -> list[Child]:
         """The child elements in order."""
         found: list[Child] = []
         values = element.__dict__
-        for feature in shape.children:
+        for feature in write_plan.children:
             value = values[feature.name]
             if value is None:
                 continue
@@ -231,14 +233,14 @@ class Speller:
                 found += self.hrefs(element, feature, value)
             elif feature.many:
                 if feature.only_one and len(value) > 1:
-                    self.refuse(element, f"{feature.name!r} takes only one object in AMALTHEA {self.document.facts_version}")
+                    self.refuse(element, f"{feature.name!r} can have only one object in AMALTHEA {self.document.facts_version}")
                 found += [Part(feature, part) for part in value if self.check_part(element, feature, part)]
             elif self.check_part(element, feature, value):
                 found.append(Part(feature, value))
         return found
 
     def hrefs(self, element: Element, feature: FeaturePlan, value: Any) -> list[Child]:
-        """The `href` elements of a reference, none if it stands as an attribute."""
+        """The `href` elements of a reference, none if it is written as an attribute."""
         targets = [t for t in (value if isinstance(value, list) else [value]) if isinstance(t, feature.target)]
         is_local = all(self.target(target)[1] for target in targets)
         if self.is_attribute(element, feature, is_local):
@@ -255,7 +257,7 @@ class Speller:
         return Href(feature, text, f'<{feature.xml_name}{typed} href="amlt:/#{escape(text)}"/>')
 
     def check_part(self, element: Element, feature: FeaturePlan, part: Any) -> bool:
-        """Whether an object may be a part; if not, that becomes a finding."""
+        """Whether an object may be a part of another one; if not, a finding says so."""
         if isinstance(part, feature.target):
             return True
         self.refuse_target(element, feature, part)
@@ -264,16 +266,16 @@ class Speller:
     # Findings
 
     def refuse_target(self, element: Element, feature: FeaturePlan, value: object) -> None:
-        """Note a value of the wrong class."""
+        """Add a finding about a value of the wrong class."""
         expected = (
             f"a list of {feature.target.__name__}"
             if feature.many and not isinstance(value, Element)
             else feature.target.__name__
         )
-        self.refuse(element, f"{feature.name!r} takes {expected}, not {value!r}")
+        self.refuse(element, f"{feature.name!r} must be {expected}, not {value!r}")
 
     def refuse(self, element: Element, message: str) -> None:
-        """Note what is wrong with an object."""
+        """Add a finding about an object."""
         self.findings.append(self.finding(element, message, ""))
 
     def finding(self, element: Element, message: str, help_text: str) -> Finding:
@@ -283,7 +285,7 @@ class Speller:
 
 
 def _converted(value: object, expected: type) -> Any:
-    """A value that may stand for one of the expected type: whole numbers for floating point, literals as text."""
+    """The value as one of the expected type, where that is possible: whole numbers as floating point; else None."""
     if expected is float and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
     if isinstance(value, expected) and not isinstance(value, bool):

@@ -12,8 +12,8 @@ from amalthea_uros.metamodel.defaults import enum_class
 from amalthea_uros.metamodel.versions import Facts
 
 
-class Literal(NamedTuple):
-    """How the values of one Ecore type are spelled.
+class DataType(NamedTuple):
+    """How the values of an Ecore data type are written.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ def parse_address(text: str) -> int:
     """Unsigned `0x1f`, `#1f`, octal `017` or decimal, like `java.lang.Long.decode`."""
     match = _ADDRESS(text.strip())
     if not match:
-        raise ValueError(f"{text!r} is not an address (hexadecimal 0x..., or decimal, without a sign)")
+        raise ValueError(f"{text!r} is not an address: expected a hexadecimal (0x1f) or decimal number without a sign")
     if match["hex"]:
         return int(match["hex"], 16)
     return int(match["octal"], 8) if match["octal"] else int(match["decimal"])
@@ -70,7 +70,7 @@ _SPECIAL = {"NaN": math.nan, "Infinity": math.inf, "+Infinity": math.inf, "-Infi
 
 
 def parse_float(text: str) -> float:
-    """What `java.lang.Double.valueOf` takes, except hexadecimal floating point."""
+    """What `java.lang.Double.valueOf` accepts, except hexadecimal floating point."""
     text = text.strip()
     if text in _SPECIAL:
         return _SPECIAL[text]
@@ -123,29 +123,29 @@ def _format_java(value: float, decimal: str) -> str:
     return f"{sign}{digits[0]}.{digits[1:] or '0'}E{exponent}"
 
 
-_INTEGER = Literal(int, parse_integer, str)
-_DOUBLE = Literal(float, parse_float, format_double)
+_INTEGER = DataType(int, parse_integer, str)
+_DOUBLE = DataType(float, parse_float, format_double)
 
-_LITERALS = {
-    "EString": Literal(str, str, str),
-    "EBoolean": Literal(bool, parse_boolean, format_boolean),
+_DATA_TYPES = {
+    "EString": DataType(str, str, str),
+    "EBoolean": DataType(bool, parse_boolean, format_boolean),
     "EInt": _INTEGER,
     "ELong": _INTEGER,
     "EBigInteger": _INTEGER,
     "EIntegerObject": _INTEGER,
     "ELongObject": _INTEGER,
-    "Address": Literal(int, parse_address, lambda value: f"0x{value:x}"),
+    "Address": DataType(int, parse_address, lambda value: f"0x{value:x}"),
     "EDouble": _DOUBLE,
     "EDoubleObject": _DOUBLE,
-    "EFloat": Literal(float, parse_float, format_float),
+    "EFloat": DataType(float, parse_float, format_float),
 }
 
 
-class Memo(dict[str, Any]):
-    """Values parsed before, by text: a model has thousands of values, but few different ones."""
+class ValueCache(dict[str, Any]):
+    """Parsed values by text: a model has thousands of values, but few different ones."""
 
-    #: Beyond, new texts are parsed each time: a look-up that rarely hits is not worth its memory.
-    MOST = 1_000
+    #: Once full, new texts are parsed each time: a cache that rarely hits is not worth its memory.
+    MAX_ENTRIES = 1_000
 
     def __init__(self, parse: Callable[[str], Any]) -> None:
         super().__init__()
@@ -153,29 +153,29 @@ class Memo(dict[str, Any]):
 
     def __missing__(self, text: str) -> Any:
         value = self._parse(text)
-        if len(self) < self.MOST:
+        if len(self) < self.MAX_ENTRIES:
             self[text] = value
         return value
 
 
-def literal_of(declared: Facts, type_name: str) -> Literal:
-    """How values of an Ecore type are spelled in one AMALTHEA version."""
+def data_type_of(declared: Facts, type_name: str) -> DataType:
+    """The data type of an Ecore type in one AMALTHEA version."""
     if type_name in declared.enums:
-        return _enum_literal(declared, type_name)
+        return _enumeration(declared, type_name)
     number = declared.numbers.get(type_name)
-    if number is None or type_name in _LITERALS:
-        return _LITERALS[type_name]
+    if number is None or type_name in _DATA_TYPES:
+        return _DATA_TYPES[type_name]
     return _DOUBLE if number.java_type == "double" else _INTEGER
 
 
-def _enum_literal(declared: Facts, type_name: str) -> Literal:
+def _enumeration(declared: Facts, type_name: str) -> DataType:
     enum = enum_class(type_name)
     members = {literal: enum(literal) for literal in declared.enums[type_name].literals}
 
     def parse(text: str) -> Any:
         member = members.get(text)
         if member is None:
-            raise ValueError(f"{text!r} is none of {', '.join(literal for literal in members if literal[0] != '_')}")
+            raise ValueError(f"{text!r} is not one of {', '.join(literal for literal in members if literal[0] != '_')}")
         return member
 
-    return Literal(enum, parse, str)
+    return DataType(enum, parse, str)

@@ -1,4 +1,4 @@
-"""What absent attributes stand for when documents of one or several AMALTHEA versions are compared."""
+"""The meaning of unset attributes when documents of one or several AMALTHEA versions are compared."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 _VARIES = object()
 
 
-class Absence(NamedTuple):
-    """The absence of one attribute in one version.
+class UnsetAttribute(NamedTuple):
+    """An unset attribute in one version.
 
     Attributes
     ----------
-    default : the value that says the same as absence
-    stands_for : what absence means; None if one of the versions has no such attribute and thus nothing to differ from
-    common : what absence means in all the versions, equal to nothing if it differs between them
+    default : the value that means the same as being unset
+    stands_for : the value that unset means; None if one of the versions has no such attribute, so that there is no difference
+    common : the value that unset means in all versions; equal to no value if it differs between them
     """
 
     default: Any
@@ -37,21 +37,21 @@ class Absence(NamedTuple):
         return self.stands_for if value is None or value == self.default else value
 
 
-class Absences:
-    """The absences of the attributes of every class in the versions of some documents."""
+class UnsetAttributes:
+    """The meaning of every unset attribute of every class in the versions of some documents."""
 
     def __init__(self, documents: Iterable[Document]) -> None:
         self.versions = frozenset(document.facts_version for document in documents)
-        self._known: dict[tuple[str, type[Element]], dict[str, Absence]] = {}
+        self._known: dict[tuple[str, type[Element]], dict[str, UnsetAttribute]] = {}
 
-    def of(self, element: Element) -> dict[str, Absence]:
+    def of(self, element: Element) -> dict[str, UnsetAttribute]:
         """Those of an object, by the Python names of its attributes."""
         version = self._version(element)
         cls = type(element)
         found = self._known.get((version, cls))
         if found is None:
             attributes = (feature for feature in features_of(cls).values() if feature.kind == "attribute")
-            found = {f.name: self._absence(version, cls.__name__, f.xml_name) for f in attributes}
+            found = {f.name: self._unset(version, cls.__name__, f.xml_name) for f in attributes}
             self._known[version, cls] = found
         return found
 
@@ -63,10 +63,10 @@ class Absences:
         assert document
         return document.facts_version
 
-    def _absence(self, version: str, class_name: str, xml_name: str) -> Absence:
+    def _unset(self, version: str, class_name: str, xml_name: str) -> UnsetAttribute:
         default = default_value(facts(version), class_name, xml_name)
         declared = [facts(v) for v in self.versions]
         if any(known.feature(class_name, xml_name) is None for known in declared):
-            return Absence(default, None, None)
+            return UnsetAttribute(default, None, None)
         is_common = all(default_value(known, class_name, xml_name) == default for known in declared)
-        return Absence(default, default, default if is_common else _VARIES)
+        return UnsetAttribute(default, default, default if is_common else _VARIES)

@@ -1,4 +1,4 @@
-"""Values and objects in a few words, for people."""
+"""Short texts of values and objects."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from amalthea_uros.metamodel.naming import qualified_name, segments
 
 UNSET = "unset"
 
-#: Longer texts are shown in part.
-_LONGEST = 120
+#: Longer texts are truncated.
+_MAX_LENGTH = 120
 
 
 def is_inline(element: Element) -> bool:
@@ -22,7 +22,7 @@ def is_inline(element: Element) -> bool:
     return isinstance(element, Quantity | Value)
 
 
-def wording(value: Any) -> str:
+def value_text(value: Any) -> str:
     """A value of a feature: a number, text, literal, an object referred to or a part that is read as a value."""
     if value is None:
         return UNSET
@@ -36,22 +36,22 @@ def wording(value: Any) -> str:
 
 
 def readable_name(element: Element) -> str:
-    """The unique name of an object as people read it."""
+    """The unique name of an object in readable form."""
     if element.is_referable or element.unresolved is not None:
         return ".".join(filter(None, segments(element))) or qualified_name(element)
     return qualified_name(element)
 
 
 def label(element: Element) -> str:
-    """What tells an object from its neighbours: its unique name or else its key, its name, or the object it is about."""
+    """The label of an object: its unique name or else its key, its name, or the object that it refers to."""
     values = element.__dict__
     if has_identity(element):
         return readable_name(element)
     if is_inline(element):
-        return wording(element)
+        return value_text(element)
     for name in ("key", "name"):
         if values.get(name):
-            return wording(values[name])
+            return value_text(values[name])
     target = first_reference(element)
     return readable_name(target) if target is not None else ""
 
@@ -67,24 +67,24 @@ def first_reference(element: Element) -> Element | None:
 
 
 def shortened(text: str) -> str:
-    """A text in one line of bearable length."""
+    """A text in one line of limited length."""
     line = " ".join(text.split())
-    return line if len(line) <= _LONGEST else line[: _LONGEST - 3] + "..."
+    return line if len(line) <= _MAX_LENGTH else line[: _MAX_LENGTH - 3] + "..."
 
 
 def _of_part(part: Element) -> str:
     values = part.__dict__
     if isinstance(part, Quantity):
-        unit = wording(values.get("unit"))
-        return f"{wording(values.get('value') or 0)}{'' if unit == UNSET else f' {unit}'}"
+        unit = value_text(values.get("unit"))
+        return f"{value_text(values.get('value') or 0)}{'' if unit == UNSET else f' {unit}'}"
     if isinstance(part, ListObject):
         return shortened(f"[{', '.join(map(_of_part, part.values))}]")
     if isinstance(part, MapObject):
         return shortened(f"{{{', '.join(map(_of_entry, part.entries))}}}")
     if isinstance(part, ReferenceObject) and part.value is not None:
         return readable_name(part.value)
-    return wording(values.get("value"))
+    return value_text(values.get("value"))
 
 
 def _of_entry(entry: CustomProperty) -> str:
-    return f"{entry.key}: {wording(entry.value)}"
+    return f"{entry.key}: {value_text(entry.value)}"

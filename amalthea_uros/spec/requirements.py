@@ -1,4 +1,4 @@
-"""What is demanded: event chains with limits of their latency, and requirements on processes."""
+"""Requirements: event chains with limits on their latency, and limits on processes."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ Moment = Literal["activation", "start", "finish"]
 
 
 class Limits(Shorthand):
-    """A greatest value, or a mapping with a least and a greatest one."""
+    """A maximum, or a mapping with minimum and maximum."""
 
     shorthand = ("max",)
 
     min: Duration | None = None
-    """Least value that is allowed."""
+    """Minimum that is allowed."""
     max: Duration | None = None
-    """Greatest value that is allowed."""
+    """Maximum that is allowed."""
 
     @model_validator(mode="after")
     def _is_something(self) -> Self:
         if self.min is None and self.max is None:
-            raise problem("give 'max' or 'min'")
+            raise problem("neither 'max' nor 'min' is given")
         if self.min is not None and self.max is not None and self.min > self.max:
             raise problem("'min' is greater than 'max'")
         return self
@@ -37,56 +37,56 @@ class Chain(Section):
     name: Name
     """Name of the chain."""
     path: list[Name] | None = Field(None, min_length=1)
-    """Executor, callbacks, tasks, interrupt service routines, functions, and labels between them, from cause to effect."""
+    """Executor, callbacks, tasks, interrupt service routines and functions, with labels between them, from cause to effect."""
     sequence: list[Name] | None = Field(None, min_length=1)
-    """Chains that follow each other; each starts with the event with which the one before it ends."""
+    """Chains that follow each other; each starts with the last event of the previous one."""
     parallel: list[list[Name]] | None = Field(None, min_length=2)
     """Paths from the same start to the same end."""
     completed: Count = 1
-    """How many of the parallel paths have to complete: 1 for alternatives, all for a join."""
+    """Number of parallel paths that must complete: 1 for alternatives, all of them for a join."""
     start: Moment = Field("start", alias="from")
-    """The moment of the first member with which the chain starts."""
+    """Event of the first member that starts the chain."""
     end: Moment = Field("finish", alias="to")
-    """The moment of the last member with which the chain ends."""
+    """Event of the last member that ends the chain."""
     reaction: Limits | None = None
-    """Limits of the reaction time."""
+    """Limits on the reaction time."""
     age: Limits | None = None
-    """Limits of the data age."""
+    """Limits on the data age."""
 
     @model_validator(mode="after")
     def _is_one_of_three(self) -> Self:
         stated = [key for key in ("path", "sequence", "parallel") if getattr(self, key) is not None]
         if len(stated) != 1:
             raise problem(
-                f"a chain has one of 'path', 'sequence' and 'parallel', this one has {' and '.join(stated) or 'none'}"
+                f"a chain needs exactly one of 'path', 'sequence' and 'parallel', found {' and '.join(map(repr, stated)) or 'none'}"
             )
         return self
 
 
 class Requirement(Section):
-    """Limits that every job of a process has to keep."""
+    """Limits that every job of a process must meet."""
 
     process: Name
-    """The executor, a callback, a task, an interrupt service routine, or a function."""
+    """Executor, callback, task, interrupt service routine or function."""
     name: Name | None = None
-    """Default: made from the process and what is limited."""
+    """Name of the requirement; default: made from the process and the limited quantity."""
     severity: Literal["cosmetic", "minor", "major", "critical"] | None = None
-    """How bad it is if the limit is not kept."""
+    """Severity of a violation."""
     response_time: Limits | None = None
-    """From activation to end."""
+    """Limits on the time from activation to end."""
     net_execution_time: Limits | None = None
-    """Without preemption."""
+    """Limits on the time that a job executes, without preemption."""
     gross_execution_time: Limits | None = None
-    """From start to end, with preemption."""
+    """Limits on the time from start to end, including preemption."""
     start_delay: Limits | None = None
-    """From activation to start."""
+    """Limits on the time from activation to start."""
     start_to_start: Limits | None = None
-    """From one start to the next."""
+    """Limits on the time from one start to the next."""
     end_to_end: Limits | None = None
-    """From one end to the next."""
+    """Limits on the time from one end to the next."""
 
     @model_validator(mode="after")
     def _is_something(self) -> Self:
         if not any(isinstance(getattr(self, key), Limits) for key in type(self).model_fields):
-            raise problem("a requirement limits something, such as response_time: 1 ms")
+            raise problem("the requirement has no limit; add one, e.g. response_time: 1 ms")
         return self

@@ -1,4 +1,4 @@
-"""What is odd in a file that can nevertheless be read: each kind of oddity is reported once, with the number of its occurrences."""
+"""Problems in a file that can nevertheless be read; equal ones are reported once, with the number of occurrences."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.metamodel.source import Source
 
 
-class Remark:
-    """A finding in the making, about the tag at an offset (in bytes of UTF-8) or one of its attributes."""
+class CollectedFinding:
+    """A finding about the tag at an offset (in bytes of UTF-8) or one of its attributes, with the number of its occurrences."""
 
     __slots__ = ("attribute", "count", "help", "message", "offset", "rule", "severity")
 
@@ -27,38 +27,38 @@ class Remark:
     def finding(self, path: Path, source: Source) -> Finding:
         """The finding, at the first occurrence."""
         where = location(path, source, self.offset, self.attribute)
-        times = f" ({self.count} times, the first one is here)" if self.count > 1 else ""
+        times = f" ({self.count} times, this is the first)" if self.count > 1 else ""
         return Finding(self.rule, self.severity, self.message + times, where, self.help)
 
 
-class Remarks:
-    """The oddities of one file."""
+class FindingCollector:
+    """The problems of one file."""
 
     def __init__(self) -> None:
-        self._remarks: dict[tuple[str, str], Remark] = {}
+        self._findings: dict[tuple[str, str], CollectedFinding] = {}
 
-    def add(self, remark: Remark, name: str = "", known_names: Iterable[str] = ()) -> None:
-        """Note an oddity; if it is about an unknown name, a known one that is near is suggested."""
-        known = self._remarks.get((remark.rule, remark.message))
+    def add(self, finding: CollectedFinding, name: str = "", known_names: Iterable[str] = ()) -> None:
+        """Add a problem; if it is about an unknown name, the most similar known one is suggested."""
+        known = self._findings.get((finding.rule, finding.message))
         if known is not None:
             known.count += 1
             return
         if name:
-            remark.help = did_you_mean(name, known_names) + remark.help
-        self._remarks[remark.rule, remark.message] = remark
+            finding.help = did_you_mean(name, known_names) + finding.help
+        self._findings[finding.rule, finding.message] = finding
 
-    def __iter__(self) -> Iterator[Remark]:
-        return iter(self._remarks.values())
+    def __iter__(self) -> Iterator[CollectedFinding]:
+        return iter(self._findings.values())
 
 
 def location(path: Path, source: Source, byte_offset: int, attribute: str = "") -> Location:
-    """A tag, given by its offset in bytes of UTF-8, or one of its attributes, as a place to show."""
+    """The location of a tag, given by its offset in bytes of UTF-8, or of one of its attributes."""
     offset = source.character_offset(byte_offset)
     line, column = source.position(source.attribute_offset(offset, attribute) if attribute else offset)
     return Location(path, line, column, source.line(line))
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """A hint, "" if nothing is near."""
+    """A suggestion, "" if no known name is similar."""
     near = get_close_matches(name, list(known), n=1)
     return f"Did you mean {near[0]!r}? " if near else ""

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.xmi.escape import escape, impossible_character, unescape
-from amalthea_uros.xmi.literals import (
+from amalthea_uros.xmi.data_types import (
     format_double,
     format_float,
     parse_address,
@@ -16,6 +15,7 @@ from amalthea_uros.xmi.literals import (
     parse_float,
     parse_integer,
 )
+from amalthea_uros.xmi.escape import escape, impossible_character, unescape
 
 
 @pytest.mark.parametrize(

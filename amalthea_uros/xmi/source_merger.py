@@ -1,8 +1,8 @@
-"""Merging changed objects into the text they were read from, where that text is not laid out as EMF does.
+"""Merging modified objects into the text from which they were read, where that text does not have EMF's layout.
 
-Two questions are answered here: how does a start tag look in which some attributes changed (`tag`), and how does the content of an
-element look in which children came, went or moved (`content`)? Whatever still says the same stays to the letter: order, white
-space, quotes, comments, unknown attributes and elements.
+`tag` gives a start tag of which some attributes changed, `content` the content of an element of which children were added, removed
+or moved. Everything that still has the same meaning is preserved byte for byte: order, white space, quotes, comments, unknown
+attributes and elements.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Source, attributes_of_tag
+from amalthea_uros.xmi.emf_serializer import Child, EmfSerializer, Href, Part
 from amalthea_uros.xmi.escape import escape, unescape
 from amalthea_uros.xmi.plan import ClassPlan, reference_texts
-from amalthea_uros.xmi.spell import Child, Href, Part, Speller
 
 _NAME = re.compile(r"[^\s/>]+")
 _NODE = re.compile(
@@ -32,8 +32,8 @@ class Node(NamedTuple):
 
     Attributes
     ----------
-    child : the part or reference of now that it stands for, None for everything else
-    kept : whether it is written again; what is gone from the model is not
+    child : the present part or reference that it represents, None for everything else
+    kept : whether it is written again, that is, not removed from the model
     """
 
     text: str
@@ -41,31 +41,31 @@ class Node(NamedTuple):
     kept: bool
 
 
-class Weaver:
-    """Reads the source of one document again, where it matters how something was written."""
+class SourceMerger:
+    """Reads the source of one document again, to preserve the way in which it is written."""
 
-    def __init__(self, document: Document, source: Source, speller: Speller) -> None:
+    def __init__(self, document: Document, source: Source, serializer: EmfSerializer) -> None:
         self.document = document
         self.source = source
         self.text = source.text
-        self.speller = speller
+        self.serializer = serializer
 
     def end(self, place: int) -> int:
-        """Offset behind an element."""
+        """Offset after an element."""
         source, text = self.source, self.text
         end = source.end(place)
-        # Behind the tag of an empty element, but at the end tag of one with content.
+        # After the tag of an empty element, but at the end tag of one with content.
         if text.startswith("/>", end - 2) and text.find("<", source.start(place) + 1, end) < 0:
             return end
         return text.index(">", end) + 1
 
-    def stands_as(self, tag: str, place: int) -> bool:
-        """Whether the object was the same kind of part when it was read."""
+    def is_same_part(self, tag: str, place: int) -> bool:
+        """Whether the object was held by the same feature when it was read."""
         start = self.source.start(place)
         return self.text.startswith(tag, start + 1) and self.text[start + 1 + len(tag)] in " \t\r\n/>"
 
-    def is_regular(self, children: list[Child], at: int, end: int, separator: str) -> bool:
-        """Whether the content between two offsets is just these children, one after the other, laid out as EMF does."""
+    def has_emf_layout(self, children: list[Child], at: int, end: int, separator: str) -> bool:
+        """Whether the content between two offsets consists of exactly these children, in order and in EMF's layout."""
         text, source, index = self.text, self.source, self.source.index
         for child in children:
             if not text.startswith(separator, at):
@@ -77,7 +77,7 @@ class Weaver:
                 at += len(child.tag)
             else:
                 place = index.get(child.element)
-                if place is None or source.start(place) != at or not self.stands_as(child.feature.xml_name, place):
+                if place is None or source.start(place) != at or not self.is_same_part(child.feature.xml_name, place):
                     return False
                 at = self.end(place)
         return at <= end and text[at:end] == separator[: -len("  ")]
@@ -85,7 +85,7 @@ class Weaver:
     # Start tags
 
     def tag(self, element: Element, plan: ClassPlan, wanted: dict[str, str], place: int) -> tuple[str, int]:
-        """A start tag with the wanted attributes, without its `>` or `/>`, and the offset at which that stands."""
+        """A start tag with the wanted attributes, without its `>` or `/>`, and the offset of these."""
         start = self.source.start(place)
         name = _NAME.match(self.text, start + 1)
         assert name
@@ -94,7 +94,7 @@ class Weaver:
         for attribute in attributes_of_tag(self.text, start):
             at = attribute.end()
             key, value = attribute["name"], unescape(attribute["quoted"][1:-1])
-            if self.still_says(element, plan, key, value, wanted.get(key)):
+            if self.is_unchanged(element, plan, key, value, wanted.get(key)):
                 pieces[key] = attribute[0]
             elif key in wanted:
                 lead = attribute[0][: attribute.start("quoted") - attribute.start()]
@@ -105,7 +105,7 @@ class Weaver:
         return f"<{tag}{tail[0]}", tail.end()
 
     def with_new(self, element: Element, plan: ClassPlan, pieces: dict[str, str], wanted: dict[str, str]) -> list[str]:
-        """The attributes that stay, and those that were set since, each behind its predecessor in EMF's order."""
+        """The attributes that stay, and those that were set since, each after its predecessor in EMF's order."""
         order = list(pieces)
         before = None
         for key, value in wanted.items():
@@ -122,15 +122,15 @@ class Weaver:
         feature = plan.attributes.get(key)
         if feature is not None:
             return element.__dict__.get(feature.name) is not None
-        return key == self.speller.prefixes.xsi_type
+        return key == self.serializer.prefixes.xsi_type
 
-    def still_says(self, element: Element, plan: ClassPlan, key: str, value: str, wanted: str | None) -> bool:
-        """Whether an attribute of the source means what the object says now."""
+    def is_unchanged(self, element: Element, plan: ClassPlan, key: str, value: str, wanted: str | None) -> bool:
+        """Whether an attribute of the source still has the value of the object."""
         if value == wanted:
             return True
-        if key == self.speller.prefixes.xsi_type:
-            return value.removeprefix(self.speller.prefixes.type_prefix) == plan.cls.__name__
-        spelling = self.document.spellings.get((element, "xmi:id" if key == self.speller.prefixes.xmi_id else key))
+        if key == self.serializer.prefixes.xsi_type:
+            return value.removeprefix(self.serializer.prefixes.type_prefix) == plan.cls.__name__
+        spelling = self.document.spellings.get((element, "xmi:id" if key == self.serializer.prefixes.xmi_id else key))
         if spelling is not None:
             return spelling == (value, wanted or "")
         feature = plan.attributes.get(key)
@@ -139,16 +139,16 @@ class Weaver:
             is_own = element is self.document.root and (extras is None or key not in extras.attributes)
             return is_own or bool(extras and extras.attributes.get(key) == value)
         if feature.is_reference:
-            written = self.respelled(element, key, reference_texts(feature, value))
+            written = self.canonical_references(element, key, reference_texts(feature, value))
             return written == reference_texts(feature, wanted or "")
-        assert feature.literal
+        assert feature.data_type
         current = element.__dict__.get(feature.name)
         if current is None:
-            return wanted is not None and _equal(_parsed(feature.literal.parse, value), feature.literal.parse(wanted))
-        return _equal(_parsed(feature.literal.parse, value), current)
+            return wanted is not None and _equal(_parsed(feature.data_type.parse, value), feature.data_type.parse(wanted))
+        return _equal(_parsed(feature.data_type.parse, value), current)
 
-    def respelled(self, element: Element, key: str, references: list[str]) -> list[str]:
-        """References as we would write them, as far as they were odd but understood."""
+    def canonical_references(self, element: Element, key: str, references: list[str]) -> list[str]:
+        """References in the form in which we write them, where the source has another one."""
         spellings = self.document.spellings
         found = (spellings.get((element, f"{key} {reference}")) for reference in references)
         return [spelling.canonical if spelling else reference for spelling, reference in zip(found, references, strict=True)]
@@ -156,25 +156,25 @@ class Weaver:
     # Content
 
     def content(self, element: Element, children: list[Child], at: int, end: int, separator: str) -> list[str | Part]:
-        """The content between two offsets of the source, with the children of now: text to copy and parts to write.
+        """The content between two offsets of the source, with the present children: text to copy and parts to write.
 
         Parameters
         ----------
-        separator : what stands in front of a child where the source gives no example
+        separator : white space before a child, unless the source gives an example
         """
         extra = [raw for _, raw in element.extras.content if _is_element(raw)] if element.extras else []
         nodes = list(self.nodes(element, children, extra, at, end))
         separator = next((n.text for n in nodes if n.text.isspace() and "\n" in n.text), separator if not nodes else "")
         new_extra = [piece for raw in extra for piece in (separator, raw)]
         if not _in_order(nodes, children):
-            return _rearranged(nodes, children, new_extra, separator)
-        behind, before = _added(nodes, children)
-        found: list[str | Part] = [item for child in behind.get(None, ()) for item in (separator, _item(child))]
+            return _reordered(nodes, children, new_extra, separator)
+        after, before = _added(nodes, children)
+        found: list[str | Part] = [item for child in after.get(None, ()) for item in (separator, _item(child))]
         for node in nodes:
             if node.kept:
                 found += [item for child in before.get(id(node.child), ()) for item in (_item(child), separator)]
                 found.append(node.child if isinstance(node.child, Part) else node.text)
-                found += [item for child in behind.get(id(node.child), ()) for item in (separator, _item(child))]
+                found += [item for child in after.get(id(node.child), ()) for item in (separator, _item(child))]
             elif found and isinstance(found[-1], str) and found[-1].isspace():
                 found.pop()
         if len(new_extra) > 0:
@@ -183,7 +183,7 @@ class Weaver:
         return [] if is_blank and not all(node.kept for node in nodes) else found
 
     def nodes(self, element: Element, children: list[Child], extra: list[str], at: int, end: int) -> Iterator[Node]:
-        """The pieces of the content of an element; unknown elements that are found are taken out of `extra`."""
+        """The pieces of the content of an element; unknown elements that are found are removed from `extra`."""
         parts = {child.element: child for child in children if isinstance(child, Part)}
         hrefs = [child for child in children if isinstance(child, Href)]
         while at < end:
@@ -192,7 +192,7 @@ class Weaver:
             if place is not None:
                 at = self.end(place)
                 part = parts.get(self.source.elements[place])
-                stays = part is not None and self.stands_as(part.feature.xml_name, place)
+                stays = part is not None and self.is_same_part(part.feature.xml_name, place)
                 yield Node(self.text[start:at], part if stays else None, stays)
                 continue
             match = _NODE.match(self.text, start)
@@ -211,7 +211,7 @@ class Weaver:
                 yield Node(raw, href, href is not None)
 
     def _element_end(self, opening: re.Match[str]) -> int:
-        """Offset behind an element without an object, whose start tag is given."""
+        """Offset after an element without an object, whose start tag is given."""
         depth, match = 1, opening
         if opening[0].endswith("/>"):
             return opening.end()
@@ -226,12 +226,12 @@ class Weaver:
         return match.end()
 
     def _take_href(self, element: Element, opening: re.Match[str], hrefs: list[Href]) -> Href | None:
-        """The reference of now that an element of the source stands for; each is taken once."""
+        """The present reference that an element of the source represents; each is used once."""
         for attribute in attributes_of_tag(self.text, opening.start()):
             if attribute["name"] != "href":
                 continue
             value = unescape(attribute["quoted"][1:-1])
-            (reference,) = self.respelled(element, opening["open"], [value.partition("#")[2] or value])
+            (reference,) = self.canonical_references(element, opening["open"], [value.partition("#")[2] or value])
             for i, href in enumerate(hrefs):
                 if href.feature.xml_name == opening["open"] and href.reference == reference:
                     return hrefs.pop(i)
@@ -264,7 +264,7 @@ def _before_last_space(found: list[str | Part]) -> int:
 
 
 def _in_order(nodes: list[Node], children: list[Child]) -> bool:
-    """Whether the children that stay have the order of the source, feature by feature; between features it says nothing."""
+    """Whether the children that stay have the order of the source within each feature; between features the order has no meaning."""
     positions = {id(child): position for position, child in enumerate(children)}
     last: dict[str, int] = {}
     for node in nodes:
@@ -277,13 +277,13 @@ def _in_order(nodes: list[Node], children: list[Child]) -> bool:
 
 
 def _added(nodes: list[Node], children: list[Child]) -> tuple[dict[int | None, list[Child]], dict[int, list[Child]]]:
-    """The children that the source does not have, by the id of the child behind (None: at the start) or before which they belong."""
+    """The children that the source does not have, by the id of the child after which (None: first) or before which they belong."""
     present = {id(node.child) for node in nodes}
     firsts: dict[str, Child] = {}
     for child in children:
         if id(child) in present:
             firsts.setdefault(child.feature.xml_name, child)
-    behind: dict[int | None, list[Child]] = {}
+    after: dict[int | None, list[Child]] = {}
     before: dict[int, list[Child]] = {}
     last: Child | None = None
     for child in children:
@@ -291,15 +291,15 @@ def _added(nodes: list[Node], children: list[Child]) -> tuple[dict[int | None, l
         if id(child) in present:
             last = child
         elif first is not None and (last is None or last.feature is not child.feature):
-            # In the source the children of the features before may stand behind those of this one.
+            # In the source the children of preceding features may come after those of this one.
             before.setdefault(id(first), []).append(child)
         else:
-            behind.setdefault(id(last) if last else None, []).append(child)
-    return behind, before
+            after.setdefault(id(last) if last else None, []).append(child)
+    return after, before
 
 
-def _rearranged(nodes: list[Node], children: list[Child], extra: list[str], separator: str) -> list[str | Part]:
-    """The children in EMF's order, because the old order and the new one cannot be reconciled; comments come first."""
+def _reordered(nodes: list[Node], children: list[Child], extra: list[str], separator: str) -> list[str | Part]:
+    """The children in EMF's order, because their new order contradicts that of the source; comments come first."""
     found: list[str | Part] = []
     for node in nodes:
         if node.kept and node.child is None and not node.text.isspace():

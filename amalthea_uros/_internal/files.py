@@ -1,0 +1,189 @@
+"""Files of any kind: read whole up to a size limit, decoded without loss, and written whole or not at all."""
+
+from __future__ import annotations
+
+import codecs
+import os
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+
+#: No input comes near this size (the largest published model has 6 MB); a larger file is refused before it fills the memory.
+MAX_SIZE = 512 * 2**20
+
+_BYTE_ORDER_MARKS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+#: Codecs that treat a byte order mark as an ordinary character. Without a mark, such text cannot be told from binary data.
+_UNMARKED = frozenset({"utf-16-le", "utf-16-be"})
+_MARK = "\ufeff"
+
+
+class FileError(Exception):
+    """A file cannot be read or written.
+
+    Attributes
+    ----------
+    path : the file
+    reason : what is wrong, without a full stop: "file not found"
+    advice : what to do about it, "" if the reason says it all
+    """
+
+    def __init__(self, path: Path, reason: str, advice: str = "") -> None:
+        super().__init__(f"{path}: {reason}")
+        self.path, self.reason, self.advice = path, reason, advice
+
+
+class FileTooLargeError(FileError):
+    """A file, or what is packed in it, is larger than a limit in bytes."""
+
+    def __init__(self, path: Path, limit: int, what: str = "the file") -> None:
+        super().__init__(path, f"{what} is larger than {_size_text(limit)}")
+
+
+class FileEncodingError(FileError):
+    """The bytes of a file are not text in the expected encoding."""
+
+
+def read_bytes(path: Path, max_size: int = MAX_SIZE) -> bytes:
+    """The content of a file.
+
+    Raises
+    ------
+    FileTooLargeError : more than `max_size` bytes.
+    FileError : not found, not permitted, or a directory.
+    """
+    try:
+        if path.is_dir():
+            raise FileError(path, "expected a file, found a directory")
+        with path.open("rb") as stream:
+            data = stream.read(max_size + 1)
+    except FileNotFoundError:
+        raise FileError(path, "file not found", "Check the path.") from None
+    except (OSError, ValueError) as error:
+        raise FileError(path, f"the file cannot be read: {_cause(error)}") from None
+    if len(data) > max_size:
+        raise FileTooLargeError(path, max_size)
+    return data
+
+
+def read_text(path: Path, max_size: int = MAX_SIZE) -> str:
+    """The characters of a UTF-8 file, without its byte order mark.
+
+    Raises
+    ------
+    FileEncodingError : not UTF-8.
+    FileError : as for `read_bytes`.
+    """
+    try:
+        return read_bytes(path, max_size).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise FileEncodingError(path, f"the file is not UTF-8 (byte {error.start})", "Save it as UTF-8.") from None
+
+
+def write_bytes(path: Path, data: bytes) -> None:
+    """Write a file whole or not at all: beside the target first, then renamed.
+
+    Raises
+    ------
+    FileError : the file cannot be written; a former content is untouched.
+    """
+    temporary = None
+    try:
+        target = path.resolve()  # a symbolic link remains one: the file that it points to is replaced
+        mode = target.stat().st_mode & 0o777 if target.exists() else 0o666 & ~_umask()
+        descriptor, temporary = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
+        with os.fdopen(descriptor, "wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        Path(temporary).chmod(mode)
+        Path(temporary).replace(target)
+        temporary = None
+    except (OSError, ValueError) as error:
+        raise not_writable(path, error) from None
+    finally:
+        if temporary:
+            with suppress(OSError):
+                Path(temporary).unlink()
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a UTF-8 file whole or not at all.
+
+    Raises
+    ------
+    FileError : as for `write_bytes`.
+    """
+    write_bytes(path, text.encode())
+
+
+def not_writable(path: Path, error: OSError | ValueError) -> FileError:
+    """The error for a path at which a file or a directory cannot be created."""
+    return FileError(path, f"the file cannot be written: {_cause(error)}")
+
+
+def is_directory(path: Path) -> bool:
+    """Whether there is such a directory; False for an impossible path, for which opening it reports the cause."""
+    try:
+        return path.is_dir()
+    except (OSError, ValueError):
+        return False
+
+
+def list_directory(path: Path, suffix: str) -> list[Path]:
+    """The files with a suffix that are directly in a directory, sorted.
+
+    Raises
+    ------
+    FileError : not permitted, or no directory.
+    """
+    try:
+        return sorted(entry for entry in path.iterdir() if entry.suffix == suffix and entry.is_file())
+    except (OSError, ValueError) as error:
+        raise FileError(path, f"the directory cannot be read: {_cause(error)}") from None
+
+
+def marked_encoding(data: bytes) -> str | None:
+    """The codec that the byte order mark of some bytes names, None if they have none."""
+    return next((encoding for mark, encoding in _BYTE_ORDER_MARKS if data.startswith(mark)), None)
+
+
+def decode(data: bytes, encoding: str) -> str:
+    """The characters of some bytes, provided that `encode` gives the same bytes again.
+
+    Raises
+    ------
+    UnicodeError : not text of that encoding.
+    LookupError : no such encoding.
+    """
+    text = data.decode(encoding)
+    if encoding in _UNMARKED:
+        text = text.removeprefix(_MARK)
+    if not encoding.startswith("utf-8"):
+        text.encode()  # some encodings allow lone surrogates, which no file format of ours does
+        if encode(text, encoding) != data:
+            raise UnicodeError("encoding the text again gives other bytes")
+    return text
+
+
+def encode(text: str, encoding: str, errors: str = "strict") -> bytes:
+    """The bytes of a text, with a byte order mark where the codec stands for one; `errors` as for `str.encode`."""
+    return (_MARK + text if encoding in _UNMARKED else text).encode(encoding, errors)
+
+
+def _size_text(size: int) -> str:
+    return f"{size // 2**20} MiB" if size >= 2**20 else f"{size:,} bytes"
+
+
+def _cause(error: OSError | ValueError) -> str:
+    # A path with a zero byte is a ValueError.
+    return getattr(error, "strerror", None) or str(error)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,84 @@
+"""Files that every room reads and writes: nothing is half written, nothing is silently decoded wrongly."""
+
+import os
+
+import pytest
+
+from amalthea_uros._internal.files import (
+    FileEncodingError,
+    FileError,
+    FileTooLargeError,
+    decode,
+    encode,
+    marked_encoding,
+    read_bytes,
+    read_text,
+    write_bytes,
+    write_text,
+)
+
+
+def test_text_survives_writing_and_reading(tmp_path):
+    write_text(tmp_path / "a.txt", "größer\r\n")
+    assert (tmp_path / "a.txt").read_bytes() == b"gr\xc3\xb6\xc3\x9fer\r\n"
+    assert read_text(tmp_path / "a.txt") == "größer\r\n"
+
+
+def test_a_byte_order_mark_is_not_part_of_the_text(tmp_path):
+    (tmp_path / "a.txt").write_bytes(b"\xef\xbb\xbfa")
+    assert read_text(tmp_path / "a.txt") == "a"
+
+
+def test_what_is_not_utf_8_is_refused(tmp_path):
+    (tmp_path / "a.txt").write_bytes(b"ab\xff")
+    with pytest.raises(FileEncodingError, match=r"not UTF-8 \(byte 2\)"):
+        read_text(tmp_path / "a.txt")
+
+
+def test_the_limit_is_the_largest_size_that_is_read(tmp_path):
+    (tmp_path / "a").write_bytes(b"12345")
+    assert read_bytes(tmp_path / "a", 5) == b"12345"
+    with pytest.raises(FileTooLargeError):
+        read_bytes(tmp_path / "a", 4)
+
+
+@pytest.mark.parametrize("name", ["none", "a\0b", "a" * 300])
+def test_a_file_that_cannot_be_read(name, tmp_path):
+    with pytest.raises(FileError):
+        read_bytes(tmp_path / name)
+
+
+def test_a_write_that_fails_leaves_the_old_content_and_no_other_file(tmp_path, monkeypatch):
+    def full(_descriptor):
+        raise OSError(28, "No space left on device")
+
+    (tmp_path / "a").write_bytes(b"old")
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(FileError, match="No space left on device"):
+        write_bytes(tmp_path / "a", b"new")
+    assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [("a", b"old")]
+
+
+def test_a_write_keeps_permissions_and_symbolic_links(tmp_path):
+    target, link = tmp_path / "target", tmp_path / "link"
+    target.write_bytes(b"old")
+    target.chmod(0o640)
+    link.symlink_to(target)
+    write_bytes(link, b"new")
+    assert link.is_symlink()
+    assert target.read_bytes() == b"new"
+    assert target.stat().st_mode & 0o777 == 0o640
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16-le", "utf-16-be"])
+def test_a_byte_order_mark_tells_the_encoding(encoding):
+    data = encode("<ä/>", encoding)
+    assert (marked_encoding(data) or "utf-8") == encoding
+    assert decode(data, encoding) == "<ä/>"
+
+
+def test_bytes_that_would_not_come_back_are_refused():
+    # UTF-7 has several spellings of one character; only one of them is written.
+    assert decode(b"a+AOQ-", "utf-7") == "aä"
+    with pytest.raises(UnicodeError):
+        decode(b"+AGE-", "utf-7")
