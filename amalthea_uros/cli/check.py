@@ -15,10 +15,12 @@ from amalthea_uros.cli.configuration import configuration_of
 from amalthea_uros.cli.output import Output, output_option
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.findings.baseline import baseline_text, read_baseline
+from amalthea_uros.findings.fingerprint import fingerprint
+from amalthea_uros.findings.suppression import is_suppressed
 from amalthea_uros.report.check import WRITERS, write_statistics
 from amalthea_uros.validate.rule import Profile
 from amalthea_uros.validate.selection import Selection
-from amalthea_uros.validate.suppress import baseline_text, fingerprint, is_ignored, read_baseline
 
 _SEVERITIES = list(map(str, Severity))
 
@@ -99,7 +101,7 @@ def command(
     findings = [
         finding
         for finding in told
-        if not (selection.is_ignored(finding.rule) or is_ignored(finding) or fingerprint(finding) in accepted)
+        if not (selection.is_ignored(finding.rule) or is_suppressed(finding) or fingerprint(finding) in accepted)
     ]
     if write_baseline is not None:
         Output("baseline", write_baseline).write(partial(_write, baseline_text(findings)))

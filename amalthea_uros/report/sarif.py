@@ -10,9 +10,9 @@ from urllib.parse import quote
 
 from amalthea_uros import __version__
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.report.findings import relative
+from amalthea_uros.findings.fingerprint import fingerprint
+from amalthea_uros.report.findings import profile_name, relative
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.suppress import fingerprint
 
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 
@@ -35,17 +35,16 @@ def write_sarif(findings: Sequence[Finding], _model: str, stream: IO[str]) -> No
 
 
 def _rule(identifier: str) -> dict[str, Any]:
-    profile = registry.profile_of(identifier)
-    if profile is None:
+    kind = registry.kind(identifier)
+    if kind is None:
         return {"id": identifier}
-    rule = registry.rule(identifier)
     return {
-        "id": rule.id,
-        "shortDescription": {"text": rule.title},
-        "fullDescription": {"text": rule.rationale},
-        "help": {"text": rule.remedy},
-        "defaultConfiguration": {"level": _LEVELS[rule.severity]},
-        "properties": {"tags": [str(profile)]},
+        "id": kind.id,
+        "shortDescription": {"text": kind.title},
+        "fullDescription": {"text": kind.rationale},
+        "help": {"text": kind.remedy},
+        "defaultConfiguration": {"level": _LEVELS[kind.severity]},
+        "properties": {"tags": [profile_name(identifier)]},
     }
 
 

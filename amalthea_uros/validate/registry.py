@@ -8,6 +8,8 @@ from functools import cache
 from importlib import import_module
 from importlib.resources import files
 
+from amalthea_uros.findings import catalogue
+from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.validate.rule import Profile, Rule
 
 #: How a file says the id of its rule.
@@ -39,6 +41,11 @@ def rule(identifier: str) -> Rule:
         raise KeyError(identifier)
     found: Rule = import_module(f"amalthea_uros.validate.rules.{_folder(profile)}.{_module(identifier)}").RULE
     return found
+
+
+def kind(identifier: str) -> FindingKind | None:
+    """What all findings of an id have in common, whether a rule reports them or not; None if there are none."""
+    return catalogue.find(identifier) if profile_of(identifier) is None else rule(identifier)
 
 
 def _module(identifier: str) -> str:

@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
 
@@ -25,23 +26,16 @@ class Profile(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Rule:
-    """What is to be known of a rule; what finds it is elsewhere: the XML schema, or the building of a system from a description.
+class Rule(FindingKind):
+    """A kind of finding that `amuros check` can be asked for; what finds it is elsewhere: the XML schema, or the building of a system.
+
+    The ids of APP4MC's own rules are APP4MC's.
 
     Attributes
     ----------
-    id : unique; those of APP4MC's own rules are APP4MC's
-    title : what is wrong where the rule fires, in a few words
-    rationale : why that matters
-    remedy : what to do about it
-    fails, passes : what stands in a model, or in a description, in which the rule fires, or does not
+    fails, passes : content of a model, or of a description, in which the rule fires, or does not
     """
 
-    id: str
-    title: str
-    severity: Severity
-    rationale: str
-    remedy: str
     fails: str
     passes: str
 
