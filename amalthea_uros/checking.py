@@ -17,16 +17,6 @@ from amalthea_uros.validate.rule import ModelRule, Profile
 
 StrPath = str | PathLike[str]
 
-#: What reading tells in general, and the rules that tell it of each object.
-_TOLD_BY_RULES = {
-    "XMI010": ("INC-IO-FEATURE",),
-    "XMI011": ("INC-IO-FEATURE",),
-    "XMI012": ("INC-IO-FEATURE",),
-    "XMI013": ("INC-IO-FEATURE",),
-    "XMI020": ("AM-EMF-INTRINSIC/proxy-resolves", "INC-IO-REF"),
-    "XMI021": ("AM-EMF-SCOPE", "INC-IO-NAME"),
-}
-
 
 def check(model: Model, rules: Iterable[str] | None = None) -> list[Finding]:
     """What is wrong with a model, by file and line.
@@ -62,10 +52,8 @@ def check_files(paths: Sequence[StrPath], rules: Collection[str]) -> list[Findin
     ReadError : a file cannot be read, or something in a description is wrong.
     """
     model, told = _read(paths)
-    findings = check(model, rules)
-    places = {(finding.rule, _line(finding)) for finding in findings}
-    general = [finding for finding in told if _is_wanted(finding, rules) and not _is_repeated(finding, places)]
-    return sorted([*general, *findings], key=by_place)
+    general = [finding for finding in told if _is_wanted(finding, rules)]
+    return sorted([*general, *check(model, rules)], key=by_place)
 
 
 def fix_files(paths: Sequence[StrPath], rules: Iterable[str]) -> Counter[str]:
@@ -114,12 +102,3 @@ def _is_wanted(finding: Finding, rules: Collection[str]) -> bool:
     """Whether a finding of reading or building belongs to no rule, or to one that is wanted and has no check of its own."""
     profile = registry.profile_of(finding.rule)
     return profile is None or (profile is Profile.MICRO_ROS and finding.rule in rules)
-
-
-def _is_repeated(finding: Finding, places: Collection[tuple[str, object]]) -> bool:
-    """Whether rules tell the same at the same line."""
-    return any((rule, _line(finding)) in places for rule in _TOLD_BY_RULES.get(finding.rule, ()))
-
-
-def _line(finding: Finding) -> tuple[Path, int | None] | None:
-    return (finding.location.path, finding.location.line) if finding.location is not None else None

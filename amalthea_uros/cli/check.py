@@ -17,7 +17,9 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings.baseline import baseline_text, read_baseline
 from amalthea_uros.findings.fingerprint import fingerprint
+from amalthea_uros.findings.presentation import present
 from amalthea_uros.findings.suppression import is_suppressed
+from amalthea_uros.findings.targets import TARGETS
 from amalthea_uros.report.check import WRITERS, write_statistics
 from amalthea_uros.validate.rule import Profile
 from amalthea_uros.validate.selection import Selection
@@ -106,10 +108,11 @@ def command(
     if write_baseline is not None:
         Output("baseline", write_baseline).write(partial(_write, baseline_text(findings)))
     model = " ".join(map(str, paths))
+    presentation = present(findings, _asked(selection, settings.targets))
     for output in outputs:
         writer = write_statistics if statistics and output.format == "text" else WRITERS[output.format]
-        output.write(partial(writer, findings, model))
-    sys.exit(2 if not is_readable else 1 if _fails(findings, fail_on or settings.fail_on) else 0)
+        output.write(partial(writer, presentation, model))
+    sys.exit(2 if not is_readable else 1 if _fails(presentation.shown, fail_on or settings.fail_on) else 0)
 
 
 def _selection(profiles: Sequence[str], selected: Sequence[str], ignored: Sequence[str]) -> Selection:
@@ -117,6 +120,12 @@ def _selection(profiles: Sequence[str], selected: Sequence[str], ignored: Sequen
     for pattern in selection.unknown():
         raise click.BadParameter(f"there is no rule {pattern!r}; `amuros rules` lists them", param_hint="--select")
     return selection
+
+
+def _asked(selection: Selection, targets: Iterable[str]) -> set[str]:
+    """The target tools whose findings count: those of the settings and profiles, and those of which rules are selected."""
+    selected = TARGETS if selection.selected else ()
+    return {*targets, *map(str, selection.profiles), *(target.name for target in selected)}
 
 
 def _groups(paths: Iterable[Path], each: bool) -> Iterable[list[Path]]:

@@ -22,14 +22,23 @@ class Group:
 
     Attributes
     ----------
-    finding : of the findings of the flaw the one whose message says most, with the highest severity of the group
-    same : the other findings of the same flaw
+    same : the findings of the flaw, the one whose message says most first
     consequences : findings that disappear together with these
     """
 
-    finding: Finding
-    same: tuple[Finding, ...] = ()
+    same: tuple[Finding, ...]
     consequences: tuple[Finding, ...] = ()
+
+    @property
+    def shown(self) -> Finding:
+        """The finding that says most, with the highest severity of the group."""
+        first = self.same[0]
+        return replace(first, severity=worst((*self.same, *self.consequences)) or first.severity)
+
+    @property
+    def also(self) -> tuple[str, ...]:
+        """The ids of the other findings of the same flaw."""
+        return tuple(dict.fromkeys(finding.rule for finding in self.same[1:]))
 
 
 def group(findings: Sequence[Finding]) -> list[Group]:
@@ -99,11 +108,9 @@ class _Flaws:
         self.members[first] = joined
 
 
-def _group(members: Sequence[_Item], effects: Iterable[_Item]) -> Group:
-    first, *others = (member.finding for member in members)
-    consequences = tuple(item.finding for item in sorted(effects, key=lambda item: item.position))
-    severity = worst((first, *others, *consequences)) or first.severity
-    return Group(replace(first, severity=severity), tuple(others), consequences)
+def _group(members: Iterable[_Item], effects: Iterable[_Item]) -> Group:
+    same = tuple(item.finding for item in members)
+    return Group(same, tuple(item.finding for item in sorted(effects, key=lambda item: item.position)))
 
 
 class _Index:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import IO, Any
 from urllib.parse import quote
 
 from amalthea_uros import __version__
-from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.findings.fingerprint import fingerprint
+from amalthea_uros.findings.presentation import Entry, Presentation
 from amalthea_uros.report.findings import profile_name, relative
 from amalthea_uros.validate import registry
 
@@ -20,14 +20,15 @@ _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: 
 _ROOT = "SRCROOT"
 
 
-def write_sarif(findings: Sequence[Finding], _model: str, stream: IO[str]) -> None:
+def write_sarif(presentation: Presentation, _model: str, stream: IO[str]) -> None:
     """One run, with the rules that fired and where."""
-    used = sorted({finding.rule for finding in findings})
+    entries = presentation.entries()
+    used = sorted({entry.finding.rule for entry in entries})
     run = {
         "tool": {"driver": {"name": "amuros", "version": __version__, "rules": [_rule(rule) for rule in used]}},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {_ROOT: {"uri": Path.cwd().as_uri() + "/"}},
-        "results": [_result(finding, used.index(finding.rule)) for finding in findings],
+        "results": [_result(entry, used.index(entry.finding.rule)) for entry in entries],
     }
     log = {"$schema": "https://json.schemastore.org/sarif-2.1.0.json", "version": "2.1.0", "runs": [run]}
     json.dump(log, stream, indent=2, ensure_ascii=False)
@@ -48,15 +49,19 @@ def _rule(identifier: str) -> dict[str, Any]:
     }
 
 
-def _result(finding: Finding, index: int) -> dict[str, Any]:
+def _result(entry: Entry, index: int) -> dict[str, Any]:
+    finding = entry.finding
     result: dict[str, Any] = {
         "ruleId": finding.rule,
         "ruleIndex": index,
-        "level": _LEVELS[finding.severity],
+        # Viewers and CI systems fail at levels; a tool that nobody asked for is no reason to.
+        "level": _LEVELS[finding.severity if entry.counts else Severity.INFO],
         "message": {"text": finding.message},
         # The same finding in another line is the same finding.
         "partialFingerprints": {"object/v1": fingerprint(finding)},
     }
+    if entry.part_of is not None:
+        result["properties"] = {"partOf": entry.part_of}
     if finding.location is not None:
         result["locations"] = [
             {"physicalLocation": _place(finding.location.path, finding.location.line, finding.location.column)}
