@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Finding, by_place
+from amalthea_uros.findings.grouping import Group
+from amalthea_uros.findings.presentation import present
+from amalthea_uros.findings.targets import Target
 from amalthea_uros.garbage import paused_garbage_collection
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.validate import registry
@@ -38,6 +41,16 @@ def check(model: Model, rules: Iterable[str] | None = None) -> list[Finding]:
             told = [finding for document in model.documents for finding in schema_findings(document)]
             findings += [finding for finding in told if finding.rule in chosen]
     return sorted(findings, key=by_place)
+
+
+def target_groups(model: Model, targets: Iterable[str]) -> Mapping[Target, Sequence[Group]]:
+    """What target tools make of a model, by flaw.
+
+    Parameters
+    ----------
+    targets : names of the tools
+    """
+    return present(check(model, registry.ids(map(Profile, targets)))).targets
 
 
 def check_files(paths: Sequence[StrPath], rules: Collection[str]) -> list[Finding]:

@@ -21,8 +21,10 @@ from amalthea_uros.findings.presentation import present
 from amalthea_uros.findings.suppression import is_suppressed
 from amalthea_uros.findings.targets import TARGETS
 from amalthea_uros.report.check import WRITERS, write_statistics
+from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import Profile
 from amalthea_uros.validate.selection import Selection
+from amalthea_uros.validate.user_rules import rules_of_file
 
 _SEVERITIES = list(map(str, Severity))
 
@@ -67,6 +69,14 @@ _RULES = _Several("RULE")
     "--select", "selected", type=_RULES, multiple=True, callback=_several, help="Only these rules; * stands for anything."
 )
 @click.option("--ignore", "ignored", type=_RULES, multiple=True, callback=_several, help="Not these rules.")
+@click.option(
+    "--rules",
+    "rule_files",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    metavar="FILE",
+    help="Also run the rules of a Python file, which is executed. May be repeated.",
+)
 @click.option("--fail-on", type=click.Choice(_SEVERITIES), help="From which severity on the exit code is 1; error by default.")
 @click.option("--each", is_flag=True, help="Every .amxmi file is a model of its own; otherwise they are one model together.")
 @click.option("--fix", is_flag=True, help="Repair what can be repaired in one way only, then check.")
@@ -79,6 +89,7 @@ def command(
     profiles: tuple[str, ...],
     selected: tuple[str, ...],
     ignored: tuple[str, ...],
+    rule_files: tuple[Path, ...],
     fail_on: str | None,
     each: bool,
     fix: bool,
@@ -94,7 +105,12 @@ def command(
     in `[check]` of amuros.toml; what is given here takes their place.
     """
     settings = configuration_of(paths[0])
-    selection = _selection(profiles or settings.profile, selected or settings.select, ignored or settings.ignore)
+    for file in rule_files:
+        registry.add(rules_of_file(file))
+    profiles = profiles or settings.profile
+    if profiles and rule_files:
+        profiles = (*profiles, str(Profile.USER))
+    selection = _selection(profiles, selected or settings.select, ignored or settings.ignore)
     groups = list(_groups(paths, each))
     if fix:
         _fix(groups, selection)

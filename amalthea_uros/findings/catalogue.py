@@ -18,6 +18,7 @@ FAMILIES = {
     "EXT": "Extracting the performance model",
     "ANA": "Analysing response times",
     "CHN": "Analysing event chains",
+    "RUL": "Loading user-made rules",
     "CHK": "Running rules",
 }
 

@@ -8,10 +8,15 @@ from amalthea_uros.diagnostics import Finding
 
 _QUOTED = re.compile(r"""['"<]([^'"<>]+)['">]""")
 
+#: What stands in a reference between the name of an object and its class.
+_TYPE = "?type="
+
 
 def names_in(finding: Finding) -> frozenset[str]:
-    """What a message names in quotes; of references only the name of the object."""
-    return frozenset(name.partition("?type=")[0] for name in _QUOTED.findall(finding.message))
+    """What a message names in quotes; where it quotes references, only the objects to which these refer."""
+    quoted = _QUOTED.findall(finding.message)
+    references = [name.partition(_TYPE)[0] for name in quoted if _TYPE in name]
+    return frozenset(references or quoted)
 
 
 def stems(names: frozenset[str]) -> frozenset[str]:

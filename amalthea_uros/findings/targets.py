@@ -71,8 +71,8 @@ def summary(target: Target, findings: Iterable[Finding]) -> str:
 
     >>> from amalthea_uros.diagnostics import Finding, Severity
     >>> summary(TARGETS[0], [Finding("INC-CO-KIND", Severity.WARNING, "the constraint 'C' is dropped")])
-    "INCHRON's importer: drops or changes 1; --profile inchron shows them"
+    "INCHRON's importer: drops or changes 1; amuros check --profile inchron shows them"
     """
     count = Counter(finding.severity for finding in findings)
     effects = [f"{effect} {count[severity]}" for severity, effect in target.effects.items() if count[severity]]
-    return f"{target.title}: {', '.join(effects)}; --profile {target.name} shows them"
+    return f"{target.title}: {', '.join(effects)}; amuros check --profile {target.name} shows them"

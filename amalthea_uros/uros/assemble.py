@@ -19,7 +19,6 @@ from amalthea_uros.uros.application import add_callbacks, add_interrupt
 from amalthea_uros.uros.callbacks import Callback, callbacks_of
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.hardware import controller
-from amalthea_uros.uros.importers import note_losses
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.load import add_load
 from amalthea_uros.uros.members import members_of
@@ -94,7 +93,6 @@ def _assembly(work: Work) -> Assembly:
         advice = "Give callbacks under 'application', or 'tasks'."
         work.notes.error("APP009", "there is nothing that runs", work.description.location(), advice)
     system = _system(work, callbacks)
-    note_losses(system, work.notes)
     response_time = middleware.initialisation.response_time
     return Assembly(
         system=system,

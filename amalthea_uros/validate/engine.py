@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from pathlib import Path
+from traceback import extract_tb
 
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import Milder, ModelRule
+
+_REPORT = "Report it to the author of the rule, with the model if possible."
 
 
 def run(model: Model, rules: Iterable[ModelRule]) -> list[Finding]:
@@ -18,16 +22,27 @@ def run(model: Model, rules: Iterable[ModelRule]) -> list[Finding]:
 
 
 def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
-    for element in concerned(rule, context):
+    try:
+        elements = list(concerned(rule, context))
+    except Exception as error:
+        yield Finding("CHK001", Severity.ERROR, f"the rule {rule.id} failed: {_reason(error)}", help=_REPORT)
+        return
+    for element in elements:
         try:
             messages = list(rule.check(element, context))
         except Exception as error:
-            message = f"the rule {rule.id} failed at this object: {type(error).__name__}: {error}"
-            yield _finding("CHK001", Severity.ERROR, message, element, "Please report it, with the model if you can.")
+            message = f"the rule {rule.id} failed at this object: {_reason(error)}"
+            yield _finding("CHK001", Severity.ERROR, message, element, _REPORT)
             continue
         for told in messages:
             message, severity = told if isinstance(told, Milder) else (told, rule.severity)
             yield _finding(rule.id, severity, message, element, rule.remedy)
+
+
+def _reason(error: Exception) -> str:
+    """What went wrong, and where in the code of the rule."""
+    frame = extract_tb(error.__traceback__)[-1]
+    return f"{type(error).__name__}: {error} ({Path(frame.filename).name}:{frame.lineno})"
 
 
 def concerned(rule: ModelRule, context: Context) -> Iterator[Element]:

@@ -14,7 +14,7 @@ from amalthea_uros.validate.context import Context
 
 
 class Profile(StrEnum):
-    """A set of rules for a purpose; the folder in which they are has its name."""
+    """A set of rules for a purpose; the folder in which they are has its name, those of users are elsewhere."""
 
     SCHEMA = "schema"
     EMF = "emf"
@@ -23,6 +23,7 @@ class Profile(StrEnum):
     INCHRON = "inchron"
     TIMING = "timing"
     MICRO_ROS = "micro-ros"
+    USER = "user"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
