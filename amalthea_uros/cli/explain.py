@@ -15,7 +15,7 @@ def command(identifier: str) -> None:
     kind = registry.kind(identifier) or registry.kind(identifier.upper())
     if kind is None:
         raise click.BadParameter(f"unknown rule or finding {identifier!r}; `amuros rules` lists the rules")
-    profile = registry.profile_of(kind.id)
+    profile = registry.profile_of(kind.id) if isinstance(kind, Rule) else None
     click.echo(f"{kind.id}: {kind.title} ({kind.severity}{f', profile {profile}' if profile else ''})\n")
     click.echo(f"{kind.rationale}\n{kind.remedy}")
     if isinstance(kind, ModelRule):

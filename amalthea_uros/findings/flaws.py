@@ -37,11 +37,13 @@ class Flaw:
     sources : the one whose message says most comes first
     same_name : an object can have the flaw several times; only findings that name the same thing belong together
     in_file : they may be reported at different places of a file
+    of_events : some of them name functions, others the events of these
     """
 
     sources: tuple[Source, ...]
     same_name: bool = False
     in_file: bool = False
+    of_events: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +72,8 @@ def _sources(*items: str | Source) -> tuple[Source, ...]:
     return tuple(Source(item) if isinstance(item, str) else item for item in items)
 
 
-def _flaw(*items: str | Source, same_name: bool = False, in_file: bool = False) -> Flaw:
-    return Flaw(_sources(*items), same_name, in_file)
+def _flaw(*items: str | Source, same_name: bool = False, in_file: bool = False, of_events: bool = False) -> Flaw:
+    return Flaw(_sources(*items), same_name, in_file, of_events)
 
 
 FLAWS = (
@@ -116,7 +118,7 @@ FLAWS = (
     _flaw(_required("serverRunnable"), "INC-SW-SERVER"),
     _flaw(Source("AM-EMF-INTRINSIC/required-feature"), "INC-SW-REF"),
     # Chains and constraints
-    _flaw("TIM-CHAIN-CARRIED", "UR130", "CHN002", same_name=True, in_file=True),
+    _flaw("TIM-CHAIN-CARRIED", "UR130", "CHN002", same_name=True, in_file=True, of_events=True),
     _flaw("AM-Constraints-EventChain", "INC-EC-SEQ"),
     _flaw(_required("stimulus", "response"), "INC-EC-ENDS"),
     _flaw(_required("scope"), "INC-LC-SCOPE"),

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from amalthea_uros.diagnostics import Finding, worst
 from amalthea_uros.findings.flaws import CONSEQUENCES, FLAWS, Consequence, Flaw, Source
-from amalthea_uros.findings.naming import likeness, names_in, stems
+from amalthea_uros.findings.naming import likeness, names_in, names_of_events
 
 #: Findings whose object is not the qualified name of an object of the model.
 _WITHOUT_OBJECT = ("XSD001",)
@@ -116,52 +116,57 @@ def _group(members: Iterable[_Item], effects: Iterable[_Item]) -> Group:
 class _Index:
     """Finds what may belong to a finding: what is reported at the same place, about the same object or name."""
 
-    def __init__(self, in_file: bool, same_name: bool) -> None:
+    def __init__(self, in_file: bool, same_name: bool, of_events: bool = False) -> None:
         self.in_file = in_file
         self.same_name = same_name
+        self.of_events = of_events
         self._found: dict[Hashable, list[list[_Item]]] = defaultdict(list)
 
     def add(self, cluster: list[_Item]) -> None:
         """Add findings that belong together, to be found by the first of them."""
         item = cluster[0]
-        place = item.place(self.in_file)
-        keys: Iterable[Hashable] = stems(names_in(item.finding)) if self.same_name else (item.object, None)
+        keys = self._names(item) if self.same_name else (item.object, None)
         for key in keys:
-            self._found[place, key].append(cluster)
+            self._found[item.place(self.in_file), key].append(cluster)
 
-    def near(self, item: _Item) -> Iterator[list[_Item]]:
+    def near(self, item: _Item) -> list[list[_Item]]:
         """The findings that may belong to another one, the most similar ones first."""
         place = item.place(self.in_file)
+        keys: Iterable[Hashable] = (None,) if self.in_file or not item.object else (item.object, "")
         if self.same_name:
-            keys: Iterable[Hashable] = stems(names_in(item.finding))
-        else:
-            keys = (None,) if self.in_file or not item.object else (item.object, "")
+            keys = self._names(item)
         found = {id(cluster): cluster for key in keys for cluster in self._found.get((place, key), ())}
         fitting = (cluster for cluster in found.values() if self._fits(cluster[0], item))
-        return iter(sorted(fitting, key=lambda cluster: _closeness(cluster[0], item), reverse=True))
+        return sorted(fitting, key=lambda cluster: self._closeness(cluster[0], item), reverse=True)
+
+    def _names(self, item: _Item) -> frozenset[str]:
+        names = names_in(item.finding)
+        return names_of_events(names) if self.of_events else names
 
     def _fits(self, one: _Item, other: _Item) -> bool:
         if self.in_file:
-            return not self.same_name or likeness(names_in(one.finding), names_in(other.finding)) == 1
+            return not self.same_name or self._likeness(one, other) == 1
         return "" in (one.object, other.object) or one.object == other.object
 
+    def _closeness(self, one: _Item, other: _Item) -> tuple[float, int]:
+        """How much two findings have in common: names, then lines."""
+        return self._likeness(one, other), -abs(one.line - other.line)
 
-def _closeness(one: _Item, other: _Item) -> tuple[float, int]:
-    """How much two findings have in common: names, then lines."""
-    return likeness(names_in(one.finding), names_in(other.finding)), -abs(one.line - other.line)
+    def _likeness(self, one: _Item, other: _Item) -> float:
+        return likeness(names_in(one.finding), names_in(other.finding), self.of_events)
 
 
 def _clusters(flaw: Flaw, by_id: _ById) -> list[list[_Item]]:
     """Findings that report the same flaw; each source reports it once."""
     if sum(source.id in by_id for source in flaw.sources) < 2:
         return []
-    index = _Index(flaw.in_file, flaw.same_name)
+    index = _Index(flaw.in_file, flaw.same_name, flaw.of_events)
     clusters: list[list[_Item]] = []
     for source in flaw.sources:
         fresh = []
         for item in _of(source, by_id):
-            open_clusters = (cluster for cluster in index.near(item) if cluster[-1].finding.rule != source.id)
-            if (cluster := next(open_clusters, None)) is not None:
+            cluster = next((near for near in index.near(item) if near[-1].finding.rule != source.id), None)
+            if cluster is not None:
                 cluster.append(item)
             else:
                 fresh.append([item])
@@ -199,9 +204,9 @@ def _caused(consequence: Consequence, by_id: _ById) -> Iterator[tuple[_Item, _It
     for source in consequence.effects:
         for item in _of(source, by_id):
             is_explained = not explained.isdisjoint((item.file, name) for name in names_in(item.finding))
-            near = None if is_explained else next(index.near(item), None)
-            if near is not None:
-                yield item, near[0]
+            near = [] if is_explained else index.near(item)
+            if near:
+                yield item, near[0][0]
 
 
 def _root(causes: Mapping[int, int], flaw: int) -> int:

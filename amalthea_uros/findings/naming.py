@@ -19,15 +19,19 @@ def names_in(finding: Finding) -> frozenset[str]:
     return frozenset(references or quoted)
 
 
-def stems(names: frozenset[str]) -> frozenset[str]:
-    """Names with what comes before their last underscore: an event `Task_start` is one of `Task`."""
+def names_of_events(names: frozenset[str]) -> frozenset[str]:
+    """Names, and what comes before their last underscore: an event `Sense_start` is one of the function `Sense`."""
     return names | {name.rpartition("_")[0] for name in names if "_" in name.strip("_")}
 
 
-def likeness(one: frozenset[str], other: frozenset[str]) -> float:
-    """Which part of the names of two findings is the same, from 0 to 1; of the shorter list all must be found for 1."""
-    fewer, more = sorted((one, other), key=len)
-    if not fewer:
+def likeness(one: frozenset[str], other: frozenset[str], of_events: bool = False) -> float:
+    """Which part of the names of two findings is the same, 1 if all names of one of them are.
+
+    Parameters
+    ----------
+    of_events : a function is the same as one of its events
+    """
+    if not one or not other:
         return 0.0
-    found = sum(name in stems(more) or not stems(frozenset((name,))).isdisjoint(more) for name in fewer)
-    return found / len(fewer)
+    more = names_of_events if of_events else frozenset[str]
+    return max(len(one & more(other)) / len(one), len(other & more(one)) / len(other))

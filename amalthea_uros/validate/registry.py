@@ -91,7 +91,8 @@ def _installed() -> Mapping[str, ModelRule]:
 
 def kind(identifier: str) -> FindingKind | None:
     """What all findings of an id have in common, whether a rule reports them or not; None if there are none."""
-    return catalogue.find(identifier) if profile_of(identifier) is None else rule(identifier)
+    found = catalogue.find(identifier)
+    return found if found is not None or profile_of(identifier) is None else rule(identifier)
 
 
 def _module(identifier: str) -> str:

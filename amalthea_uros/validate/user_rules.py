@@ -5,14 +5,17 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterable, Iterator
-from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from traceback import extract_tb
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.validate.rule import ModelRule
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 GROUP = "amuros.rules"
 
@@ -57,6 +60,8 @@ def installed_rules() -> list[ModelRule]:
     ------
     ReadError : those of a package cannot be loaded.
     """
+    from importlib.metadata import entry_points
+
     return [rule for entry in sorted(entry_points(group=GROUP)) for rule in _rules_of_package(entry)]
 
 

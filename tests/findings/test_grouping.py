@@ -1,5 +1,6 @@
 """One flaw, one finding: which findings are shown together, and which ones stay apart."""
 
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -127,6 +128,19 @@ def test_the_tables_name_findings_that_exist():
     sources = [source for flaw in FLAWS for source in flaw.sources]
     sources += [source for item in CONSEQUENCES for source in (item.cause, *item.effects)]
     assert not [source.id for source in sources if registry.kind(source.id) is None]
+
+
+def test_no_finding_is_the_cause_of_its_cause():
+    effects = {}
+    for item in CONSEQUENCES:
+        effects.setdefault(item.cause.id, set()).update(source.id for source in item.effects)
+    TopologicalSorter(effects).prepare()
+
+
+def test_names_that_only_start_alike_are_different():
+    scheduler = finding("AM-Mapping-Scheduler-ProcessingUnit", "no scheduler allocation refers to 'S'", "S")
+    task = finding("DOC-Task-Affinity-Intersection", "'T' runs nowhere: 'S_1' decides for none of its cores", "T", 2)
+    assert len(shown(scheduler, task)) == 2
 
 
 @given(
