@@ -33,6 +33,7 @@ gen: $(READY)
 	$(BIN)/python tools/generate_app_schema.py
 	$(BIN)/python tools/generate_app_reference.py
 	$(BIN)/python tools/generate_rules.py
+	$(BIN)/python tools/generate_findings.py
 	$(BIN)/python samples/executor.py samples/executor.amxmi
 	for sample in samples/*.yaml; do $(BIN)/amuros build $$sample --output json=/dev/null; done
 	$(BIN)/python tools/draw_terminal.py docs/images/info.svg info executor.amxmi

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Finding, by_place
+from amalthea_uros.findings.grouping import Group
+from amalthea_uros.findings.presentation import present
+from amalthea_uros.findings.targets import Target
 from amalthea_uros.garbage import paused_garbage_collection
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.validate import registry
@@ -16,16 +19,6 @@ from amalthea_uros.validate.repair import repair
 from amalthea_uros.validate.rule import ModelRule, Profile, SystemRule
 
 StrPath = str | PathLike[str]
-
-#: What reading tells in general, and the rules that tell it of each object.
-_TOLD_BY_RULES = {
-    "XMI010": ("INC-IO-FEATURE",),
-    "XMI011": ("INC-IO-FEATURE",),
-    "XMI012": ("INC-IO-FEATURE",),
-    "XMI013": ("INC-IO-FEATURE",),
-    "XMI020": ("AM-EMF-INTRINSIC/proxy-resolves", "INC-IO-REF"),
-    "XMI021": ("AM-EMF-SCOPE", "INC-IO-NAME"),
-}
 
 
 def check(model: Model, rules: Iterable[str] | None = None) -> list[Finding]:
@@ -56,6 +49,16 @@ def check(model: Model, rules: Iterable[str] | None = None) -> list[Finding]:
     return sorted(findings, key=by_place)
 
 
+def target_groups(model: Model, targets: Iterable[str]) -> Mapping[Target, Sequence[Group]]:
+    """What target tools make of a model, by flaw.
+
+    Parameters
+    ----------
+    targets : names of the tools
+    """
+    return present(check(model, registry.ids(map(Profile, targets)))).targets
+
+
 def check_files(paths: Sequence[StrPath], rules: Collection[str]) -> list[Finding]:
     """What is wrong with an `app.yaml`, or with AMALTHEA models; what is odd about the files themselves included.
 
@@ -68,10 +71,8 @@ def check_files(paths: Sequence[StrPath], rules: Collection[str]) -> list[Findin
     ReadError : a file cannot be read, or something in a description is wrong.
     """
     model, told = _read(paths)
-    findings = check(model, rules)
-    places = {(finding.rule, _line(finding)) for finding in findings}
-    general = [finding for finding in told if _is_wanted(finding, rules) and not _is_repeated(finding, places)]
-    return sorted([*general, *findings], key=by_place)
+    general = [finding for finding in told if _is_wanted(finding, rules)]
+    return sorted([*general, *check(model, rules)], key=by_place)
 
 
 def fix_files(paths: Sequence[StrPath], rules: Iterable[str]) -> Counter[str]:
@@ -120,12 +121,3 @@ def _is_wanted(finding: Finding, rules: Collection[str]) -> bool:
     """Whether a finding of reading or building belongs to no rule, or to one that is wanted and has no check of its own."""
     profile = registry.profile_of(finding.rule)
     return profile is None or (profile is Profile.MICRO_ROS and finding.rule in rules)
-
-
-def _is_repeated(finding: Finding, places: Collection[tuple[str, object]]) -> bool:
-    """Whether rules tell the same at the same line."""
-    return any((rule, _line(finding)) in places for rule in _TOLD_BY_RULES.get(finding.rule, ()))
-
-
-def _line(finding: Finding) -> tuple[Path, int | None] | None:
-    return (finding.location.path, finding.location.line) if finding.location is not None else None

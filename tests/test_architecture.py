@@ -16,6 +16,7 @@ PACKAGE = "amalthea_uros"
         ("resources", ()),
         ("garbage", ()),
         ("units", ()),
+        ("findings", ("diagnostics", "errors", "units")),
         ("perf", ("units", "diagnostics")),
         ("spec", ("units", "diagnostics", "errors", "resources")),
         ("uros", ("spec", "perf", "units", "diagnostics", "errors")),
@@ -23,11 +24,14 @@ PACKAGE = "amalthea_uros"
         ("metamodel", ("units", "diagnostics")),
         ("difference", ("metamodel",)),
         ("xmi", ("diagnostics", "errors", "garbage", "resources", "metamodel")),
-        ("validate", ("units", "metamodel", "diagnostics")),
+        ("validate", ("units", "metamodel", "perf", "timing", "graphs", "diagnostics", "errors", "findings")),
         ("analyze", ("perf", "units", "diagnostics", "compiled")),
         ("pipeline", ("bridge", "diagnostics", "garbage", "metamodel", "perf", "spec", "uros", "xmi")),
-        ("checking", ("diagnostics", "garbage", "metamodel", "pipeline", "validate", "xmi")),
-        ("report", ("diagnostics", "metamodel", "difference", "perf", "units", "uros", "pipeline", "analyze", "validate")),
+        ("checking", ("diagnostics", "findings", "garbage", "metamodel", "pipeline", "validate", "xmi")),
+        (
+            "report",
+            ("diagnostics", "findings", "metamodel", "difference", "perf", "units", "uros", "pipeline", "analyze", "validate"),
+        ),
     ],
 )
 def test_a_room_imports_only_what_it_may(room, allowed):

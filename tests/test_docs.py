@@ -50,16 +50,10 @@ def test_the_links_of_a_page(page):
         assert (page.parent / target).exists(), target
 
 
-RULE = r"(?:XMI|XSD|YML|CFG|APP|UR|BLD|EXT|ANA|CHN|CHK)\d{3}|(?:INC|TIM|AM|EMF|TA|DOC)-[A-Za-z/.-]+"
-
-
-def test_every_finding_is_documented():
-    told = {rule for path in (ROOT / "amalthea_uros").rglob("*.py") for rule in re.findall(rf'"({RULE})"', path.read_text())}
-    documented = re.findall(rf"^\| ({RULE}) \|", (ROOT / "docs" / "findings.md").read_text(), re.MULTILINE)
-    rules = set(registry.ids())
+def test_every_rule_is_documented():
     page = (ROOT / "docs" / "check.md").read_text()
-    assert re.findall(rf"^\| ({RULE}) \|", page, re.MULTILINE) == list(registry.ids())
-    assert sorted((told - rules) | (set(documented) & rules)) == sorted(documented)
+    rules = page[page.index("## The rules") :]
+    assert re.findall(r"^\| ([A-Z][A-Za-z0-9/.-]+) \|", rules, re.MULTILINE) == list(registry.ids())
 
 
 def test_the_number_of_rules():

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import click
 
+from amalthea_uros.cli.configuration import configuration_of
 from amalthea_uros.cli.output import Output, output_option
+from amalthea_uros.findings.targets import summary
 from amalthea_uros.metamodel.versions import supported_versions, version_key
 from amalthea_uros.pipeline import build
 from amalthea_uros.report.build import write_json, write_text
@@ -34,10 +36,17 @@ def command(
     What was decided is shown: the period and priority of each task, the messages on the bus, the start of the middleware and its
     static pools. Mistakes are told all at once, each with its place, and then nothing is written.
     """
+    targets = configuration_of(description).targets
     built = build(description, version, platform)
     path = target or description.with_suffix(".amxmi")
     built.model.documents[0].path = path
     save(built.model, compress=compress)
-    Terminal(sys.stderr).findings(built.assembly.findings)
+    terminal = Terminal(sys.stderr)
+    terminal.findings(built.assembly.findings)
+    if targets:
+        from amalthea_uros.checking import target_groups
+
+        for tool, groups in target_groups(built.model, targets).items():
+            terminal.line(summary(tool, (group.shown for group in groups)))
     for output in outputs:
         output.write(partial(write_json if output.format == "json" else write_text, built, path, description))

@@ -15,10 +15,16 @@ from amalthea_uros.cli.configuration import configuration_of
 from amalthea_uros.cli.output import Output, output_option
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.findings.baseline import baseline_text, read_baseline
+from amalthea_uros.findings.fingerprint import fingerprint
+from amalthea_uros.findings.presentation import present
+from amalthea_uros.findings.suppression import is_suppressed
+from amalthea_uros.findings.targets import TARGETS
 from amalthea_uros.report.check import WRITERS, write_statistics
+from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import Profile
 from amalthea_uros.validate.selection import Selection
-from amalthea_uros.validate.suppress import baseline_text, fingerprint, is_ignored, read_baseline
+from amalthea_uros.validate.user_rules import rules_of_file
 
 _SEVERITIES = list(map(str, Severity))
 
@@ -63,6 +69,14 @@ _RULES = _Several("RULE")
     "--select", "selected", type=_RULES, multiple=True, callback=_several, help="Only these rules; * stands for anything."
 )
 @click.option("--ignore", "ignored", type=_RULES, multiple=True, callback=_several, help="Not these rules.")
+@click.option(
+    "--rules",
+    "rule_files",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    metavar="FILE",
+    help="Also run the rules of a Python file, which is executed. May be repeated.",
+)
 @click.option("--fail-on", type=click.Choice(_SEVERITIES), help="From which severity on the exit code is 1; error by default.")
 @click.option("--each", is_flag=True, help="Every .amxmi file is a model of its own; otherwise they are one model together.")
 @click.option("--fix", is_flag=True, help="Repair what can be repaired in one way only, then check.")
@@ -75,6 +89,7 @@ def command(
     profiles: tuple[str, ...],
     selected: tuple[str, ...],
     ignored: tuple[str, ...],
+    rule_files: tuple[Path, ...],
     fail_on: str | None,
     each: bool,
     fix: bool,
@@ -90,7 +105,12 @@ def command(
     in `[check]` of amuros.toml; what is given here takes their place.
     """
     settings = configuration_of(paths[0])
-    selection = _selection(profiles or settings.profile, selected or settings.select, ignored or settings.ignore)
+    for file in rule_files:
+        registry.add(rules_of_file(file))
+    profiles = profiles or settings.profile
+    if profiles and rule_files:
+        profiles = (*profiles, str(Profile.USER))
+    selection = _selection(profiles, selected or settings.select, ignored or settings.ignore)
     groups = list(_groups(paths, each))
     if fix:
         _fix(groups, selection)
@@ -99,15 +119,16 @@ def command(
     findings = [
         finding
         for finding in told
-        if not (selection.is_ignored(finding.rule) or is_ignored(finding) or fingerprint(finding) in accepted)
+        if not (selection.is_ignored(finding.rule) or is_suppressed(finding) or fingerprint(finding) in accepted)
     ]
     if write_baseline is not None:
         Output("baseline", write_baseline).write(partial(_write, baseline_text(findings)))
     model = " ".join(map(str, paths))
+    presentation = present(findings, _asked(selection, settings.targets))
     for output in outputs:
         writer = write_statistics if statistics and output.format == "text" else WRITERS[output.format]
-        output.write(partial(writer, findings, model))
-    sys.exit(2 if not is_readable else 1 if _fails(findings, fail_on or settings.fail_on) else 0)
+        output.write(partial(writer, presentation, model))
+    sys.exit(2 if not is_readable else 1 if _fails(presentation.shown, fail_on or settings.fail_on) else 0)
 
 
 def _selection(profiles: Sequence[str], selected: Sequence[str], ignored: Sequence[str]) -> Selection:
@@ -115,6 +136,12 @@ def _selection(profiles: Sequence[str], selected: Sequence[str], ignored: Sequen
     for pattern in selection.unknown():
         raise click.BadParameter(f"there is no rule {pattern!r}; `amuros rules` lists them", param_hint="--select")
     return selection
+
+
+def _asked(selection: Selection, targets: Iterable[str]) -> set[str]:
+    """The target tools whose findings count: those of the settings and profiles, and those of which rules are selected."""
+    selected = TARGETS if selection.selected else ()
+    return {*targets, *map(str, selection.profiles), *(target.name for target in selected)}
 
 
 def _groups(paths: Iterable[Path], each: bool) -> Iterable[list[Path]]:

@@ -11,6 +11,7 @@ from typing import Any
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.findings.targets import TARGETS
 from amalthea_uros.validate.rule import Profile
 
 #: Where settings may stand, and under which tables of the file; the first one that has them counts.
@@ -23,10 +24,12 @@ class Configuration:
 
     Attributes
     ----------
+    targets : the tools for which the models are written
     baseline : relative to the folder of the file
     """
 
     profile: tuple[str, ...] = ()
+    targets: tuple[str, ...] = ()
     select: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
     fail_on: str = str(Severity.ERROR)
@@ -88,9 +91,15 @@ class _Reader:
         return tuple(value)
 
     def profiles(self, key: str, value: Any) -> tuple[str, ...]:
+        return self.names_among(key, value, tuple(map(str, Profile)))
+
+    def targets(self, key: str, value: Any) -> tuple[str, ...]:
+        return self.names_among(key, value, tuple(target.name for target in TARGETS))
+
+    def names_among(self, key: str, value: Any, allowed: tuple[str, ...]) -> tuple[str, ...]:
         names = self.names(key, value)
         for name in names:
-            self.one_of(key, name, tuple(map(str, Profile)))
+            self.one_of(key, name, allowed)
         return names
 
     def severity(self, key: str, value: Any) -> str:
@@ -109,6 +118,7 @@ class _Reader:
 
 _READERS: Mapping[str, Any] = {
     "profile": _Reader.profiles,
+    "targets": _Reader.targets,
     "select": _Reader.names,
     "ignore": _Reader.names,
     "fail-on": _Reader.severity,

@@ -1,32 +1,31 @@
-"""`amuros explain`: what a rule is about."""
+"""`amuros explain`: what a finding means."""
 
 from __future__ import annotations
 
-import re
-
 import click
 
-from amalthea_uros.resources import resource_folder
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import ModelRule, Rule
 
 
 @click.command("explain")
 @click.argument("identifier", metavar="RULE")
 def command(identifier: str) -> None:
-    """Tell what a rule looks for, why, and what to do, with an example; or what another finding means."""
-    profile = registry.profile_of(identifier)
-    if profile is None:
-        click.echo(_finding(identifier.upper()))
-        return
-    rule = registry.rule(identifier)
-    click.echo(f"{rule.id}: {rule.title} ({rule.severity}, profile {profile})\n")
-    click.echo(f"{rule.rationale}\n{rule.remedy}\n")
-    if isinstance(rule, ModelRule):
-        click.echo(f"It looks at: {_targets(rule)}\n")
-        if rule.beside is not None:
-            click.echo(f"Beside another file of the model with\n{rule.beside.rstrip()}\n")
-    click.echo(f"It fires at:\n{rule.fails.rstrip()}\n\nIt does not at:\n{rule.passes.rstrip()}")
+    """Explain a rule or another kind of finding: what it reports, why that matters, what to do, and an example."""
+    kind = registry.kind(identifier) or registry.kind(identifier.upper())
+    if kind is None:
+        raise click.BadParameter(f"unknown rule or finding {identifier!r}; `amuros rules` lists the rules")
+    profile = registry.profile_of(kind.id) if isinstance(kind, Rule) else None
+    click.echo(f"{kind.id}: {kind.title} ({kind.severity}{f', profile {profile}' if profile else ''})\n")
+    click.echo(f"{kind.rationale}\n{kind.remedy}")
+    if isinstance(kind, ModelRule):
+        click.echo(f"\nIt looks at: {_targets(kind)}")
+        if kind.beside is not None:
+            click.echo(f"\nBeside another file of the model with\n{kind.beside.rstrip()}")
+    if kind.fails:
+        click.echo(f"\nIt fires at:\n{kind.fails.rstrip()}")
+    if isinstance(kind, Rule):
+        click.echo(f"\nIt does not at:\n{kind.passes.rstrip()}")
 
 
 def _targets(rule: ModelRule) -> str:
@@ -35,12 +34,3 @@ def _targets(rule: ModelRule) -> str:
     versions = [f" from AMALTHEA {rule.since} on"] if rule.since else []
     versions += [f" up to AMALTHEA {rule.until}"] if rule.until else []
     return ", ".join(target.__name__ for target in targets) + "".join(versions)
-
-
-def _finding(identifier: str) -> str:
-    """What the page of the findings says of one that no rule makes."""
-    page = (resource_folder("docs") / "findings.md").read_text(encoding="utf-8")
-    found = re.search(rf"^\| {re.escape(identifier)} \| ([^|]*) \| (.*) \|$", page, re.MULTILINE)
-    if found is None:
-        raise click.BadParameter(f"there is no rule {identifier!r}; `amuros rules` lists them")
-    return f"{identifier}: {found[2]} ({found[1]})"

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import IO
 
-from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.findings.presentation import Presentation
 from amalthea_uros.report.findings import relative
 
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 
 
-def write_github(findings: Sequence[Finding], _model: str, stream: IO[str]) -> None:
-    """A workflow command for each finding."""
-    for finding in findings:
+def write_github(presentation: Presentation, _model: str, stream: IO[str]) -> None:
+    """A workflow command for each flaw."""
+    for finding in presentation.shown:
         place = finding.location
         where = []
         if place is not None:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import IO
 from xml.etree import ElementTree
 
 from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.findings.presentation import Presentation
 from amalthea_uros.report.findings import profile_name
 
 
-def write_junit(findings: Sequence[Finding], model: str, stream: IO[str]) -> None:
+def write_junit(presentation: Presentation, model: str, stream: IO[str]) -> None:
     """A test case for each rule that fired; it fails if the rule is more than information."""
     by_rule: dict[str, list[Finding]] = {}
-    for finding in findings:
+    for finding in (entry.finding for entry in presentation.entries() if entry.counts):
         by_rule.setdefault(finding.rule, []).append(finding)
     failing = {rule for rule, found in by_rule.items() if any(f.severity is not Severity.INFO for f in found)}
     suites = ElementTree.Element("testsuites")

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import IO, Any
 from urllib.parse import quote
 
 from amalthea_uros import __version__
-from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.report.findings import relative
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.findings.fingerprint import fingerprint
+from amalthea_uros.findings.presentation import Entry, Presentation
+from amalthea_uros.report.findings import profile_name, relative
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.suppress import fingerprint
 
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 
@@ -20,14 +20,15 @@ _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: 
 _ROOT = "SRCROOT"
 
 
-def write_sarif(findings: Sequence[Finding], _model: str, stream: IO[str]) -> None:
+def write_sarif(presentation: Presentation, _model: str, stream: IO[str]) -> None:
     """One run, with the rules that fired and where."""
-    used = sorted({finding.rule for finding in findings})
+    entries = presentation.entries()
+    used = sorted({entry.finding.rule for entry in entries})
     run = {
         "tool": {"driver": {"name": "amuros", "version": __version__, "rules": [_rule(rule) for rule in used]}},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {_ROOT: {"uri": Path.cwd().as_uri() + "/"}},
-        "results": [_result(finding, used.index(finding.rule)) for finding in findings],
+        "results": [_result(entry, used.index(entry.finding.rule)) for entry in entries],
     }
     log = {"$schema": "https://json.schemastore.org/sarif-2.1.0.json", "version": "2.1.0", "runs": [run]}
     json.dump(log, stream, indent=2, ensure_ascii=False)
@@ -35,29 +36,32 @@ def write_sarif(findings: Sequence[Finding], _model: str, stream: IO[str]) -> No
 
 
 def _rule(identifier: str) -> dict[str, Any]:
-    profile = registry.profile_of(identifier)
-    if profile is None:
+    kind = registry.kind(identifier)
+    if kind is None:
         return {"id": identifier}
-    rule = registry.rule(identifier)
     return {
-        "id": rule.id,
-        "shortDescription": {"text": rule.title},
-        "fullDescription": {"text": rule.rationale},
-        "help": {"text": rule.remedy},
-        "defaultConfiguration": {"level": _LEVELS[rule.severity]},
-        "properties": {"tags": [str(profile)]},
+        "id": kind.id,
+        "shortDescription": {"text": kind.title},
+        "fullDescription": {"text": kind.rationale},
+        "help": {"text": kind.remedy},
+        "defaultConfiguration": {"level": _LEVELS[kind.severity]},
+        "properties": {"tags": [profile_name(identifier)]},
     }
 
 
-def _result(finding: Finding, index: int) -> dict[str, Any]:
+def _result(entry: Entry, index: int) -> dict[str, Any]:
+    finding = entry.finding
     result: dict[str, Any] = {
         "ruleId": finding.rule,
         "ruleIndex": index,
-        "level": _LEVELS[finding.severity],
+        # Viewers and CI systems fail at levels; a tool that nobody asked for is no reason to.
+        "level": _LEVELS[finding.severity if entry.counts else Severity.INFO],
         "message": {"text": finding.message},
         # The same finding in another line is the same finding.
         "partialFingerprints": {"object/v1": fingerprint(finding)},
     }
+    if entry.part_of is not None:
+        result["properties"] = {"partOf": entry.part_of}
     if finding.location is not None:
         result["locations"] = [
             {"physicalLocation": _place(finding.location.path, finding.location.line, finding.location.column)}

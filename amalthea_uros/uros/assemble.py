@@ -23,7 +23,6 @@ from amalthea_uros.uros.chain_elements import chain_elements
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.hardware import controller_of
-from amalthea_uros.uros.importers import note_losses
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
 from amalthea_uros.uros.names import check_unique_names
@@ -95,7 +94,6 @@ def _assembly(context: AssemblyContext) -> Assembly:
         message = "no callback, task or interrupt service routine is defined"
         context.notes.error("APP009", message, context.description.location(), advice)
     system = _system(context, callbacks)
-    note_losses(system, context.notes)
     response_time = middleware.initialisation.response_time
     return Assembly(
         system=system,

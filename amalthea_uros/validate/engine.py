@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from pathlib import Path
+from traceback import extract_tb
 
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.element import Element
@@ -12,6 +14,8 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import Downgraded, ModelRule, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
+
+_REPORT = "Report it to the author of the rule, with the model if possible."
 
 
 def run(model: Model, rules: Iterable[ModelRule]) -> list[Finding]:
@@ -30,8 +34,7 @@ def _system_findings(rule: SystemRule, context: SystemContext) -> Iterator[Findi
     try:
         problems = list(rule.check(context))
     except Exception as error:
-        message = f"the rule {rule.id} failed: {type(error).__name__}: {error}"
-        yield Finding("CHK001", Severity.ERROR, message, help="Please report it, with the model if you can.")
+        yield Finding("CHK001", Severity.ERROR, f"the rule {rule.id} failed: {_reason(error)}", help=_REPORT)
         return
     for item, message, name, severity in problems:
         object_name = name or (item.name if isinstance(item, Named) else "")
@@ -39,18 +42,27 @@ def _system_findings(rule: SystemRule, context: SystemContext) -> Iterator[Findi
 
 
 def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
-    for element in concerned(rule, context):
+    try:
+        elements = list(concerned(rule, context))
+    except Exception as error:
+        yield Finding("CHK001", Severity.ERROR, f"the rule {rule.id} failed: {_reason(error)}", help=_REPORT)
+        return
+    for element in elements:
         try:
             messages = list(rule.check(element, context))
         except Exception as error:
-            text = f"rule {rule.id} failed on this object: {type(error).__name__}: {error}"
-            yield _finding(
-                "CHK001", Severity.ERROR, text, element, "Report this as a bug in amuros, with the model if possible."
-            )
+            failed = f"the rule {rule.id} failed at this object: {_reason(error)}"
+            yield _finding("CHK001", Severity.ERROR, failed, element, _REPORT)
             continue
         for message in messages:
             text, severity = message if isinstance(message, Downgraded) else (message, rule.severity)
             yield _finding(rule.id, severity, text, element, rule.remedy)
+
+
+def _reason(error: Exception) -> str:
+    """What went wrong, and where in the code of the rule."""
+    frame = extract_tb(error.__traceback__)[-1]
+    return f"{type(error).__name__}: {error} ({Path(frame.filename).name}:{frame.lineno})"
 
 
 def concerned(rule: ModelRule, context: Context) -> Iterator[Element]:

@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf.named import Located
 from amalthea_uros.validate.context import Context
@@ -15,7 +16,7 @@ from amalthea_uros.validate.system_context import SystemContext
 
 
 class Profile(StrEnum):
-    """A set of rules for a purpose, in the folder of the same name."""
+    """A set of rules for a purpose; the folder in which they are has its name, those of users are elsewhere."""
 
     SCHEMA = "schema"
     EMF = "emf"
@@ -24,26 +25,20 @@ class Profile(StrEnum):
     INCHRON = "inchron"
     TIMING = "timing"
     MICRO_ROS = "micro-ros"
+    USER = "user"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Rule:
-    """The description of a rule. Its check is elsewhere: in the XML schema, or in the code that builds a system from a description.
+class Rule(FindingKind):
+    """A kind of finding that `amuros check` can be asked for; what finds it is elsewhere: the XML schema, or the building of a system.
+
+    The ids of APP4MC's own rules are APP4MC's.
 
     Attributes
     ----------
-    id : unique id; rules of APP4MC keep the id that APP4MC uses
-    title : the problem, as a short noun phrase
-    rationale : the consequence of the problem
-    remedy : how to solve the problem, as an imperative
-    fails, passes : content of a model, or a description, with and without a finding of the rule
+    fails, passes : content of a model, or of a description, in which the rule fires, or does not
     """
 
-    id: str
-    title: str
-    severity: Severity
-    rationale: str
-    remedy: str
     fails: str
     passes: str
 

@@ -72,8 +72,23 @@ def test_what_was_decided_is_shown(advanced):
         in run.stdout
     )
     assert "factor  in            20 ms          16 B       3            1.62 ms" in run.stdout
-    assert "INC-CO-KIND info" in run.stderr
+    assert run.stderr == ""
     assert advanced.with_suffix(".amxmi").exists()
+
+
+def test_what_the_importer_changes_is_summed_up_where_it_is_the_target(advanced):
+    (advanced.parent / "amuros.toml").write_text('[check]\ntargets = ["inchron"]\n')
+    run = amuros("build", advanced)
+    assert run.returncode == 0
+    assert run.stderr == "INCHRON's importer: drops or changes 1; amuros check --profile inchron shows them\n"
+
+
+def test_findings_are_shown_with_their_lines(advanced, tmp_path):
+    advanced.write_text(advanced.read_text().replace("reads: [memory_2, input]", "reads: [memory_2, outputs]"))
+    run = amuros("build", advanced, "--output", f"json={tmp_path / 'built.json'}")
+    (finding,) = json.loads((tmp_path / "built.json").read_text())["findings"]
+    assert (finding["rule"], finding["line"]) == ("APP008", 17)
+    assert "APP008 warning" in run.stderr
 
 
 def test_the_same_for_programs(advanced, tmp_path):
@@ -81,8 +96,8 @@ def test_the_same_for_programs(advanced, tmp_path):
     assert run.returncode == 0
     built = json.loads((tmp_path / "built.json").read_text())
     assert built["choices"][1]["period_ps"] == 20 * 10**9
-    assert built["messages"][0]["transmission_time_ps"] == 3 * 135 * 4_000_000
-    assert built["findings"][0]["line"] == 21
+    assert built["messages"][0]["bus_time_ps"] == 3 * 135 * 4_000_000
+    assert built["findings"] == []
 
 
 def test_mistakes_are_told_and_nothing_is_written(advanced, tmp_path):

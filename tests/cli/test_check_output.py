@@ -8,6 +8,8 @@ from junitparser import JUnitXml
 from support import DATA, MODEL
 from test_cli import amuros
 
+from amalthea_uros.validate.rule import Profile
+
 SCHEMA = json.loads((DATA / "sarif-2.1.0-part.schema.json").read_text())
 
 
@@ -21,12 +23,16 @@ def model(tmp_path):
     return path
 
 
+#: Findings of all severities count only where the importer is asked for.
+ALL = ("--profile", ",".join(Profile))
+
+
 def found(model):
-    return json.loads(amuros("check", model, "--output", "json", cwd=model.parent.parent).stdout)
+    return json.loads(amuros("check", model, *ALL, "--output", "json", cwd=model.parent.parent).stdout)
 
 
 def test_sarif_is_valid(model):
-    run = amuros("check", model, "--output", "sarif", cwd=model.parent.parent)
+    run = amuros("check", model, *ALL, "--output", "sarif", cwd=model.parent.parent)
     log = json.loads(run.stdout)
     jsonschema.Draft7Validator(SCHEMA, format_checker=jsonschema.FormatChecker()).validate(log)
     (part,) = log["runs"]
@@ -45,7 +51,7 @@ def test_sarif_is_valid(model):
 def test_a_file_outside_of_the_current_folder_has_an_absolute_uri(model, tmp_path):
     other = tmp_path / "other"
     other.mkdir()
-    log = json.loads(amuros("check", model, "--output", "sarif", cwd=other).stdout)
+    log = json.loads(amuros("check", model, *ALL, "--output", "sarif", cwd=other).stdout)
     jsonschema.Draft7Validator(SCHEMA, format_checker=jsonschema.FormatChecker()).validate(log)
     places = [result["locations"][0]["physicalLocation"]["artifactLocation"] for result in log["runs"][0]["results"]]
     assert {place["uri"] for place in places} == {model.as_uri()}
@@ -53,7 +59,7 @@ def test_a_file_outside_of_the_current_folder_has_an_absolute_uri(model, tmp_pat
 
 def test_junit_is_read_as_ci_systems_do(model, tmp_path):
     path = tmp_path / "result.xml"
-    amuros("check", model, "--output", f"junit={path}")
+    amuros("check", model, *ALL, "--output", f"junit={path}")
     findings = found(model)["findings"]
     (suite,) = JUnitXml.fromfile(str(path))
     cases = {case.name: case for case in suite}
@@ -79,7 +85,20 @@ def test_json_has_the_names_on_which_scripts_rely(model):
     assert result.keys() >= {"amuros", "model", "assumptions", "findings"}
     assert result["model"] == str(model)
     for finding in result["findings"]:
-        assert finding.keys() == {"rule", "severity", "message", "help", "file", "line", "column", "object", "profile"}
+        assert finding.keys() == {
+            "rule",
+            "severity",
+            "message",
+            "help",
+            "file",
+            "line",
+            "column",
+            "object",
+            "profile",
+            "fingerprint",
+            "part_of",
+            "counts",
+        }
         assert finding["severity"] in ("error", "warning", "info")
         assert finding["line"] >= 1
 

@@ -1,0 +1,52 @@
+"""Findings of extracting the performance model from an AMALTHEA model."""
+
+from __future__ import annotations
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.findings.kind import FindingKind
+
+KINDS = (
+    FindingKind(
+        id="EXT001",
+        title="objects that are not taken into account",
+        severity=Severity.INFO,
+        rationale="Objects of this class have no counterpart in the performance model, so they do not influence the results.",
+        remedy="Nothing to do if they do not influence the timing.",
+        fails="""
+<mappingModel><runnableAllocation/></mappingModel>
+""",
+    ),
+    FindingKind(
+        id="EXT002",
+        title="name that occurs more than once",
+        severity=Severity.WARNING,
+        rationale="Results are reported by name, so the object gets a unique name there.",
+        remedy="Give each object a name of its own.",
+        fails="""
+<swModel><tasks name="T"/><tasks name="T"/></swModel>
+""",
+    ),
+    FindingKind(
+        id="EXT003",
+        title="reference to an object that is not taken into account",
+        severity=Severity.WARNING,
+        rationale=(
+            "The object is not part of the model, or was left out because it is incomplete. The reference is "
+            "treated as not set."
+        ),
+        remedy="Correct the reference, or complete the object.",
+        fails="""
+<swModel><tasks name="T" stimuli="S?type=SingleStimulus"/></swModel>
+""",
+    ),
+    FindingKind(
+        id="EXT004",
+        title="incomplete object that is left out",
+        severity=Severity.WARNING,
+        rationale="A value that the analysis needs is missing, so the object does not influence the results.",
+        remedy="Add the missing value.",
+        fails="""
+<mappingModel><taskAllocation/></mappingModel>
+""",
+    ),
+)

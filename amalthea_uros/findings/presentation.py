@@ -1,0 +1,67 @@
+"""What is shown of the findings of a run: groups, and one line about each target tool that nobody asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from amalthea_uros.diagnostics import Finding, by_place
+from amalthea_uros.findings.fingerprint import fingerprint
+from amalthea_uros.findings.grouping import Group, group
+from amalthea_uros.findings.targets import Target, split
+
+
+class Entry(NamedTuple):
+    """A finding for programs.
+
+    Attributes
+    ----------
+    part_of : fingerprint of the finding under which it is shown, None for those that are shown themselves
+    counts : whether the exit code depends on it; not so for target tools that nobody asked for
+    """
+
+    finding: Finding
+    part_of: str | None
+    counts: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Presentation:
+    """The findings of a run as they are shown.
+
+    Attributes
+    ----------
+    groups : by flaw
+    targets : the same for each target tool that nobody asked for
+    """
+
+    groups: Sequence[Group]
+    targets: Mapping[Target, Sequence[Group]]
+
+    @property
+    def shown(self) -> list[Finding]:
+        """One finding for each flaw; the exit code depends on these."""
+        return [found.shown for found in self.groups]
+
+    def entries(self) -> list[Entry]:
+        """All findings by place."""
+        return sorted(self._entries(), key=lambda entry: by_place(entry.finding))
+
+    def _entries(self) -> Iterator[Entry]:
+        for counts, groups in ((True, self.groups), *((False, groups) for groups in self.targets.values())):
+            for found in groups:
+                first, *others = (*found.same, *found.consequences)
+                yield Entry(first, None, counts)
+                yield from (Entry(finding, fingerprint(first), counts) for finding in others)
+
+
+def present(findings: Sequence[Finding], asked: Collection[str] = ()) -> Presentation:
+    """The findings of a run as they are shown.
+
+    Parameters
+    ----------
+    asked : names of the target tools whose findings count
+    """
+    counting, targets = split(findings, asked)
+    return Presentation(group(counting), {target: group(found) for target, found in targets.items()})

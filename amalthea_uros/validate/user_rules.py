@@ -1,0 +1,120 @@
+"""Rules that users make: in a file of their own, or in an installed package with an entry point of the group `amuros.rules`."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from traceback import extract_tb
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import ReadError
+from amalthea_uros.validate.rule import ModelRule
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+GROUP = "amuros.rules"
+
+#: Ids are written in lists with commas, also in comments of a line.
+_ID = re.compile(r"[A-Za-z][\w./-]*")
+
+
+def rules_of_file(path: Path) -> list[ModelRule]:
+    """The rules that a Python file defines: those of its list `RULES`, or else all of the module. The file is executed.
+
+    Raises
+    ------
+    ReadError : the file cannot be read or executed, or defines no rule.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise _broken(f"the rules cannot be read: {error}", Location(path)) from None
+    module = ModuleType(f"amuros_rules_{path.stem}")
+    module.__file__ = str(path)
+    sys.modules[module.__name__] = module
+    try:
+        exec(compile(text, str(path), "exec"), module.__dict__)
+        return list(_rules_in(module))
+    except (Exception, SystemExit) as error:
+        raise _failed(error, path, text) from None
+
+
+def _failed(error: BaseException, path: Path, text: str) -> ReadError:
+    """What to raise when a file of rules cannot be executed."""
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        return _broken(f"the rules are not valid Python: {error.msg}", _location(path, text, error.lineno, error.offset))
+    lines = [frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(path)]
+    place = _location(path, text, lines[-1] if lines else None)
+    return _broken(f"the rules cannot be loaded: {type(error).__name__}: {error}", place)
+
+
+def installed_rules() -> list[ModelRule]:
+    """The rules of installed packages.
+
+    Raises
+    ------
+    ReadError : those of a package cannot be loaded.
+    """
+    from importlib.metadata import entry_points
+
+    return [rule for entry in sorted(entry_points(group=GROUP)) for rule in _rules_of_package(entry)]
+
+
+def check_id(rule: ModelRule, is_taken: bool) -> None:
+    """Refuse a rule whose id cannot be selected, or would be ambiguous.
+
+    Raises
+    ------
+    ReadError : the id is not usable.
+    """
+    if not isinstance(rule.id, str) or _ID.fullmatch(rule.id) is None:
+        message = f"{rule.id!r} cannot be the id of a rule"
+        raise _refused("RUL002", message, None, "Use letters, digits and any of _ . / -, for example ACME-001.")
+    if is_taken:
+        message = f"the id {rule.id!r} is already used by another rule or finding"
+        raise _refused("RUL002", message, None, "Give the rule an id of its own, for example with the name of the project.")
+
+
+def _rules_of_package(entry: EntryPoint) -> Iterable[ModelRule]:
+    try:
+        return list(_rules_in(entry.load()))
+    except (Exception, SystemExit) as error:
+        package = entry.dist.name if entry.dist is not None else entry.value
+        message = f"the rules of the package {package!r} cannot be loaded: {type(error).__name__}: {error}"
+        raise _broken(message, None) from None
+
+
+def _rules_in(source: object) -> Iterator[ModelRule]:
+    """The rules of a module, of a list, or a single one."""
+    if isinstance(source, ModelRule):
+        yield source
+        return
+    if isinstance(source, ModuleType):
+        named = (value for value in vars(source).values() if isinstance(value, ModelRule))
+        source = getattr(source, "RULES", None) or list(dict.fromkeys(named))
+    if not isinstance(source, list | tuple) or not source:
+        raise TypeError("there is no ModelRule, and no list RULES of some")
+    for rule in source:
+        if not isinstance(rule, ModelRule):
+            raise TypeError(f"RULES must contain instances of ModelRule, not {type(rule).__name__}")
+        yield rule
+
+
+def _location(path: Path, text: str, line: int | None, column: int | None = None) -> Location:
+    lines = text.split("\n")
+    if line is None or not 0 < line <= len(lines):
+        return Location(path)
+    return Location(path, line, column or 1, lines[line - 1])
+
+
+def _broken(message: str, location: Location | None) -> ReadError:
+    return _refused("RUL001", message, location, "Correct the file; docs/check.md has an example of a rule.")
+
+
+def _refused(identifier: str, message: str, location: Location | None, advice: str) -> ReadError:
+    return ReadError([Finding(identifier, Severity.ERROR, message, location, advice)])
