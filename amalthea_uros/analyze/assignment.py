@@ -64,7 +64,7 @@ class Proposal:
     reason: str = ""
 
 
-def propose(system: System, settings: Settings | None = None) -> list[Proposal]:
+def propose_priorities(system: System, settings: Settings | None = None) -> list[Proposal]:
     """Priorities for each core on which they decide."""
     known = prepare(system, settings)
     respond(known)

@@ -16,7 +16,7 @@ from amalthea_uros.analyze.notes import Notes
 from amalthea_uros.analyze.overheads import COUNTED
 from amalthea_uros.analyze.propagation import Propagation
 from amalthea_uros.analyze.requirements import judge, upper_response_limits
-from amalthea_uros.analyze.result import Analysis, ProcessorResult, ProcessResult, Verdict
+from amalthea_uros.analyze.result import Analysis, ProcessorResult, ProcessResult, Results, Verdict
 from amalthea_uros.analyze.settings import Memory, Settings
 from amalthea_uros.analyze.task import Response
 from amalthea_uros.perf.software import Preemption, Task
@@ -34,13 +34,13 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     responses = respond(known)
     _note_left_out(known, responses)
     limits = upper_response_limits(system)
-    processes = tuple(_process(name, known, responses.get(name), limits) for name in system.processes)
+    processes = Results(_process(name, known, responses.get(name), limits) for name in system.processes)
     evaluation = Evaluation(known, responses)
-    chains = tuple(_chains(evaluation))
+    chains = Results(_chains(evaluation))
     judged = judge(system, {process.name: process for process in processes}, known.notes)
-    requirements = (*judged, *Judge(evaluation, {chain.name: chain for chain in chains}).all())
+    requirements = Results((*judged, *Judge(evaluation, {chain.name: chain for chain in chains}).all()))
     return Analysis(
-        processors=tuple(_processors(known)),
+        processors=Results(_processors(known)),
         processes=processes,
         chains=chains,
         requirements=requirements,
@@ -63,6 +63,11 @@ def _chains(evaluation: Evaluation) -> Iterator[ChainResult]:
 
 def prepare(system: System, settings: Settings | None = None) -> Known:
     """What is known of a system before response times."""
+    if not isinstance(system, System):
+        raise TypeError(
+            f"expected a System, not {type(system).__name__}; extract(model).system is the system of an AMALTHEA model, "
+            "describe(path).system that of an app.yaml; analyze_files(path) takes either file"
+        )
     settings = settings or Settings()
     known = Known(system, settings)
     _note_settings(settings, known.notes)

@@ -12,7 +12,7 @@ from test_system import system, ticks
 from amalthea_uros import pipeline
 from amalthea_uros.analyze import levels
 from amalthea_uros.analyze.arrivals import Periodic as PeriodicArrivals
-from amalthea_uros.analyze.assignment import assign, propose
+from amalthea_uros.analyze.assignment import assign, propose_priorities
 from amalthea_uros.analyze.cost import Cost
 from amalthea_uros.analyze.sensitivity import greatest_scale, sensitivity
 from amalthea_uros.analyze.settings import Settings
@@ -105,7 +105,7 @@ def test_what_is_missed_is_met_again_with_less():
 
 def test_priorities_are_proposed_in_the_order_that_fits():
     built = tasks_on_a_core(("urgent", 100, 10, 12), ("slow", 400, 60, 200), ("middle", 200, 30, 50))
-    (proposal,) = propose(built)
+    (proposal,) = propose_priorities(built)
     assert proposal.current == {"urgent": 0, "slow": 1, "middle": 2}
     assert proposal.priorities == {"urgent": 2, "slow": 0, "middle": 1}
 
@@ -118,5 +118,5 @@ def test_priorities_are_proposed_in_the_order_that_fits():
     ],
 )
 def test_why_nothing_is_proposed(rows, reason):
-    (proposal,) = propose(tasks_on_a_core(*rows))
+    (proposal,) = propose_priorities(tasks_on_a_core(*rows))
     assert (proposal.priorities, proposal.reason) == (None, reason)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from system_strategies import systems
 
-from amalthea_uros.analyze.assignment import propose
+from amalthea_uros.analyze.assignment import propose_priorities
 from amalthea_uros.analyze.settings import Memory, Settings
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import conditions, hardware, mapping, os
@@ -365,4 +365,4 @@ def test_no_system_is_too_strange(system, memory):
     analysis = analyze_system(system, Settings(memory=memory))
     for process in analysis.processes:
         assert process.response is not None or process.reason
-    propose(system)
+    propose_priorities(system)

@@ -7,13 +7,13 @@ from io import StringIO
 from pathlib import Path
 
 import pytest
+from amalthea_uros.report.difference import write_text
 from click.testing import CliRunner
 
 from amalthea_uros.cli.diff import command
 from amalthea_uros.difference.comparison import difference
 from amalthea_uros.metamodel.classes import Amalthea, Label, SWModel
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.report.difference import write_text
 
 HEAD = (
     '<am:Amalthea xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"'

@@ -5,10 +5,10 @@ import sys
 
 import inchron
 import pytest
+from amalthea_uros.checking import check_files
 from support import MODEL, ROOT, SHARED
 
 from amalthea_uros import check, load
-from amalthea_uros.checking import check_files
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.validate import registry

@@ -3,31 +3,35 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from amalthea_uros import __version__
+from amalthea_uros._version import __version__
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report.findings import relative
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.suppress import fingerprint
 
+if TYPE_CHECKING:
+    from amalthea_uros.services.check import CheckResult
+
+RENDERS = ("CheckResult",)
+
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 
-#: What paths are relative to; viewers put the root of the repository in its place.
+#: The base of relative paths; viewers replace it by the root of the repository.
 _ROOT = "SRCROOT"
 
 
-def write_sarif(findings: Sequence[Finding], _model: str, stream: IO[str]) -> None:
-    """One run, with the rules that fired and where."""
-    used = sorted({finding.rule for finding in findings})
+def write(result: CheckResult, stream: IO[str]) -> None:
+    """Write one run, with the rules that fired and where."""
+    used = sorted({finding.rule for finding in result.findings})
     run = {
         "tool": {"driver": {"name": "amuros", "version": __version__, "rules": [_rule(rule) for rule in used]}},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {_ROOT: {"uri": Path.cwd().as_uri() + "/"}},
-        "results": [_result(finding, used.index(finding.rule)) for finding in findings],
+        "results": [_result(finding, used.index(finding.rule)) for finding in result.findings],
     }
     log = {"$schema": "https://json.schemastore.org/sarif-2.1.0.json", "version": "2.1.0", "runs": [run]}
     json.dump(log, stream, indent=2, ensure_ascii=False)
@@ -55,7 +59,7 @@ def _result(finding: Finding, index: int) -> dict[str, Any]:
         "ruleIndex": index,
         "level": _LEVELS[finding.severity],
         "message": {"text": finding.message},
-        # The same finding in another line is the same finding.
+        # A finding that moved to another line is the same finding.
         "partialFingerprints": {"object/v1": fingerprint(finding)},
     }
     if finding.location is not None:
