@@ -4,7 +4,7 @@ import pytest
 from inchron import problems
 from support import ROOT, SHARED
 
-from amalthea_uros import load, pipeline
+from amalthea_uros import build, load
 from amalthea_uros.cli.build import VERSIONS
 
 SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
@@ -20,7 +20,7 @@ def wishes(assembly):
 def test_a_sample(sample, version):
     if sample.stem == "drive-and-lift" and version == "1.2.0":
         pytest.skip("1.2.0 has no deadlines")
-    built = pipeline.build(sample, version)
+    built = build(sample, version)
     found = [problem for problem in problems(built.model) if problem[1] != "I"]
     assert [problem for problem in found if problem[1] == "E"] == []
     assert {rule for rule, _, _ in found} == wishes(built.assembly)
