@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import re
 from importlib import import_module
-from importlib.resources import files
+from pkgutil import iter_modules
 from typing import Any
 
 
 def rendered_in(folder: str) -> frozenset[str]:
     """The names of the result classes for which a folder has a module."""
-    entries = (entry.name for entry in files(__package__).joinpath(folder).iterdir())
-    stems = (name.removesuffix(".py") for name in entries if name.endswith(".py") and not name.startswith("_"))
-    return frozenset("".join(part.capitalize() for part in stem.split("_")) for stem in stems)
+    modules = iter_modules(import_module(f"{__package__}.{folder}").__path__)
+    return frozenset("".join(part.capitalize() for part in module.name.split("_")) for module in modules)
 
 
 def module_for(result: object, folder: str) -> Any:

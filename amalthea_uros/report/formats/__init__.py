@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container
 from importlib import import_module
-from importlib.resources import files
+from pkgutil import iter_modules
 from typing import IO, Any, Protocol, cast
 
 #: The format that people read; the default of every command.
@@ -29,10 +29,8 @@ class Format(Protocol):
 
 def formats_for(result: type) -> list[str]:
     """The names of the formats that can write a result, text first."""
-    entries = files(__name__).iterdir()
-    names = sorted(entry.name.removesuffix(".py") for entry in entries if entry.name.endswith(".py"))
-    found = [name for name in names if not name.startswith("_") and result.__name__ in _format(name).RENDERS]
-    return sorted(found, key=lambda name: name != TEXT)
+    names = sorted(module.name for module in iter_modules(__path__))
+    return sorted((name for name in names if result.__name__ in _format(name).RENDERS), key=lambda name: name != TEXT)
 
 
 def write(name: str, result: object, stream: IO[str]) -> None:
