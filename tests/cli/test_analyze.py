@@ -117,8 +117,8 @@ def test_sensitivity_and_priorities(tmp_path):
         f"json={tmp_path / 'r.json'}",
     )
     assert run.returncode == 0
-    assert "Execution times may be multiplied by at most" in run.stdout
-    assert "nothing is proposed: 'Executor_Task' has no deadline" in run.stdout
+    assert "Maximum factors on execution times" in run.stdout
+    assert "no proposal: 'Executor_Task' has no deadline" in run.stdout
     result = json.loads((tmp_path / "r.json").read_text())
     assert result["sensitivity"]["everything"] == pytest.approx(1000 / 29, rel=1e-3)
     assert result["priorities"][0]["proposed"] is None

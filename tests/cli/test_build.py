@@ -70,7 +70,7 @@ def test_what_was_decided_is_shown(advanced):
     assert (
         "Message_Factor    every 20 ms         1  Core_0  messages every 20 ms, longest period on offer that fits" in run.stdout
     )
-    assert "factor  in   20 ms          16 B       3   1.62 ms" in run.stdout
+    assert "factor  in         20 ms          16 B       3   1.62 ms" in run.stdout
     assert "INC-CO-KIND info" in run.stderr
     assert advanced.with_suffix(".amxmi").exists()
 

@@ -52,7 +52,7 @@ def _percent(load: Fraction | None) -> str:
 
 
 def _bar(processor: ProcessorResult) -> str:
-    """The worst load as a bar; what is above 100 % stands out of it."""
+    """The worst load as a bar, with an exclamation mark above 100 %."""
     if processor.worst is None:
         return ""
     filled = ceil(processor.worst * BAR)
@@ -127,21 +127,21 @@ def _margin(requirement: RequirementResult) -> str:
 def _sensitivity(terminal: Terminal, found: Sensitivity | None) -> None:
     if found is None:
         return
-    terminal.heading("Execution times may be multiplied by at most")
+    terminal.heading("Maximum factors on execution times")
     rows = [("all together", _factor(found.everything)), *((name, _factor(f)) for name, f in found.processes.items())]
-    terminal.table(("of", "factor"), rows, right=(1,))
+    terminal.table(("process", "factor"), rows, right=(1,))
 
 
 def _factor(factor: Fraction | None) -> str:
     if factor is None:
-        return "no factor helps"
+        return "none"
     return f"{float(factor):.3f}" if factor < GREATEST else f"{GREATEST} or more"
 
 
 def _proposal(terminal: Terminal, proposal: Proposal) -> None:
     terminal.heading(f"Priorities on {proposal.core}")
     if proposal.priorities is None:
-        terminal.line(f"  nothing is proposed: {proposal.reason}")
+        terminal.line(f"  no proposal: {proposal.reason}")
         return
     ordered = sorted(proposal.priorities.items(), key=lambda item: -item[1])
     rows = [(name, "?" if (now := proposal.current[name]) is None else str(now), str(to)) for name, to in ordered]

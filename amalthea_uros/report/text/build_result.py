@@ -71,7 +71,7 @@ def _traffic(terminal: Terminal, assembly: Assembly) -> None:
     if not assembly.traffic:
         return
     share = float(sum(item.share for item in assembly.traffic))
-    terminal.heading(f"Messages on the CAN bus ({share:.1%} of it at most)")
+    terminal.heading(f"Messages on the CAN bus (at most {share:.1%} of its capacity)")
     rows = [
         (
             item.message.topic,
@@ -83,16 +83,16 @@ def _traffic(terminal: Terminal, assembly: Assembly) -> None:
         )
         for item in assembly.traffic
     ]
-    headings = ("topic", "way", "every", "with headers", "frames", "bus time")
+    headings = ("topic", "direction", "every", "with headers", "frames", "bus time")
     terminal.table(headings, rows, right=(2, 3, 4, 5))
 
 
 def start_text(start: Initialisation) -> str:
     """How the middleware starts, in a sentence."""
-    text = f"{len(start.entities)} entities one after the other, {start.least_cycles} cycles ({time_text(start.least_time)}) or more"
+    text = f"{len(start.entities)} entities, one after the other: at least {start.least_cycles} cycles ({time_text(start.least_time)})"
     if start.most_cycles is None or start.most_time is None:
         return text
-    return f"{text}, {start.most_cycles} cycles ({time_text(start.most_time)}) at most"
+    return f"{text}, at most {start.most_cycles} cycles ({time_text(start.most_time)})"
 
 
 def _pools(terminal: Terminal, assembly: Assembly) -> None:

@@ -12,10 +12,10 @@ def write(explanation: Explanation, terminal: Terminal) -> None:
     process, shares = explanation.process, explanation.shares
     response, name = process.response, terminal.style(process.name, "1")
     if response is None:
-        terminal.line(f"{name}: its response time is not known: {process.reason}")
+        terminal.line(f"{name}: response time unknown: {process.reason}")
         return
     if response.worst is None:
-        terminal.line(f"{name}: its response time has no bound: {response.reason}")
+        terminal.line(f"{name}: response time unbounded: {response.reason}")
         return
     terminal.line(f"{name}: worst-case response time {time_text(response.worst)} ({response.claim})")
     terms = [(term, time_text(value)) for term, value in response.terms.items() if value]
@@ -23,4 +23,4 @@ def write(explanation: Explanation, terminal: Terminal) -> None:
     if shares:
         rows = [(share.name, share.jobs, time_text(share.time)) for share in shares]
         terminal.table(("interference by", "jobs", "time"), rows, right=(1, 2))
-    terminal.line(f"  {response.method} ({response.source}), {response.jobs} jobs looked at")
+    terminal.line(f"  {response.method} ({response.source}), {response.jobs} jobs examined")
