@@ -1,13 +1,17 @@
-"""AMALTHEA models (Eclipse APP4MC `.amxmi`) in Python.
+"""Timing models of micro-ROS and AMALTHEA (Eclipse APP4MC `.amxmi`): build, read, change, check, analyze.
 
 >>> import amalthea_uros as amuros
->>> model = amuros.load("app.amxmi")                                        # doctest: +SKIP
->>> model[amuros.Task, "Executor_Task"].multiple_task_activation_limit = 2  # doctest: +SKIP
->>> amuros.save(model, "app.amxmi")                                         # doctest: +SKIP
+>>> model = amuros.load("app.amxmi")                                           # doctest: +SKIP
+>>> model[amuros.am.Task, "Executor_Task"].multiple_task_activation_limit = 2  # doctest: +SKIP
+>>> amuros.save(model, "app.amxmi")                                            # doctest: +SKIP
 
-The names of this module are the public interface: `load` and `save`, the model and its documents, findings and errors, every
-AMALTHEA class and enumeration; `build` and `describe` for an `app.yaml`, `extract` and `build_model` between AMALTHEA models and
-systems of the generic performance model, `analyze_system` for response times; `check` for rules.
+This module is the public interface:
+
+- files: `load`, `save`, `check_files`, `analyze_files`, `build`, `describe`, `diff`, with their results
+- AMALTHEA models: `Model`, `check`, `extract`; all AMALTHEA classes are in `amuros.am`
+- systems of the generic performance model: `analyze_system`, `sensitivity`, `propose_priorities`, `paths`, `build_model`; their classes
+  are in `amuros.perf`
+- times and other quantities as text and numbers: `amuros.units`; exceptions: `amuros.errors`
 """
 
 from __future__ import annotations
@@ -15,76 +19,127 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from amalthea_uros._version import __version__ as __version__
+
 if TYPE_CHECKING:
+    from amalthea_uros import am as am
+    from amalthea_uros import errors as errors
+    from amalthea_uros import perf as perf
+    from amalthea_uros import units as units
+    from amalthea_uros.analyze.assignment import Proposal as Proposal
+    from amalthea_uros.analyze.assignment import propose_priorities as propose_priorities
     from amalthea_uros.analyze.results import Analysis as Analysis
+    from amalthea_uros.analyze.results import ChainResult as ChainResult
+    from amalthea_uros.analyze.results import Claim as Claim
+    from amalthea_uros.analyze.results import ProcessorResult as ProcessorResult
+    from amalthea_uros.analyze.results import ProcessResult as ProcessResult
+    from amalthea_uros.analyze.results import Quantity as Quantity
+    from amalthea_uros.analyze.results import RequirementResult as RequirementResult
+    from amalthea_uros.analyze.results import Response as Response
+    from amalthea_uros.analyze.results import Value as Value
+    from amalthea_uros.analyze.results import Verdict as Verdict
+    from amalthea_uros.analyze.sensitivity import Sensitivity as Sensitivity
+    from amalthea_uros.analyze.sensitivity import sensitivity as sensitivity
     from amalthea_uros.analyze.system import analyze_system as analyze_system
     from amalthea_uros.bridge.build import build_model as build_model
     from amalthea_uros.bridge.extract import Extraction as Extraction
     from amalthea_uros.bridge.extract import extract as extract
-    from amalthea_uros.checking import check as check
     from amalthea_uros.diagnostics import Finding as Finding
     from amalthea_uros.diagnostics import Location as Location
+    from amalthea_uros.diagnostics import Severity as Severity
     from amalthea_uros.errors import AmurosError as AmurosError
+    from amalthea_uros.errors import InvalidArgumentError as InvalidArgumentError
     from amalthea_uros.errors import ReadError as ReadError
     from amalthea_uros.errors import WriteError as WriteError
-    from amalthea_uros.metamodel.classes import *  # noqa: F403
     from amalthea_uros.metamodel.element import Element as Element
     from amalthea_uros.metamodel.model import Document as Document
     from amalthea_uros.metamodel.model import Model as Model
     from amalthea_uros.metamodel.model import Reference as Reference
-    from amalthea_uros.pipeline import Built as Built
-    from amalthea_uros.pipeline import build as build
-    from amalthea_uros.pipeline import describe as describe
+    from amalthea_uros.perf.software import Communication as Communication
+    from amalthea_uros.perf.system import System as System
+    from amalthea_uros.services.analyze import AnalysisResult as AnalysisResult
+    from amalthea_uros.services.analyze import analyze_files as analyze_files
+    from amalthea_uros.services.build import BuildResult as BuildResult
+    from amalthea_uros.services.build import build as build
+    from amalthea_uros.services.build import describe as describe
+    from amalthea_uros.services.check import CheckResult as CheckResult
+    from amalthea_uros.services.check import check as check
+    from amalthea_uros.services.check import check_files as check_files
+    from amalthea_uros.services.diff import DiffResult as DiffResult
+    from amalthea_uros.services.diff import diff as diff
+    from amalthea_uros.services.settings import CheckSettings as CheckSettings
+    from amalthea_uros.timing.dataflow.paths import paths as paths
+    from amalthea_uros.timing.settings import Memory as Memory
     from amalthea_uros.timing.settings import Settings as Settings
+    from amalthea_uros.units import parse_time as parse_time
     from amalthea_uros.uros.assemble import Assembly as Assembly
     from amalthea_uros.xmi.load import load as load
     from amalthea_uros.xmi.save import save as save
 
-__version__ = "0.1.0"
-
-_HOMES = {
-    "Finding": "diagnostics",
-    "Location": "diagnostics",
-    "AmurosError": "errors",
-    "ReadError": "errors",
-    "WriteError": "errors",
-    "Element": "metamodel.element",
-    "Document": "metamodel.model",
-    "Model": "metamodel.model",
-    "Reference": "metamodel.model",
-    "load": "xmi.load",
-    "save": "xmi.save",
-    "Analysis": "analyze.results",
-    "Assembly": "uros.assemble",
-    "Built": "pipeline",
-    "Extraction": "bridge.extract",
-    "Settings": "timing.settings",
-    "analyze_system": "analyze.system",
-    "build": "pipeline",
-    "check": "checking",
-    "build_model": "bridge.build",
-    "describe": "pipeline",
-    "extract": "bridge.extract",
+_NAMES = {
+    "analyze.assignment": ("Proposal", "propose_priorities"),
+    "analyze.results": (
+        "Analysis",
+        "ChainResult",
+        "Claim",
+        "ProcessResult",
+        "ProcessorResult",
+        "Quantity",
+        "RequirementResult",
+        "Response",
+        "Value",
+        "Verdict",
+    ),
+    "analyze.sensitivity": ("Sensitivity", "sensitivity"),
+    "analyze.system": ("analyze_system",),
+    "bridge.build": ("build_model",),
+    "bridge.extract": ("Extraction", "extract"),
+    "diagnostics": ("Finding", "Location", "Severity"),
+    "errors": ("AmurosError", "InvalidArgumentError", "ReadError", "WriteError"),
+    "metamodel.element": ("Element",),
+    "metamodel.model": ("Document", "Model", "Reference"),
+    "perf.software": ("Communication",),
+    "perf.system": ("System",),
+    "services.analyze": ("AnalysisResult", "analyze_files"),
+    "services.build": ("BuildResult", "build", "describe"),
+    "services.check": ("CheckResult", "check", "check_files"),
+    "services.diff": ("DiffResult", "diff"),
+    "services.settings": ("CheckSettings",),
+    "timing.dataflow.paths": ("paths",),
+    "timing.settings": ("Memory", "Settings"),
+    "units": ("parse_time",),
+    "uros.assemble": ("Assembly",),
+    "xmi.load": ("load",),
+    "xmi.save": ("save",),
 }
+_HOMES = {name: home for home, names in _NAMES.items() for name in names}
+_NAMESPACES = ("am", "errors", "perf", "units")
+
+__all__ = sorted([*_HOMES, *_NAMESPACES])
 
 
 def __getattr__(name: str) -> Any:
-    """Import what is asked for: the command line starts without the four hundred classes."""
-    if name in _HOMES:
-        value = getattr(import_module(f"amalthea_uros.{_HOMES[name]}"), name)
-    elif name == "__all__":
-        classes = import_module("amalthea_uros.metamodel.classes")
-        value = sorted({*_HOMES, *classes.__all__})
-    elif name.startswith("_"):
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    else:
-        classes = import_module("amalthea_uros.metamodel.classes")
-        if name not in classes.__all__:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        value = getattr(classes, name)
+    """Import a name when it is used: the command line starts without the four hundred AMALTHEA classes."""
+    if name in _NAMESPACES:
+        return import_module(f"{__name__}.{name}")
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{_advice(name)}")
+    value = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
     globals()[name] = value
     return value
 
 
+def _advice(name: str) -> str:
+    """Where a name may be found instead."""
+    if name.startswith("_"):
+        return ""
+    if name[:1].isupper() and name in import_module(f"{__name__}.am").__all__:
+        return f"; the AMALTHEA class is {__name__}.am.{name}"
+    from difflib import get_close_matches
+
+    near = get_close_matches(name, __all__, n=1)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
 def __dir__() -> list[str]:
-    return [*__getattr__("__all__"), "__version__"]
+    return [*__all__, "__version__"]

@@ -29,3 +29,7 @@ class ReadError(AmurosError):
 
 class WriteError(AmurosError):
     """A model cannot be written: values that the metamodel does not allow, or a place that cannot be written to."""
+
+
+class InvalidArgumentError(ValueError):
+    """An argument that cannot be right, such as a name that does not exist; the text says what was expected."""

@@ -11,7 +11,7 @@ import sys
 from dataclasses import dataclass
 
 import amalthea_uros as amuros
-from amalthea_uros import (
+from amalthea_uros.am import (
     ActivityGraph,
     Amalthea,
     DataSize,
@@ -112,7 +112,7 @@ def build() -> amuros.Model:
             ),
             stimuli_model=StimuliModel(stimuli=list(stimuli.values())),
             event_model=EventModel(events=[*events]),
-            constraints_model=amuros.ConstraintsModel(event_chains=chains, timing_constraints=[constraint]),
+            constraints_model=amuros.am.ConstraintsModel(event_chains=chains, timing_constraints=[constraint]),
             mapping_model=MappingModel(
                 scheduler_allocation=[SchedulerAllocation(scheduler=scheduler, responsibility=[core], executing_pu=core)],
                 task_allocation=[

@@ -1,7 +1,7 @@
 """What users may rely on, checked by mypy alone (see test_typing.py)."""
 
 import amalthea_uros as amuros
-from amalthea_uros import Preemption, Runnable, Task, Time
+from amalthea_uros.am import Preemption, Runnable, Task, Time
 
 model: amuros.Model = amuros.load("model.amxmi")
 found: Task | None = model.find(Task, "Executor_Task")
@@ -10,8 +10,8 @@ names: list[str | None] = [runnable.name for runnable in model.all(Runnable)]
 made = Task(name="t", preemption=Preemption.PREEMPTIVE)
 time = Time(10, "ms")
 value: int | None = time.value
-stimuli: list[amuros.Stimulus] = task.stimuli
-graph: amuros.ActivityGraph | None = task.activity_graph
+stimuli: list[amuros.am.Stimulus] = task.stimuli
+graph: amuros.am.ActivityGraph | None = task.activity_graph
 amuros.save(model, "model.amxmi")
 
 Task(name=3)  # type: ignore[arg-type]

@@ -4,15 +4,58 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from enum import StrEnum
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, SupportsIndex, TypeVar, overload
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.units import Frequency, Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.solution import Solution
+
+
+class HasName(Protocol):
+    """An object with a name."""
+
+    @property
+    def name(self) -> str:
+        """The name."""
+
+
+N = TypeVar("N", bound=HasName)
+
+
+class Results(tuple[N, ...]):
+    """Results in their order, also found by name: `results["Task_5ms"]`."""
+
+    __slots__ = ()
+
+    @overload
+    def __getitem__(self, key: SupportsIndex | str) -> N: ...
+    @overload
+    def __getitem__(self, key: slice) -> tuple[N, ...]: ...
+    def __getitem__(self, key: SupportsIndex | str | slice) -> N | tuple[N, ...]:
+        """The result with a name, or at an index.
+
+        Raises
+        ------
+        KeyError : there is none with that name; the text lists near names.
+        """
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        found = next((result for result in self if result.name == key), None)
+        if found is None:
+            near = get_close_matches(key, self.names, n=3)
+            advice = f"did you mean {', '.join(map(repr, near))}?" if near else f"known: {', '.join(self.names) or 'none'}"
+            raise KeyError(f"no result named {key!r}; {advice}")
+        return found
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names, in order."""
+        return tuple(result.name for result in self)
 
 
 class Claim(StrEnum):
@@ -200,12 +243,21 @@ class Analysis:
 
     solution: Solution = field(repr=False, compare=False)
 
-    processors: tuple[ProcessorResult, ...]
-    processes: tuple[ProcessResult, ...]
-    chains: tuple[ChainResult, ...]
-    requirements: tuple[RequirementResult, ...]
+    processors: Results[ProcessorResult]
+    processes: Results[ProcessResult]
+    chains: Results[ChainResult]
+    requirements: Results[RequirementResult]
     assumptions: tuple[str, ...]
     findings: tuple[Finding, ...]
+
+    def __getitem__(self, process: str) -> ProcessResult:
+        """The result of a process by its name.
+
+        Raises
+        ------
+        KeyError : there is none; the text lists near names.
+        """
+        return self.processes[process]
 
     @property
     def misses(self) -> bool:

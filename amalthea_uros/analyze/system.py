@@ -10,7 +10,7 @@ from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
 from amalthea_uros.analyze.chains.evaluate import Evaluation
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.requirements import judge
-from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessorResult, ProcessResult, Response, Verdict
+from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessorResult, ProcessResult, Response, Results, Verdict
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.system import System
@@ -24,18 +24,23 @@ from amalthea_uros.units import Time
 
 def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
     """The analysis of a system."""
+    if not isinstance(system, System):
+        raise TypeError(
+            f"expected a System, not {type(system).__name__}; extract(model).system is the system of an AMALTHEA model, "
+            "describe(path).system that of an app.yaml; analyze_files(path) takes either file"
+        )
     context = TimingContext.of(system, settings)
     solution = solve(context)
     _note_left_out(solution)
     limits = response_time_limits(system)
-    processes = tuple(_process(name, solution, limits) for name in system.processes)
+    processes = Results(_process(name, solution, limits) for name in system.processes)
     evaluation = Evaluation(solution)
-    chains = tuple(_chains(evaluation))
+    chains = Results(_chains(evaluation))
     judged = judge(system, {process.name: process for process in processes}, context.notes)
-    requirements = (*judged, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all())
+    requirements = Results((*judged, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
     return Analysis(
         solution=solution,
-        processors=tuple(_processors(solution)),
+        processors=Results(_processors(solution)),
         processes=processes,
         chains=chains,
         requirements=requirements,

@@ -1,28 +1,21 @@
-"""`amuros analyze`: response times, loads and verdicts."""
+"""`amuros analyze`: response times, loads, latencies and verdicts."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
-from amalthea_uros.analyze.assignment import propose_priorities
-from amalthea_uros.analyze.explanation import shares
-from amalthea_uros.analyze.sensitivity import sensitivity
-from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.cli.output import Output, output_option
+from amalthea_uros.cli.output import Output, output_option, show_findings, write_outputs
 from amalthea_uros.perf.software import Communication
-from amalthea_uros.pipeline import system_of
-from amalthea_uros.report.analysis import Extras, write_explanation, write_json, write_text
-from amalthea_uros.report.chains import write_chain
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.services.analyze import AnalysisResult, ChainDetail, Explanation, analyze_files, chain_detail, explain
 from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.units import Frequency, parse_frequency
+
+_COMMUNICATION = {str(how).lower(): how for how in Communication}
 
 
 class CoreFrequency(click.ParamType[tuple[str, Frequency]]):
@@ -40,7 +33,7 @@ class CoreFrequency(click.ParamType[tuple[str, Frequency]]):
         except ValueError as error:
             self.fail(str(error), param, ctx)
         if frequency <= 0:
-            self.fail("a frequency has to be greater than zero", param, ctx)
+            self.fail("a frequency must be greater than zero", param, ctx)
         return core, frequency
 
 
@@ -61,32 +54,48 @@ class ModeValue(click.ParamType[tuple[str, str]]):
 
 @click.command("analyze")
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL_OR_YAML...")
-@click.option("--frequency", "frequencies", multiple=True, type=CoreFrequency(), help="Clock of a core; may be repeated.")
-@click.option("--scale", type=click.FloatRange(min=0, min_open=True), default=1.0, help="Factor on all execution times.")
 @click.option(
-    "--mode", "modes", multiple=True, type=ModeValue(), help="Value of a mode label that does not change; may be repeated."
+    "--frequency",
+    "frequencies",
+    multiple=True,
+    type=CoreFrequency(),
+    help="Clock of a core, e.g. Core_0=300MHz; may be repeated.",
 )
+@click.option(
+    "--scale",
+    type=click.FloatRange(min=0, min_open=True),
+    default=1.0,
+    show_default=True,
+    help="Factor by which all execution times are multiplied.",
+)
+@click.option("--mode", "modes", multiple=True, type=ModeValue(), help="Constant value of a mode label; may be repeated.")
 @click.option(
     "--memory",
     type=click.Choice([str(memory) for memory in Memory]),
     default=str(Memory.NONE),
-    help="What accesses to labels cost: nothing, each its latency, or one copy per job.",
+    show_default=True,
+    help="Cost of label accesses: none, the latency of each access (explicit), or one copy per job (implicit).",
 )
-@click.option("--chain", "chain", metavar="CHAIN", help="Show the values of one event chain, and how they come about.")
+@click.option("--chain", metavar="CHAIN", help="Show all values of one event chain, and how its events are connected.")
 @click.option(
     "--communication",
-    type=click.Choice(["modelled", *(str(how).lower() for how in Communication)]),
+    type=click.Choice(["modelled", *_COMMUNICATION]),
     default="modelled",
+    show_default=True,
     help="When labels are read and written; modelled: as the model says, and implicit where it says nothing.",
 )
 @click.option(
-    "--method", type=click.Choice(["auto", "all"]), default="auto", help="Show the tightest values of chains, or all."
+    "--method",
+    type=click.Choice(["auto", "all"]),
+    default="auto",
+    show_default=True,
+    help="Show the tightest values of chains, or those of all methods.",
 )
-@click.option("--any-phase", is_flag=True, help="Let counters at which chains start begin at any of their occurrences.")
-@click.option("--explain", metavar="PROCESS", help="Show what the response time of a process is made of.")
+@click.option("--any-phase", is_flag=True, help="Analyze chains for all phases of the counters at which they start.")
+@click.option("--explain", "process", metavar="PROCESS", help="Show the terms of the response time of a process.")
 @click.option("--sensitivity", "with_sensitivity", is_flag=True, help="Show by how much execution times may grow.")
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
-@output_option("text", "json")
+@output_option(AnalysisResult)
 def command(
     paths: tuple[Path, ...],
     frequencies: tuple[tuple[str, Frequency], ...],
@@ -97,51 +106,34 @@ def command(
     communication: str,
     method: str,
     any_phase: bool,
-    explain: str | None,
+    process: str | None,
     with_sensitivity: bool,
     with_priorities: bool,
     outputs: tuple[Output, ...],
 ) -> None:
-    """Compute response times, loads and verdicts.
+    """Compute response times, loads, chain latencies and verdicts.
 
-    MODEL_OR_YAML is an app.yaml, or one or several .amxmi files or a folder with some. Each number comes with its method and what it
-    claims (exact, or a safe bound), and the assumptions are listed. Exit code 1 if a requirement or deadline is missed.
+    MODEL_OR_YAML is an app.yaml, or one or several .amxmi files or a folder with some. Each number comes with its method and its
+    claim (exact, or a safe bound), and the assumptions are listed. Exit code 1 if a requirement or deadline is missed.
     """
-    system, findings = system_of(paths)
-    _check_name("core", [core for core, _ in frequencies], system.cores)
-    _check_name("mode label", [label for label, _ in modes], [label.name for label in system.software.mode_labels])
-    _check_name("process", [explain] if explain is not None else [], system.processes)
-    _check_name("chain", [chain] if chain is not None else [], system.chains)
     settings = Settings(
         dict(frequencies),
         Fraction(str(scale)),
         modes=dict(modes),
         memory=Memory(memory),
-        communication=next((how for how in Communication if str(how).lower() == communication), None),
+        communication=_COMMUNICATION.get(communication),
         any_phase=any_phase,
     )
-    analysis = analyze_system(system, settings)
-    extras = Extras(
-        sensitivity=sensitivity(analysis) if with_sensitivity else None,
-        proposals=tuple(propose_priorities(analysis)) if with_priorities else None,
+    result = analyze_files(
+        paths, settings, with_sensitivity=with_sensitivity, with_priorities=with_priorities, all_methods=method == "all"
     )
-    Terminal(sys.stderr).findings((*findings, *analysis.findings))
-    for output in outputs:
-        if output.format == "json":
-            output.write(partial(write_json, analysis, extras, paths, findings, method == "all"))
-        elif explain is not None:
-            output.write(partial(write_explanation, analysis, explain, shares(analysis, explain)))
-        elif chain is not None:
-            output.write(partial(write_chain, analysis, chain, method == "all"))
-        else:
-            output.write(partial(write_text, analysis, extras))
-    sys.exit(1 if analysis.misses else 0)
+    as_text = _detail(result, process, chain)
+    show_findings(result.findings)
+    write_outputs(outputs, result, as_text)
+    sys.exit(1 if result.analysis.misses else 0)
 
 
-def _check_name(kind: str, names: Iterable[str], known: Iterable[str]) -> None:
-    """Refuse a name that the model does not have."""
-    existing = list(known)
-    for name in names:
-        if name not in existing:
-            said = f"those of the model are {', '.join(existing)}" if existing else "the model has none"
-            raise click.BadParameter(f"there is no {kind} {name!r}; {said}")
+def _detail(result: AnalysisResult, process: str | None, chain: str | None) -> Explanation | ChainDetail | None:
+    """What is shown instead of all tables."""
+    detail = chain_detail(result, chain) if chain is not None else None
+    return explain(result, process) if process is not None else detail

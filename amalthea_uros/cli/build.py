@@ -2,51 +2,44 @@
 
 from __future__ import annotations
 
-import sys
-from functools import partial
 from pathlib import Path
 
 import click
 
-from amalthea_uros.cli.configuration import configuration_of
-from amalthea_uros.cli.output import Output, output_option
-from amalthea_uros.findings.targets import summary
+from amalthea_uros.cli.output import Output, output_option, show_findings, show_summaries, write_outputs
 from amalthea_uros.metamodel.versions import supported_versions, version_key
-from amalthea_uros.pipeline import build
-from amalthea_uros.report.build import write_json, write_text
-from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.xmi.save import save
+from amalthea_uros.services.build import BuildResult, build_file
+from amalthea_uros.services.settings import project_settings
 
-#: Versions that can be written: older ones lack what a generated model is made of.
+#: Versions that can be written: older ones lack elements that a generated model needs.
 VERSIONS = [version for version in supported_versions() if version_key(version) >= (1, 2)]
 
 
 @click.command("build")
 @click.argument("description", type=click.Path(path_type=Path), metavar="APP.YAML")
-@click.option("-o", "--out", "target", type=click.Path(path_type=Path), help="The file to write; default: beside APP.YAML.")
-@click.option("--amalthea", "version", type=click.Choice(VERSIONS), default=VERSIONS[-1], show_default=True)
-@click.option("--platform", help="A platform to take instead of the one that APP.YAML names.")
+@click.option(
+    "-o", "--out", "target", type=click.Path(path_type=Path), help="The file to write; default: APP.amxmi beside APP.YAML."
+)
+@click.option(
+    "--amalthea",
+    "version",
+    type=click.Choice(VERSIONS),
+    default=VERSIONS[-1],
+    show_default=True,
+    help="AMALTHEA version to write.",
+)
+@click.option("--platform", help="Platform to use instead of the one in APP.YAML: a known name or a file.")
 @click.option("--compress", is_flag=True, help="Write a ZIP, as APP4MC does for big models.")
-@output_option("text", "json")
+@output_option(BuildResult)
 def command(
     description: Path, target: Path | None, version: str, platform: str | None, compress: bool, outputs: tuple[Output, ...]
 ) -> None:
     """Build an AMALTHEA model from a description of a micro-ROS application.
 
-    What was decided is shown: the period and priority of each task, the messages on the bus, the start of the middleware and its
-    static pools. Mistakes are told all at once, each with its place, and then nothing is written.
+    The decisions are shown: the period and priority of each task, the messages on the bus, the start of the middleware and its
+    static pools. All errors are reported in one run, with their locations; nothing is written then.
     """
-    targets = configuration_of(description).targets
-    built = build(description, version, platform)
-    path = target or description.with_suffix(".amxmi")
-    built.model.documents[0].path = path
-    save(built.model, compress=compress)
-    terminal = Terminal(sys.stderr)
-    terminal.findings(built.assembly.findings)
-    if targets:
-        from amalthea_uros.checking import target_groups
-
-        for tool, groups in target_groups(built.model, targets).items():
-            terminal.line(summary(tool, (group.shown for group in groups)))
-    for output in outputs:
-        output.write(partial(write_json if output.format == "json" else write_text, built, path, description))
+    result = build_file(description, target, version, platform, compress)
+    show_findings(result.findings)
+    show_summaries(result.model, project_settings(description).targets)
+    write_outputs(outputs, result)

@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 import sys
-from functools import partial
 from pathlib import Path
 
 import click
 
-from amalthea_uros.cli.output import Output, output_option
-from amalthea_uros.difference.comparison import difference
-from amalthea_uros.report.difference import write_json, write_text
-from amalthea_uros.xmi.load import load
+from amalthea_uros.cli.output import Output, output_option, write_outputs
+from amalthea_uros.services.diff import DiffResult, diff
 
 
 @click.command("diff")
 @click.argument("old", type=click.Path(path_type=Path))
 @click.argument("new", type=click.Path(path_type=Path))
-@output_option("text", "json")
+@output_option(DiffResult)
 def command(old: Path, new: Path, outputs: tuple[Output, ...]) -> None:
-    """Compare two models by meaning: what a review has to look at, and nothing else.
+    """Compare two models by meaning: only what a review has to look at.
 
-    OLD and NEW are files or folders with .amxmi files. Objects are compared by their names, wherever they stand; order without
+    OLD and NEW are files or folders with .amxmi files. Objects are compared by their names, in whatever file they are; order without
     meaning, layout, ids and explicit defaults make no difference. Exit code 1 if there are differences.
     """
-    changes = difference(load(old), load(new))
-    for output in outputs:
-        render = partial(write_text, changes) if output.format == "text" else partial(write_json, changes, old, new)
-        output.write(render)
-    sys.exit(1 if changes else 0)
+    result = diff(old, new)
+    write_outputs(outputs, result)
+    sys.exit(1 if result.changes else 0)

@@ -19,18 +19,18 @@ def command(identifier: str) -> None:
     click.echo(f"{kind.id}: {kind.title} ({kind.severity}{f', profile {profile}' if profile else ''})\n")
     click.echo(f"{kind.rationale}\n{kind.remedy}")
     if isinstance(kind, ModelRule):
-        click.echo(f"\nIt looks at: {_targets(kind)}")
+        click.echo(f"\nChecked objects: {_targets(kind)}")
         if kind.beside is not None:
-            click.echo(f"\nBeside another file of the model with\n{kind.beside.rstrip()}")
+            click.echo(f"\nWith another file of the model:\n{kind.beside.rstrip()}")
     if kind.fails:
-        click.echo(f"\nIt fires at:\n{kind.fails.rstrip()}")
+        click.echo(f"\nFails:\n{kind.fails.rstrip()}")
     if isinstance(kind, Rule):
-        click.echo(f"\nIt does not at:\n{kind.passes.rstrip()}")
+        click.echo(f"\nPasses:\n{kind.passes.rstrip()}")
 
 
 def _targets(rule: ModelRule) -> str:
-    """The classes of objects, and the AMALTHEA versions, that a rule is about."""
+    """The classes of objects, and the AMALTHEA versions, that a rule checks."""
     targets = rule.target if isinstance(rule.target, tuple) else (rule.target,)
-    versions = [f" from AMALTHEA {rule.since} on"] if rule.since else []
+    versions = [f" since AMALTHEA {rule.since}"] if rule.since else []
     versions += [f" up to AMALTHEA {rule.until}"] if rule.until else []
     return ", ".join(target.__name__ for target in targets) + "".join(versions)

@@ -1,4 +1,4 @@
-"""The command `amuros`: knows the commands by name only, so that starting is fast."""
+"""The command `amuros`: knows its commands by name only, so that it starts fast."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from importlib import import_module
 
 import click
 
-from amalthea_uros import __version__
+from amalthea_uros._version import __version__
 
-#: Command -> what `amuros --help` says of it; the module of the same name holds the rest.
+#: Command -> its line in `amuros --help`; the module with the same name has the rest.
 COMMANDS = {
-    "analyze": "Compute response times, loads, latencies of chains, and verdicts.",
-    "build": "Build a model from an app.yaml.",
+    "analyze": "Compute response times, loads, chain latencies and verdicts.",
+    "build": "Build an AMALTHEA model from an app.yaml.",
     "chains": "List the paths from one process to another, with their latencies.",
     "check": "Check models by rules.",
     "diff": "Compare two models by meaning.",
-    "explain": "Tell what a rule is about.",
+    "explain": "Explain a rule or another finding.",
     "fmt": "Rewrite models in canonical form.",
-    "info": "Show what is in a model.",
+    "info": "Show the content of a model.",
     "rules": "List the rules of check.",
     "schema": "Print the JSON Schema of app.yaml.",
 }
@@ -48,15 +48,15 @@ class LazyGroup(click.Group):
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="amuros")
 def cli() -> None:
-    """AMALTHEA timing models (Eclipse APP4MC .amxmi): read, check and write them.
+    """Build, check and analyze AMALTHEA timing models (Eclipse APP4MC .amxmi).
 
-    Exit codes: 0 fine, 1 findings or differences, 2 wrong use or unreadable input.
+    Exit codes: 0 success, 1 findings, differences or missed requirements, 2 wrong use or unreadable input.
     """
 
 
 def main() -> None:
-    """Run the command line; problems with the input are told as findings, never as a traceback."""
-    from amalthea_uros.errors import AmurosError
+    """Run the command line; problems with the input are shown as findings, never as a traceback."""
+    from amalthea_uros.errors import AmurosError, InvalidArgumentError
 
     try:
         cli()
@@ -65,7 +65,10 @@ def main() -> None:
 
         Terminal(sys.stderr).findings(error.findings)
         sys.exit(2)
+    except InvalidArgumentError as error:
+        click.UsageError(str(error)).show()
+        sys.exit(2)
     except BrokenPipeError:
-        # The reader of our output has gone, as in `amuros info m.amxmi | head`; nothing is left to say, also not at exit.
+        # The reader of our output is gone, as in `amuros info m.amxmi | head`; nothing can be written any more, also not at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(2)

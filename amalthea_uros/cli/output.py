@@ -1,38 +1,28 @@
-"""The option `--output FORMAT[=FILE]`, which may be repeated."""
+"""Where results go: the option `--output FORMAT[=FILE]`, which may be repeated, and findings on standard error."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from io import StringIO
 from pathlib import Path
-from typing import IO, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.report import formats
+from amalthea_uros.report.terminal import Terminal
+
+if TYPE_CHECKING:
+    from amalthea_uros.metamodel.model import Model
+
 
 class Output(NamedTuple):
-    """One wish of the user: a format, and the file for it (None: standard output)."""
+    """One request of the user: a format, and the file for it (None: standard output)."""
 
     format: str
     path: Path | None
-
-    def write(self, render: Callable[[IO[str]], None]) -> None:
-        """Render to where the user wants it.
-
-        Raises
-        ------
-        WriteError : the file cannot be written.
-        """
-        if self.path is None:
-            render(sys.stdout)
-            return
-        from io import StringIO
-
-        from amalthea_uros.xmi.files import FileText, write_text
-
-        text = StringIO()
-        render(text)
-        write_text(self.path, FileText(text.getvalue()))
 
 
 class OutputType(click.ParamType[Output]):
@@ -40,27 +30,75 @@ class OutputType(click.ParamType[Output]):
 
     name = "FORMAT[=FILE]"
 
-    def __init__(self, formats: Iterable[str]) -> None:
-        self.formats = tuple(formats)
+    def __init__(self, names: Iterable[str]) -> None:
+        self.names = tuple(names)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Output:
         """Parse one value."""
         if isinstance(value, Output):
             return value
         name, _, path = str(value).partition("=")
-        if name not in self.formats:
-            self.fail(f"{name!r} is not a format, expected one of {', '.join(self.formats)}", param, ctx)
+        if name not in self.names:
+            self.fail(f"unknown format {name!r}, expected one of {', '.join(self.names)}", param, ctx)
         return Output(name, Path(path) if path else None)
 
 
-def output_option(*formats: str) -> Callable[[Any], Any]:
-    """The option for a command that knows these formats; the first one is the default."""
+def output_option(result: type) -> Callable[[Any], Any]:
+    """The option for a command: its formats are those that can write its result."""
+    names = formats.formats_for(result)
     return click.option(
         "--output",
         "outputs",
-        type=OutputType(formats),
+        type=OutputType(names),
         multiple=True,
-        default=(formats[0],),
+        default=(names[0],),
         show_default=True,
-        help=f"What to write, and where to: {', '.join(formats)}. May be repeated.",
+        help=f"Format and file of the result: {', '.join(names)}; e.g. {names[-1]}=result.{names[-1]}. May be repeated.",
     )
+
+
+def write_outputs(outputs: Iterable[Output], result: object, as_text: object | None = None) -> None:
+    """Write a result in all formats that the user wants.
+
+    Parameters
+    ----------
+    as_text : what people see instead of the whole result
+
+    Raises
+    ------
+    WriteError : a file cannot be written.
+    """
+    for output in outputs:
+        shown = result if as_text is None or output.format != formats.TEXT else as_text
+        if output.path is None:
+            formats.write(output.format, shown, sys.stdout)
+        else:
+            _write_file(output.path, output.format, shown)
+
+
+def _write_file(path: Path, name: str, result: object) -> None:
+    from amalthea_uros.xmi.files import FileText, write_text
+
+    text = StringIO()
+    formats.write(name, result, text)
+    write_text(path, FileText(text.getvalue()))
+
+
+def show_text(result: object, on_error_stream: bool = False) -> None:
+    """Show a result to a person."""
+    formats.write(formats.TEXT, result, sys.stderr if on_error_stream else sys.stdout)
+
+
+def show_findings(findings: Iterable[Finding]) -> None:
+    """Show findings on standard error."""
+    Terminal(sys.stderr).findings(findings)
+
+
+def show_summaries(model: Model, targets: Sequence[str]) -> None:
+    """Show on standard error what target tools make of a model."""
+    if targets:
+        from amalthea_uros.findings.targets import summary
+        from amalthea_uros.services.check import summaries
+
+        for target, groups in summaries(model, targets).items():
+            Terminal(sys.stderr).line(summary(target, (group.shown for group in groups)))

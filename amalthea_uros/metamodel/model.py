@@ -150,6 +150,8 @@ class Model:
         ------
         KeyError : there is none; the text names near ones.
         """
+        if not isinstance(key, tuple):
+            raise TypeError(f"a model is indexed by class and name, e.g. model[am.Task, {key!r}]")
         cls, name = key
         found = self.find(cls, name)
         if found is None:

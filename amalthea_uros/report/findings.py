@@ -1,7 +1,8 @@
-"""Findings for programs."""
+"""What several formats say of findings."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -25,13 +26,18 @@ def finding_json(finding: Finding) -> dict[str, Any]:
 
 
 def profile_name(identifier: str) -> str:
-    """The profile of a rule; "reading" for what is told of files and descriptions themselves."""
+    """The profile of a rule; "reading" for problems found while reading files and descriptions."""
     return registry.profile_of(identifier) or "reading"
 
 
 def relative(path: Path) -> str | None:
-    """A path from the current folder, None where it is not below that."""
+    """A path relative to the current folder, None if it is outside of it."""
     try:
         return path.resolve().relative_to(Path.cwd()).as_posix()
     except ValueError:
         return None
+
+
+def joined(paths: Iterable[Path]) -> str:
+    """Paths as they were given on the command line."""
+    return " ".join(map(str, paths))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from difflib import get_close_matches
 from pathlib import Path
 
+from amalthea_uros._internal.resources import PLATFORMS
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
-from amalthea_uros.resources import PLATFORMS
 from amalthea_uros.spec.hardware import Hardware, Platform
 from amalthea_uros.spec.read import read_section
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import ceil, floor
 
-from amalthea_uros.graphs import bottom_up
+from amalthea_uros._internal.graphs import bottom_up
 from amalthea_uros.perf.distributions import Distribution, highest, lowest
 from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import (

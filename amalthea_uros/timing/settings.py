@@ -40,3 +40,10 @@ class Settings:
     memory: Memory = Memory.NONE
     communication: Communication | None = None
     any_phase: bool = False
+
+    def __post_init__(self) -> None:
+        for name, kind in (("memory", Memory), ("communication", Communication)):
+            given = getattr(self, name)
+            if given is not None and not isinstance(given, kind):
+                members = ", ".join(f"{kind.__name__}.{member.name}" for member in kind)
+                raise TypeError(f"unknown {name} {given!r}; expected one of {members}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import ceil, isfinite
 
-from amalthea_uros.graphs import bottom_up
+from amalthea_uros._internal.graphs import bottom_up
 from amalthea_uros.metamodel.classes import (
     IExecutable,
     MinAvgMaxStatistic,

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from math import isfinite
 
-from amalthea_uros.graphs import bottom_up
+from amalthea_uros._internal.graphs import bottom_up
 from amalthea_uros.metamodel.classes import (
     ActivityGraph,
     ActivityGraphItem,

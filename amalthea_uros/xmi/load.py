@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from amalthea_uros._internal.files import MAX_SIZE, FileError, is_directory, list_directory
+from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
-from amalthea_uros.garbage import paused_garbage_collection
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.xmi.files import not_readable, read_text
 from amalthea_uros.xmi.reader import ReadResult, read

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, cast
 
 from lxml import etree
 
+from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros.metamodel.factfile import Kind
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, Facts, facts, supported_versions
-from amalthea_uros.resources import resource_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from support import ROOT
 from test_system import system, ticks
 
-from amalthea_uros import pipeline
+from amalthea_uros import describe
 from amalthea_uros.analyze.assignment import assign, propose_priorities
 from amalthea_uros.analyze.response_times import priority_levels as levels
 from amalthea_uros.analyze.response_times.task import Task as AnalysedTask
@@ -58,7 +58,7 @@ def test_deadline_monotonic_order_is_not_best_with_jitter():
 
 @pytest.mark.parametrize("sample", ["bodas-test-advanced", "drive-and-lift"])
 def test_the_greatest_scale_is_where_a_verdict_changes(sample):
-    described = pipeline.describe(ROOT / "samples" / f"{sample}.yaml").system
+    described = describe(ROOT / "samples" / f"{sample}.yaml").system
     scale = greatest_scale(analyze_system(described))
     assert not analyze_system(described, Settings(scale=scale)).misses
     assert analyze_system(described, Settings(scale=scale * Fraction(1001, 1000) + Fraction(1, 1000))).misses
@@ -66,7 +66,7 @@ def test_the_greatest_scale_is_where_a_verdict_changes(sample):
 
 def test_the_control_function_of_the_thesis_has_room_for_its_deadline():
     # 29 us may become 1 ms; then the executor and the control function take 25 and 4 of every 29 parts.
-    described = pipeline.describe(ROOT / "samples" / "bodas-test-advanced.yaml").system
+    described = describe(ROOT / "samples" / "bodas-test-advanced.yaml").system
     assert float(greatest_scale(analyze_system(described))) == pytest.approx(1000 / 29, rel=1e-3)
 
 

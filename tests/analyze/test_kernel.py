@@ -6,9 +6,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from amalthea_uros._internal.compiled import Compiled, compiled
 from amalthea_uros.analyze.response_times import kernel, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
-from amalthea_uros.compiled import Compiled, compiled
 from amalthea_uros.timing.multiframe import Frame, MultiframeDemand
 
 np = pytest.importorskip("numpy")
@@ -78,7 +78,7 @@ def test_the_same_schedule(rows):
 
 
 def test_only_what_is_used_much_is_compiled(monkeypatch):
-    monkeypatch.setattr("amalthea_uros.compiled.LOADING", 25)
+    monkeypatch.setattr("amalthea_uros._internal.compiled.LOADING", 25)
     seen = []
 
     @compiled(cost=10)
@@ -91,7 +91,7 @@ def test_only_what_is_used_much_is_compiled(monkeypatch):
 
 
 def test_without_numba_everything_stays_python(monkeypatch):
-    monkeypatch.setattr("amalthea_uros.compiled.find_spec", lambda _: None)
+    monkeypatch.setattr("amalthea_uros._internal.compiled.find_spec", lambda _: None)
 
     @compiled(cost=10**9)
     def double(number):

@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 from support import ROOT, SHARED
 
-from amalthea_uros import extract, load, pipeline
+from amalthea_uros import describe, extract, load
 from amalthea_uros.analyze.results import Verdict
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import stimuli as perf_stimuli
@@ -48,12 +48,12 @@ class TestTheThesis:
     """Section 7 of its figures: simulated values of both models, which the exact analysis meets at its ends."""
 
     def test_simple(self):
-        analysis = analyze_system(pipeline.describe(SAMPLES / "bodas-test-simple.yaml").system)
+        analysis = analyze_system(describe(SAMPLES / "bodas-test-simple.yaml").system)
         control = by_name(analysis)["Control_Function"].response
         assert (control.best, control.worst, control.claim) == (16 * US, 16 * US, "exact")
 
     def test_advanced(self):
-        analysis = analyze_system(pipeline.describe(SAMPLES / "bodas-test-advanced.yaml").system)
+        analysis = analyze_system(describe(SAMPLES / "bodas-test-advanced.yaml").system)
         processes = by_name(analysis)
         executor, control = processes["Executor_Task"], processes["Control_Function"]
         assert (executor.response.best, executor.response.worst) == (12 * US, 25 * US)
@@ -67,7 +67,7 @@ class TestTheThesis:
 
     def test_the_built_model_gives_the_same_as_its_description(self):
         for sample in SAMPLES.glob("*.yaml"):
-            described = analyze_system(pipeline.describe(sample).system)
+            described = analyze_system(describe(sample).system)
             read = analyze_system(extract(load(sample.with_suffix(".amxmi"))).system)
             assert read == described
 

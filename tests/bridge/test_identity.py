@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from support import MODEL, ROOT, corpus, hand_written
 from system_strategies import systems
 
-from amalthea_uros import pipeline
+from amalthea_uros import describe
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.cli.build import VERSIONS
@@ -56,7 +56,7 @@ def test_a_system_comes_back_from_an_older_version_or_is_refused_by_name(file, s
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda path: path.stem)
 def test_a_sample_comes_back_from_every_version(sample, version, file):
-    system = pipeline.describe(sample).system
+    system = describe(sample).system
     if sample.stem == "drive-and-lift" and version == "1.2.0":
         with pytest.raises(
             WriteError, match=r"Task_Log: AMALTHEA 1\.2\.0 cannot represent the scheduling parameter 'deadline'"

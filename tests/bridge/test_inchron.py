@@ -4,10 +4,10 @@ import pytest
 from inchron import problems
 from support import ROOT, SHARED
 
-from amalthea_uros import load, pipeline
-from amalthea_uros.checking import target_groups
+from amalthea_uros import build, load
 from amalthea_uros.cli.build import VERSIONS
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.services.check import summaries
 
 SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 
@@ -27,12 +27,12 @@ WISHES = {
 def test_a_sample(sample, version):
     if sample.stem == "drive-and-lift" and version == "1.2.0":
         pytest.skip("1.2.0 has no deadlines")
-    built = pipeline.build(sample, version)
+    built = build(sample, version)
     found = [problem for problem in problems(built.model) if problem[1] != "I"]
     assert [problem for problem in found if problem[1] == "E"] == []
     assert {rule for rule, _, _ in found} == WISHES[sample.stem]
     # The author of the description is told the same.
-    (groups,) = target_groups(built.model, ["inchron"]).values()
+    (groups,) = summaries(built.model, ["inchron"]).values()
     assert {group.shown.rule for group in groups if group.shown.severity is not Severity.INFO} == WISHES[sample.stem]
 
 

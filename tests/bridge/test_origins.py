@@ -2,7 +2,8 @@
 
 import pytest
 
-from amalthea_uros import Label, Task, load, save
+from amalthea_uros import load, save
+from amalthea_uros.am import Label, Task
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.errors import WriteError

@@ -11,7 +11,7 @@ from support import ROOT
 from test_cli import amuros
 
 import amalthea_uros
-from amalthea_uros import PeriodicStimulus, ProcessingUnit, Task, Ticks
+from amalthea_uros.am import PeriodicStimulus, ProcessingUnit, Task, Ticks
 
 SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
@@ -49,8 +49,8 @@ def test_the_advanced_model_of_the_thesis(advanced, tmp_path):
     events = [chain.stimulus, first.response, second.response]
     assert [event.entity.name for event in events] == ["Executor_Task", "Message_Factor", "Control_Function"]
     written = {
-        access.data.name: access.enclosing(amalthea_uros.Runnable).name
-        for access in model.all(amalthea_uros.LabelAccess)
+        access.data.name: access.enclosing(amalthea_uros.am.Runnable).name
+        for access in model.all(amalthea_uros.am.LabelAccess)
         if access.access == "write"
     }
     assert written["memory_1"] == "Take_Message_Factor"

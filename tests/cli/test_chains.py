@@ -51,8 +51,12 @@ def test_a_description_is_not_rewritten(tmp_path):
     [
         (["--from", "Control_Function", "--to", "Executor_Task"], 1, "there is no path from"),
         (["--from", "Nothing", "--to", "Executor_Task"], 2, "there is no process, runnable or label 'Nothing'"),
-        (["--from", "Executor_Task", "--to", "Control_Function", "--add", "x"], 2, "--add needs -o"),
-        (["--from", "Executor_Task", "--to", "Control_Function", "--path", "2"], 2, "there are 1 paths"),
+        (
+            ["--from", "Executor_Task", "--to", "Control_Function", "--add", "x"],
+            2,
+            "--add CHAIN and -o FILE must be given together",
+        ),
+        (["--from", "Executor_Task", "--to", "Control_Function", "--path", "2"], 2, "no path 2; there is only 1 path"),
     ],
 )
 def test_wrong_use(arguments, code, message):

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from amalthea_uros import diff
 from amalthea_uros.cli.diff import command
-from amalthea_uros.difference.comparison import difference
 from amalthea_uros.metamodel.classes import Amalthea, Label, SWModel
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.report.difference import write_text
+from amalthea_uros.report import formats
 
 HEAD = (
     '<am:Amalthea xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"'
@@ -107,8 +107,8 @@ def test_colours_on_a_terminal(monkeypatch) -> None:
     monkeypatch.delenv("NO_COLOR", raising=False)
     empty, full = (Model.of(Amalthea(sw_model=SWModel(labels=labels))) for labels in ([], [Label(name="L")]))
     added, removed = Screen(), Screen()
-    write_text(difference(empty, full), added)
-    write_text(difference(full, empty), removed)
+    formats.write("text", diff(empty, full), added)
+    formats.write("text", diff(full, empty), removed)
     assert "\x1b[32m+ Label L\x1b[0m" in added.getvalue()
     assert "\x1b[31m- Label L\x1b[0m" in removed.getvalue()
 

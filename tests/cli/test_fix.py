@@ -47,7 +47,7 @@ def test_a_repair_changes_only_what_is_wrong(rule, before, after, tmp_path):
     path.write_text(MODEL.format(before))
     run = amuros("check", "--fix", "--select", rule, path)
     assert (run.returncode, run.stdout) == (0, "no findings\n")
-    assert f"{rule} repaired at 1 object\n" in run.stderr
+    assert f"{rule} repaired in 1 object\n" in run.stderr
     assert path.read_text() == MODEL.format(after)
 
 

@@ -4,7 +4,8 @@ import copy
 
 import pytest
 
-from amalthea_uros import (
+from amalthea_uros import Model
+from amalthea_uros.am import (
     ActivityGraph,
     Amalthea,
     Group,
@@ -13,7 +14,6 @@ from amalthea_uros import (
     HwStructure,
     Label,
     LabelAccess,
-    Model,
     OSModel,
     PeriodicStimulus,
     Preemption,

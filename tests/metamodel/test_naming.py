@@ -2,7 +2,7 @@
 
 import pytest
 
-from amalthea_uros import (
+from amalthea_uros.am import (
     ActivityGraph,
     CallArgument,
     Component,

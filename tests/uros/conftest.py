@@ -4,7 +4,7 @@ import textwrap
 
 import pytest
 
-from amalthea_uros import pipeline
+from amalthea_uros import describe
 from amalthea_uros.errors import ReadError
 
 
@@ -16,7 +16,7 @@ class Author:
 
     def describe(self, text, platform=None):
         self.path.write_text(textwrap.dedent(text).lstrip("\n"))
-        return pipeline.describe(self.path, platform)
+        return describe(self.path, platform)
 
     def findings(self, text):
         """The errors of an invalid description: (line, rule, message) each."""

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from inchron import problems
 from support import ROOT
 
-from amalthea_uros import pipeline
+from amalthea_uros import build
 from amalthea_uros.errors import ReadError
 from amalthea_uros.xmi.schema import validate
 from amalthea_uros.xmi.writer import document_text
@@ -103,7 +103,7 @@ def file(tmp_path_factory):
 def built_or_refused(file):
     """The model, or the findings that prevent it."""
     try:
-        return pipeline.build(file), ()
+        return build(file), ()
     except ReadError as error:
         return None, error.findings
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.graphs import bottom_up, circles
+from amalthea_uros._internal.graphs import bottom_up, circles
 from amalthea_uros.metamodel.classes import (
     DataSize,
     DataSizeUnit,

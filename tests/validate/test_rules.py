@@ -7,8 +7,7 @@ import inchron
 import pytest
 from support import MODEL, ROOT, SHARED
 
-from amalthea_uros import check, load
-from amalthea_uros.checking import check_files
+from amalthea_uros import check, check_files, load
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.validate import registry
@@ -69,10 +68,7 @@ def found_in(rule, example, folder):
 
 def told_of(path):
     """The findings about a description, whether it becomes a system or not."""
-    try:
-        return check_files([path], IDS)
-    except ReadError as error:
-        return error.findings
+    return check_files(path).findings
 
 
 def test_ids_are_unique():

@@ -174,7 +174,7 @@ def test_values_of_a_wrong_kind_count_as_not_set_and_are_kept(tmp_path):
     path.write_bytes(text)
     model = amuros.load(path)
     assert [finding.rule for finding in model.findings] == ["XMI013", "XMI013"]
-    assert model[amuros.Task, "Brake (left)"].multiple_task_activation_limit is None
+    assert model[amuros.am.Task, "Brake (left)"].multiple_task_activation_limit is None
     amuros.save(model)
     assert path.read_bytes() == text
 
@@ -222,11 +222,11 @@ class TestWriting:
         return amuros.load(tmp_path / "model.amxmi")
 
     def test_values_that_are_not_allowed_are_all_named_and_nothing_is_written(self, model, tmp_path):
-        task = model[amuros.Task, "Brake (left)"]
+        task = model[amuros.am.Task, "Brake (left)"]
         task.preemption = "sometimes"
         task.multiple_task_activation_limit = 1.5
-        task.stimuli.append(model[amuros.Label, "Pedal"])
-        model[amuros.Label, "Pedal"].name = "Pe\x07dal"
+        task.stimuli.append(model[amuros.am.Label, "Pedal"])
+        model[amuros.am.Label, "Pedal"].name = "Pe\x07dal"
         with pytest.raises(amuros.WriteError) as caught:
             amuros.save(model)
         messages = [finding.message for finding in caught.value.findings]
@@ -238,7 +238,7 @@ class TestWriting:
         assert (tmp_path / "model.amxmi").read_bytes() == GOOD
 
     def test_what_the_version_does_not_have_is_named(self, model):
-        model[amuros.Runnable, "Act"].activity_graph = amuros.ActivityGraph(items=[amuros.ModeSwitch()])
+        model[amuros.am.Runnable, "Act"].activity_graph = amuros.am.ActivityGraph(items=[amuros.am.ModeSwitch()])
         with pytest.raises(
             amuros.WriteError, match=r"Act\.activityGraph\.items\[0\]: the class ModeSwitch does not exist in AMALTHEA 3\.0\.0"
         ):
@@ -248,7 +248,7 @@ class TestWriting:
         def full(*_arguments):
             raise OSError(28, "No space left on device")
 
-        model[amuros.Label, "Pedal"].constant = True
+        model[amuros.am.Label, "Pedal"].constant = True
         monkeypatch.setattr(Path, "replace", full)
         with pytest.raises(amuros.WriteError, match="No space left"):
             amuros.save(model)
@@ -264,16 +264,16 @@ def test_what_the_reader_would_refuse_as_too_deep_is_not_written(tmp_path):
     path = tmp_path / "deep.amxmi"
 
     def nested(levels):
-        innermost = top = amuros.Group(name="G")
+        innermost = top = amuros.am.Group(name="G")
         for _ in range(levels - 1):
-            innermost.items.append(amuros.Group(name="G"))
+            innermost.items.append(amuros.am.Group(name="G"))
             innermost = innermost.items[0]
-        runnable = amuros.Runnable(name="R", activity_graph=amuros.ActivityGraph(items=[top]))
-        return amuros.Model.of(amuros.Amalthea(sw_model=amuros.SWModel(runnables=[runnable])))
+        runnable = amuros.am.Runnable(name="R", activity_graph=amuros.am.ActivityGraph(items=[top]))
+        return amuros.Model.of(amuros.am.Amalthea(sw_model=amuros.am.SWModel(runnables=[runnable])))
 
     amuros.save(nested(196), path)
     text = path.read_text()
-    assert sum(1 for _ in amuros.load(path).all(amuros.Group)) == 196
+    assert sum(1 for _ in amuros.load(path).all(amuros.am.Group)) == 196
     for levels in (197, 3000):
         with pytest.raises(amuros.WriteError, match="nested more than 200 levels deep"):
             amuros.save(nested(levels), path)

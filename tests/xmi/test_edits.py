@@ -6,7 +6,7 @@ import pytest
 from support import DATA, MODEL, meaning
 
 import amalthea_uros as amuros
-from amalthea_uros import Label, LabelAccess, PeriodicStimulus, Preemption, Runnable, RunnableCall, Task, Time
+from amalthea_uros.am import Label, LabelAccess, PeriodicStimulus, Preemption, Runnable, RunnableCall, Task, Time
 
 UGLY = """<?xml version='1.0' encoding='UTF-8' standalone="no"?>
 <!-- made by hand -->
@@ -82,7 +82,7 @@ def test_a_new_part(neat):
 
 
 def test_a_first_part(neat):
-    neat[Runnable, "Act"].activity_graph = amuros.ActivityGraph(items=[LabelAccess(data=neat[Label, "Pedal"])])
+    neat[Runnable, "Act"].activity_graph = amuros.am.ActivityGraph(items=[LabelAccess(data=neat[Label, "Pedal"])])
     assert changes(neat) == [
         '-     <runnables xmi:id="Act?type=Runnable" name="Act" callback="false" service="false"/>',
         '+     <runnables xmi:id="Act?type=Runnable" name="Act" callback="false" service="false">',
@@ -149,15 +149,15 @@ def test_a_set_and_an_unset_value_in_an_ugly_file(ugly):
 
 
 def test_a_part_among_those_of_other_features(ugly):
-    next(ugly.all(amuros.SWModel)).labels.append(Label(name="L3"))
+    next(ugly.all(amuros.am.SWModel)).labels.append(Label(name="L3"))
     new = '<labels xmi:id="L3?type=Label" name="L3" constant="false" bVolatile="false"/>'
     expect(ugly, ('<labels name="L&#x32;"/>', f'<labels name="L&#x32;"/>\n\t\t{new}'))
 
 
 def test_a_number_spelled_oddly_stays(ugly):
-    offset = next(ugly.all(amuros.PeriodicStimulus)).offset
+    offset = next(ugly.all(amuros.am.PeriodicStimulus)).offset
     assert offset.value == 5
-    offset.unit = amuros.TimeUnit.US
+    offset.unit = amuros.am.TimeUnit.US
     expect(ugly, ('unit="ms" value="+05"', 'unit="us" value="+05"'))
 
 
@@ -168,7 +168,7 @@ def test_a_removed_part_leaves_the_comments(ugly):
 
 def test_unknown_content_is_reported_once_and_can_be_dropped(ugly):
     assert [(f.rule, f.location.line) for f in ugly.findings] == [("XMI011", 8), ("XMI010", 13)]
-    software = next(ugly.all(amuros.SWModel))
+    software = next(ugly.all(amuros.am.SWModel))
     software.extras.content = [(anchor, raw) for anchor, raw in software.extras.content if "vendorThing" not in raw]
     expect(ugly, ('\n\t\t<vendorThing a="1"><deep/></vendorThing>', ""))
 
@@ -205,7 +205,7 @@ def test_line_ends_of_windows(tmp_path):
     path = tmp_path / "model.amxmi"
     path.write_bytes((DATA / "brake.amxmi").read_bytes().replace(b"\n", b"\r\n"))
     model = amuros.load(path)
-    next(model.all(amuros.SWModel)).labels.append(Label(name="New"))
+    next(model.all(amuros.am.SWModel)).labels.append(Label(name="New"))
     amuros.save(model)
     assert path.read_bytes().count(b"\r\n") == path.read_bytes().count(b"\n") == 30
 
@@ -238,9 +238,9 @@ def test_an_xsi_type_in_a_file_that_had_none(tmp_path):
         '<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0" xmlns:xmi="http://www.omg.org/XMI"><stimuliModel/></am:Amalthea>'
     )
     model = amuros.load(path)
-    model.root.stimuli_model.stimuli.append(amuros.PeriodicStimulus(name="P"))
+    model.root.stimuli_model.stimuli.append(amuros.am.PeriodicStimulus(name="P"))
     amuros.save(model)
-    assert amuros.load(path)[amuros.PeriodicStimulus, "P"]
+    assert amuros.load(path)[amuros.am.PeriodicStimulus, "P"]
 
 
 def test_another_version_is_written_whole(neat):

@@ -4,11 +4,11 @@ import pytest
 from support import meaning
 
 import amalthea_uros as amuros
-from amalthea_uros import (
+from amalthea_uros import Document
+from amalthea_uros.am import (
     Amalthea,
     Component,
     ComponentPort,
-    Document,
     EnumMode,
     HwConnection,
     HwPort,
@@ -114,7 +114,7 @@ def test_saved_elsewhere_the_files_keep_their_names(folder, tmp_path):
 def test_an_object_moved_to_another_file_is_referred_to_by_href(folder):
     model = amuros.load(folder)
     mapping = next(d.root for d in model.documents if d.root.mapping_model)
-    mapping.sw_model = amuros.SWModel(runnables=[model[Runnable, "R"]])
+    mapping.sw_model = amuros.am.SWModel(runnables=[model[Runnable, "R"]])
     amuros.save(model)
     software, mapped = texts(folder)
     assert '<runnable href="amlt:/#R?type=Runnable"/>' in software
@@ -173,21 +173,21 @@ def prefixed(tmp_path):
     space = Namespace(name="com", next_segments=[Namespace(name="x/y")])
     member = Runnable(name="run", namespace=space.next_segments[0])
     parts = Amalthea(
-        common_elements=amuros.CommonElements(namespaces=[space]),
-        hw_model=amuros.HWModel(structures=[HwStructure(name="Board", ports=[port])]),
-        sw_model=amuros.SWModel(modes=[EnumMode(name="Mode", literals=[literal])], runnables=[member]),
-        components_model=amuros.ComponentsModel(components=[Component(name="C", ports=[component_port])]),
+        common_elements=amuros.am.CommonElements(namespaces=[space]),
+        hw_model=amuros.am.HWModel(structures=[HwStructure(name="Board", ports=[port])]),
+        sw_model=amuros.am.SWModel(modes=[EnumMode(name="Mode", literals=[literal])], runnables=[member]),
+        components_model=amuros.am.ComponentsModel(components=[Component(name="C", ports=[component_port])]),
     )
     users = Amalthea(
-        hw_model=amuros.HWModel(structures=[HwStructure(name="Net", connections=[HwConnection(name="c", port1=port)])]),
-        sw_model=amuros.SWModel(
-            tasks=[Task(name="T", activity_graph=amuros.ActivityGraph(items=[RunnableCall(runnable=member)]))]
+        hw_model=amuros.am.HWModel(structures=[HwStructure(name="Net", connections=[HwConnection(name="c", port1=port)])]),
+        sw_model=amuros.am.SWModel(
+            tasks=[Task(name="T", activity_graph=amuros.am.ActivityGraph(items=[RunnableCall(runnable=member)]))]
         ),
-        components_model=amuros.ComponentsModel(
+        components_model=amuros.am.ComponentsModel(
             systems=[
-                amuros.System(
+                amuros.am.System(
                     name="S",
-                    connectors=[amuros.Connector(source_port=amuros.QualifiedPort(port=component_port))],
+                    connectors=[amuros.am.Connector(source_port=amuros.am.QualifiedPort(port=component_port))],
                 )
             ]
         ),

@@ -3,7 +3,7 @@
 from support import DATA
 
 import amalthea_uros as amuros
-from amalthea_uros import Label, Runnable
+from amalthea_uros.am import Label, Runnable
 
 
 def position(element, attribute=""):

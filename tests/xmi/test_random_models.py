@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from strategies import models
 
 import amalthea_uros as amuros
-from amalthea_uros import Amalthea, Document, Model
+from amalthea_uros import Document, Model
+from amalthea_uros.am import Amalthea
 
 
 def meaning(model):

@@ -7,9 +7,9 @@ import pytest
 import xmlschema
 from lxml import etree
 
+from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros.metamodel.factfile import Kind
 from amalthea_uros.metamodel.versions import Facts, facts, supported_versions
-from amalthea_uros.resources import resource_folder
 from amalthea_uros.xmi.schema import MAX_PROBLEMS, NoSchemaError, SchemaProblem, schema_path, validate
 
 VERSION = "3.3.0"
@@ -48,7 +48,7 @@ def test_a_version_without_schema_is_refused(version):
 
 def test_an_installed_package_holds_the_schemas_itself(tmp_path, monkeypatch):
     (tmp_path / "schemas").mkdir()
-    monkeypatch.setattr("amalthea_uros.resources._PACKAGE", tmp_path)
+    monkeypatch.setattr("amalthea_uros._internal.resources._PACKAGE", tmp_path)
     assert resource_folder("schemas") == tmp_path / "schemas"
     assert resource_folder("templates") == tmp_path.parent / "templates"
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from amalthea_uros.compiled import compiled
+from amalthea_uros._internal.compiled import compiled
 from amalthea_uros.timing.limits import LIMIT
 
 if TYPE_CHECKING:

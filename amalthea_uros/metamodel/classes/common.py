@@ -11,7 +11,7 @@ from amalthea_uros.metamodel.classes.base import BaseObject, IDescription, Refer
 from amalthea_uros.metamodel.classes.enums import TimeUnit, FrequencyUnit, VoltageUnit, DataSizeUnit, DataRateUnit
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import attribute, containment, containments, reference
-from amalthea_uros.metamodel.quantity import unit_of
+from amalthea_uros.metamodel.quantity import number_of, unit_of
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.base import IReferable
@@ -101,7 +101,7 @@ class Time(Quantity, Value, TimeComparable):
     unit: TimeUnit | None = attribute("unit")
 
     def __init__(self, value: int | None = None, unit: TimeUnit | str | None = None) -> None:
-        Element.__init__(self, value=value, unit=unit_of(TimeUnit, unit))
+        Element.__init__(self, value=number_of(value), unit=unit_of(TimeUnit, unit))
 
 
 class Frequency(Quantity):
@@ -116,7 +116,7 @@ class Frequency(Quantity):
     unit: FrequencyUnit | None = attribute("unit")
 
     def __init__(self, value: float | None = None, unit: FrequencyUnit | str | None = None) -> None:
-        Element.__init__(self, value=value, unit=unit_of(FrequencyUnit, unit))
+        Element.__init__(self, value=number_of(value), unit=unit_of(FrequencyUnit, unit))
 
 
 class Voltage(Quantity):
@@ -126,7 +126,7 @@ class Voltage(Quantity):
     unit: VoltageUnit | None = attribute("unit")
 
     def __init__(self, value: float | None = None, unit: VoltageUnit | str | None = None) -> None:
-        Element.__init__(self, value=value, unit=unit_of(VoltageUnit, unit))
+        Element.__init__(self, value=number_of(value), unit=unit_of(VoltageUnit, unit))
 
 
 class DataSize(Quantity):
@@ -142,7 +142,7 @@ class DataSize(Quantity):
     unit: DataSizeUnit | None = attribute("unit")
 
     def __init__(self, value: int | None = None, unit: DataSizeUnit | str | None = None) -> None:
-        Element.__init__(self, value=value, unit=unit_of(DataSizeUnit, unit))
+        Element.__init__(self, value=number_of(value), unit=unit_of(DataSizeUnit, unit))
 
 
 class DataRateComparable(Element, abstract=True):
@@ -156,7 +156,7 @@ class DataRate(Quantity, DataRateComparable):
     unit: DataRateUnit | None = attribute("unit")
 
     def __init__(self, value: int | None = None, unit: DataRateUnit | str | None = None) -> None:
-        Element.__init__(self, value=value, unit=unit_of(DataRateUnit, unit))
+        Element.__init__(self, value=number_of(value), unit=unit_of(DataRateUnit, unit))
 
 
 class CustomProperty(Element):

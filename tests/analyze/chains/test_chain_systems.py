@@ -8,7 +8,7 @@ import pytest
 from support import ROOT, SHARED
 from test_methods import cases
 
-from amalthea_uros import Settings, analyze_system, extract, load, pipeline
+from amalthea_uros import Settings, analyze_system, describe, extract, load
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.perf.distributions import Boundaries, Constant
 from amalthea_uros.perf.events import (
@@ -173,7 +173,7 @@ class TestTheThesis:
     SAMPLE = ROOT / "samples" / "bodas-test-advanced.yaml"
 
     def test_over_all_phases_of_the_message(self):
-        system = pipeline.describe(self.SAMPLE).system
+        system = describe(self.SAMPLE).system
         _, values, claims, _ = evaluate(system, any_phase=True)
         assert claims == {"exact"}
         # By hand: taken in the tick of Message_Factor 1000 + 16; taken in the tick behind it, up to the long job 20 ticks later.
@@ -187,7 +187,7 @@ class TestTheThesis:
         [(START, END, 1016, 20029), (END, END, 991, 20004), (END, ACTIVATION, 975, 19975)],
     )
     def test_other_end_points(self, start, end, least, most):
-        system = pipeline.describe(self.SAMPLE).system
+        system = describe(self.SAMPLE).system
         events = (at("Executor_Task", start), at("Message_Factor", END), at("Control_Function", end))
         segments = tuple(Segment(stimulus=a.name, response=b.name) for a, b in pairwise(events))
         chain = EventChain(name="c", stimulus=events[0].name, response=events[-1].name, items=Sequence(segments))
@@ -196,13 +196,13 @@ class TestTheThesis:
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (least, most)
 
     def test_within_five_per_cent_of_what_was_measured(self):
-        _, values, _, _ = evaluate(pipeline.describe(self.SAMPLE).system, any_phase=True)
+        _, values, _, _ = evaluate(describe(self.SAMPLE).system, any_phase=True)
         measured = {"min_first_to_first": 970, "mean_first_to_first": 10320, "max_reduced_reaction_time": 19978}
         for quantity, value in measured.items():
             assert abs(values[quantity] - value) / value < 0.05
 
     def test_logical_execution_times(self):
-        _, values, claims, _ = evaluate(pipeline.describe(self.SAMPLE).system, any_phase=True, communication=Communication.LET)
+        _, values, claims, _ = evaluate(describe(self.SAMPLE).system, any_phase=True, communication=Communication.LET)
         assert claims == {"exact"}
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (22000, 41000)
 

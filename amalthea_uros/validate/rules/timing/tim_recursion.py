@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from amalthea_uros._internal.graphs import circles
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.graphs import circles
 from amalthea_uros.metamodel.classes import Runnable
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.execution import waited_for

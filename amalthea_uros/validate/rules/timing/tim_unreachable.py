@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from amalthea_uros._internal.graphs import bottom_up
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.graphs import bottom_up
 from amalthea_uros.metamodel.classes import (
     AsynchronousServerCall,
     IExecutable,

@@ -1,21 +1,16 @@
-"""The difference of two models as text for reviews and as JSON for programs."""
+"""The differences of two models for reviews."""
 
 from __future__ import annotations
 
-import json
 from collections import Counter
-from typing import IO, TYPE_CHECKING, Any
+from collections.abc import Iterable, Sequence
 
-from amalthea_uros import __version__
 from amalthea_uros.difference.comparison import Change, ChangeKind
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.report.terminal import Terminal
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-    from pathlib import Path
-
-    from amalthea_uros.metamodel.element import Element
+from amalthea_uros.report.wording import counted
+from amalthea_uros.services.diff import DiffResult
 
 _MARKS = {
     ChangeKind.ADDED: ("+", "32"),
@@ -25,26 +20,13 @@ _MARKS = {
 }
 
 
-def write_text(changes: Sequence[Change], stream: IO[str]) -> None:
+def write(result: DiffResult, terminal: Terminal) -> None:
     """Write changes grouped by object, and how many there are."""
-    terminal = Terminal(stream)
-    for group in _by_object(changes):
+    for group in _by_object(result.changes):
         _write_object(group, terminal)
-    if changes:
+    if result.changes:
         terminal.line()
-    terminal.line(_summary(changes))
-
-
-def write_json(changes: Iterable[Change], old: Path, new: Path, stream: IO[str]) -> None:
-    """Write changes with their places in the files, for programs."""
-    result = {
-        "amuros": __version__,
-        "old": str(old),
-        "new": str(new),
-        "changes": [_as_json(change) for change in changes],
-    }
-    json.dump(result, stream, indent=2, ensure_ascii=False)
-    stream.write("\n")
+    terminal.line(_summary(result.changes))
 
 
 def _by_object(changes: Iterable[Change]) -> Iterable[list[Change]]:
@@ -64,13 +46,13 @@ def _write_object(group: list[Change], terminal: Terminal) -> None:
 
 
 def _remark(change: Change) -> str:
-    """What an added or removed object is about, if its name does not tell, and how much came or went with it."""
+    """The content of an added or removed object without a unique name, and the number of its parts."""
     if change.feature:
         return ""
     element = change.new_element or change.old_element
     assert element is not None
     parts = sum(1 for _ in element.walk()) - 1
-    count = f"{parts} part{'s' if parts > 1 else ''}" if parts else ""
+    count = counted(parts, "part") if parts else ""
     known = ", ".join(filter(None, (change.old, change.new, count)))
     return f" ({known})" if known else ""
 
@@ -94,26 +76,4 @@ def _summary(changes: Sequence[Change]) -> str:
         return "no differences in meaning"
     counts = Counter(change.kind for change in changes)
     listed = ", ".join(f"{counts[kind]} {kind}" for kind in ChangeKind if counts[kind])
-    return f"{len(changes)} difference{'s' if len(changes) > 1 else ''}: {listed}"
-
-
-def _as_json(change: Change) -> dict[str, Any]:
-    return {
-        "kind": change.kind,
-        "class": change.class_name,
-        "object": change.qualified_name,
-        "feature": change.feature,
-        "old": change.old,
-        "new": change.new,
-        "old_location": _place(change.old_element, change.feature),
-        "new_location": _place(change.new_element, change.feature),
-    }
-
-
-def _place(element: Element | None, feature: str) -> dict[str, Any] | None:
-    """Where an object or its attribute stands, None if it was not read from a file."""
-    document = element.document if element is not None else None
-    if element is None or document is None or document.source is None or element not in document.source.index:
-        return None
-    line, column = document.source.position_of(element, feature)
-    return {"file": str(document.path), "line": line, "column": column}
+    return f"{counted(len(changes), 'difference')}: {listed}"

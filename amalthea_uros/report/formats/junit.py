@@ -2,32 +2,36 @@
 
 from __future__ import annotations
 
-from typing import IO
+from typing import IO, TYPE_CHECKING
 from xml.etree import ElementTree
 
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.findings.presentation import Presentation
-from amalthea_uros.report.findings import profile_name
+from amalthea_uros.report.findings import joined, profile_name
+
+if TYPE_CHECKING:
+    from amalthea_uros.services.check import CheckResult
+
+RENDERS = ("CheckResult",)
 
 
-def write_junit(presentation: Presentation, model: str, stream: IO[str]) -> None:
-    """A test case for each rule that fired; it fails if the rule is more than information."""
+def write(result: CheckResult, stream: IO[str]) -> None:
+    """Write a test case for each rule that fired; it fails if a finding is more than information."""
     by_rule: dict[str, list[Finding]] = {}
-    for finding in (entry.finding for entry in presentation.entries() if entry.counts):
+    for finding in (entry.finding for entry in result.presentation.entries() if entry.counts):
         by_rule.setdefault(finding.rule, []).append(finding)
     failing = {rule for rule, found in by_rule.items() if any(f.severity is not Severity.INFO for f in found)}
     suites = ElementTree.Element("testsuites")
-    suite = ElementTree.SubElement(suites, "testsuite", name=f"amuros check {model}")
+    suite = ElementTree.SubElement(suites, "testsuite", name=f"amuros check {joined(result.paths)}")
     suite.attrib |= {"tests": str(max(1, len(by_rule))), "failures": str(len(failing)), "errors": "0"}
     for rule, found in by_rule.items() or {"no findings": []}.items():
         case = ElementTree.SubElement(suite, "testcase", classname=f"amuros.{profile_name(rule)}", name=rule)
         if rule in failing:
             message = f"{len(found)} finding{'s' if len(found) > 1 else ''}"
-            told = ElementTree.SubElement(case, "failure", message=message, type=str(found[0].severity))
+            text = ElementTree.SubElement(case, "failure", message=message, type=str(found[0].severity))
         elif found:
-            told = ElementTree.SubElement(case, "system-out")
+            text = ElementTree.SubElement(case, "system-out")
         else:
             continue
-        told.text = "\n".join(map(str, found))
+        text.text = "\n".join(map(str, found))
     stream.write('<?xml version="1.0" encoding="UTF-8"?>\n')
     stream.write(ElementTree.tostring(suites, encoding="unicode") + "\n")

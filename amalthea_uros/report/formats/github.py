@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.findings.presentation import Presentation
 from amalthea_uros.report.findings import relative
+
+if TYPE_CHECKING:
+    from amalthea_uros.services.check import CheckResult
+
+RENDERS = ("CheckResult",)
 
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 
 
-def write_github(presentation: Presentation, _model: str, stream: IO[str]) -> None:
-    """A workflow command for each flaw."""
-    for finding in presentation.shown:
+def write(result: CheckResult, stream: IO[str]) -> None:
+    """Write a workflow command for each flaw."""
+    for finding in result.presentation.shown:
         place = finding.location
         where = []
         if place is not None:
@@ -24,6 +28,6 @@ def write_github(presentation: Presentation, _model: str, stream: IO[str]) -> No
 
 
 def _escaped(text: str, properties: bool = True) -> str:
-    """Text as workflow commands take it."""
+    """Text in the form that workflow commands expect."""
     text = text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
     return text.replace(":", "%3A").replace(",", "%2C") if properties else text

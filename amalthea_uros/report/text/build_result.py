@@ -1,28 +1,23 @@
-"""What was built, and what was decided on the way."""
+"""What was built, and what was decided on the way, for people."""
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-from typing import IO
-
-from amalthea_uros import __version__
 from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Single, Stimulus
 from amalthea_uros.perf.system import System
-from amalthea_uros.pipeline import Built
-from amalthea_uros.report.findings import finding_json
 from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.wording import counted
+from amalthea_uros.services.build import BuildResult
 from amalthea_uros.units import time_text
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.initialisation import Initialisation
 
 
-def write_text(built: Built, path: Path, description: Path, stream: IO[str]) -> None:
-    """Tables that a person reads."""
-    terminal, assembly = Terminal(stream), built.assembly
-    objects = sum(1 for _ in built.model.walk())
-    name = terminal.style(str(path), "1")
-    terminal.line(f"{name}: AMALTHEA {built.model.documents[0].version}, {objects:,} objects, built from {description}")
+def write(result: BuildResult, terminal: Terminal) -> None:
+    """Write tables of tasks, interrupts, messages, and the start and the pools of the middleware."""
+    document, assembly = result.document, result.assembly
+    objects = counted(sum(1 for _ in result.model.walk()), "object")
+    name = terminal.style(str(document.path or "unsaved"), "1")
+    terminal.line(f"{name}: AMALTHEA {document.version}, {objects}, built from {result.description}")
     _tasks(terminal, assembly)
     _isrs(terminal, assembly.system)
     _traffic(terminal, assembly)
@@ -108,42 +103,3 @@ def _pools(terminal: Terminal, assembly: Assembly) -> None:
     terminal.heading("Static pools")
     rows = [(pool.option, pool.needed, pool.available, "" if pool.configured else "default") for pool in used]
     terminal.table(("option", "needed", "available", ""), rows, right=(1, 2))
-
-
-def write_json(built: Built, path: Path, description: Path, stream: IO[str]) -> None:
-    """The same for programs; times are picoseconds under names that end in `_ps`."""
-    assembly = built.assembly
-    start = assembly.initialisation
-    result = {
-        "amuros": __version__,
-        "model": str(path),
-        "description": str(description),
-        "amalthea": built.model.documents[0].version,
-        "choices": [{"task": c.task, "period_ps": c.period, "reason": c.reason} for c in assembly.choices],
-        "messages": [
-            {
-                "topic": item.message.topic,
-                "incoming": item.incoming,
-                "interval_ps": item.message.interval,
-                "bytes": item.length,
-                "frames": item.frames,
-                "transmission_time_ps": item.transmission_time,
-            }
-            for item in assembly.messages
-        ],
-        "initialisation": start
-        and {
-            "entities": [{"kind": entity.kind, "name": entity.name} for entity in start.entities],
-            "min_cycles": start.min_cycles,
-            "max_cycles": start.max_cycles,
-            "min_time_ps": start.min_time,
-            "max_time_ps": start.max_time,
-        },
-        "pools": [
-            {"option": p.option, "needed": p.needed, "available": p.available, "configured": p.configured}
-            for p in assembly.pools
-        ],
-        "findings": [finding_json(finding) for finding in assembly.findings],
-    }
-    json.dump(result, stream, indent=2, ensure_ascii=False)
-    stream.write("\n")

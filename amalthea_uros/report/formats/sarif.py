@@ -4,25 +4,30 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from amalthea_uros import __version__
+from amalthea_uros._version import __version__
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.findings.fingerprint import fingerprint
-from amalthea_uros.findings.presentation import Entry, Presentation
+from amalthea_uros.findings.presentation import Entry
 from amalthea_uros.report.findings import profile_name, relative
 from amalthea_uros.validate import registry
 
+if TYPE_CHECKING:
+    from amalthea_uros.services.check import CheckResult
+
+RENDERS = ("CheckResult",)
+
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 
-#: What paths are relative to; viewers put the root of the repository in its place.
+#: The base of relative paths; viewers replace it by the root of the repository.
 _ROOT = "SRCROOT"
 
 
-def write_sarif(presentation: Presentation, _model: str, stream: IO[str]) -> None:
-    """One run, with the rules that fired and where."""
-    entries = presentation.entries()
+def write(result: CheckResult, stream: IO[str]) -> None:
+    """Write one run, with the rules that fired and where."""
+    entries = result.presentation.entries()
     used = sorted({entry.finding.rule for entry in entries})
     run = {
         "tool": {"driver": {"name": "amuros", "version": __version__, "rules": [_rule(rule) for rule in used]}},
@@ -57,7 +62,7 @@ def _result(entry: Entry, index: int) -> dict[str, Any]:
         # Viewers and CI systems fail at levels; a tool that nobody asked for is no reason to.
         "level": _LEVELS[finding.severity if entry.counts else Severity.INFO],
         "message": {"text": finding.message},
-        # The same finding in another line is the same finding.
+        # A finding that moved to another line is the same finding.
         "partialFingerprints": {"object/v1": fingerprint(finding)},
     }
     if entry.part_of is not None:

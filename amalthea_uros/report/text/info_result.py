@@ -1,29 +1,26 @@
-"""A summary of a model for people and for programs."""
+"""The summary of a model for people."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict
-from typing import IO
-
-from amalthea_uros import __version__
 from amalthea_uros.metamodel.summary import ModelSummary
 from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.wording import counted
+from amalthea_uros.services.info import InfoResult
 
-#: More classes are only counted: the rare ones hide what matters.
+#: More classes and memories are only counted: the rare ones hide what matters.
 MOST_CLASSES = 12
 MOST_MEMORIES = 6
 
 
-def write_text(summary: ModelSummary, stream: IO[str]) -> None:
-    """Tables that a person reads."""
-    terminal = Terminal(stream)
+def write(result: InfoResult, terminal: Terminal) -> None:
+    """Write tables of documents, cores, processes, chains and classes."""
+    summary = result.summary
     for document in summary.documents:
         size = f"{document.characters / 1000:,.1f} kB" + (", zipped" if document.compressed else "")
         path = terminal.style(document.path, "1")
         terminal.line(f"{path}: AMALTHEA {document.version}, {document.objects:,} objects, {size}")
     if summary.unresolved:
-        terminal.line(f"  {summary.unresolved:,} references lead to nothing that was read")
+        terminal.line(f"  {counted(summary.unresolved, 'unresolved reference')}")
     _cores(terminal, summary)
     _processes(terminal, summary)
     _chains(terminal, summary)
@@ -78,9 +75,3 @@ def _counts(terminal: Terminal, summary: ModelSummary) -> None:
     if rest:
         rows.append((f"{sum(count for _, count in rest):,}", f"of {len(rest)} more classes"))
     terminal.table(("count", "class"), rows, right=(0,))
-
-
-def write_json(summary: ModelSummary, stream: IO[str]) -> None:
-    """Everything in the summary, under the names of its attributes."""
-    json.dump({"amuros": __version__, **asdict(summary)}, stream, indent=2, ensure_ascii=False)
-    stream.write("\n")

@@ -1,0 +1,1 @@
+"""Results as JSON: a module for each, named by the class of the result."""

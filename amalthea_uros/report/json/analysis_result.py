@@ -1,0 +1,103 @@
+"""An analysis for programs."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+from amalthea_uros.analyze.results import ChainResult, ProcessResult
+from amalthea_uros.report.findings import finding_json, joined
+from amalthea_uros.services.analyze import AnalysisResult
+
+
+def content(result: AnalysisResult) -> dict[str, Any]:
+    """Everything that was computed."""
+    analysis = result.analysis
+    found: dict[str, Any] = {
+        "model": joined(result.paths),
+        "assumptions": list(analysis.assumptions),
+        "findings": [finding_json(finding) for finding in result.findings],
+        "processors": [
+            {
+                "name": processor.name,
+                "utilisation": {
+                    "bcet": _number(processor.best),
+                    "acet": _number(processor.mean),
+                    "wcet": _number(processor.worst),
+                },
+            }
+            for processor in analysis.processors
+        ],
+        "processes": [_process_json(process) for process in analysis.processes],
+        "chains": [_chain_json(chain, result.all_methods) for chain in analysis.chains],
+        "requirements": [
+            {
+                "name": requirement.name,
+                "object": requirement.object,
+                "quantity": requirement.quantity,
+                "limit_ps": requirement.limit,
+                "value_ps": requirement.value,
+                "margin_ps": requirement.margin,
+                "verdict": requirement.verdict,
+                "reason": requirement.reason,
+            }
+            for requirement in analysis.requirements
+        ],
+    }
+    if result.sensitivity is not None:
+        found["sensitivity"] = {
+            "everything": _number(result.sensitivity.everything),
+            "processes": {name: _number(factor) for name, factor in result.sensitivity.processes.items()},
+        }
+    if result.proposals is not None:
+        found["priorities"] = [
+            {"processor": p.core, "current": p.current, "proposed": p.priorities, "reason": p.reason} for p in result.proposals
+        ]
+    return found
+
+
+def _number(value: Fraction | None) -> float | None:
+    return None if value is None else float(value)
+
+
+def _process_json(process: ProcessResult) -> dict[str, Any]:
+    response = process.response
+    return {
+        "name": process.name,
+        "kind": "isr" if process.is_isr else "task",
+        "processor": process.processor,
+        "priority": process.priority,
+        "preemption": process.preemption,
+        "bcet_ps": process.bcet,
+        "acet_ps": None if process.acet is None else round(process.acet),
+        "wcet_ps": process.wcet,
+        "bcrt_ps": response.best if response else None,
+        "wcrt_ps": response.worst if response else None,
+        "deadline_ps": process.deadline,
+        "verdict": process.verdict,
+        "reason": process.reason,
+        "method": response.method if response else None,
+        "source": response.source if response else None,
+        "claim": response.claim if response else None,
+        "terms": {f"{term.replace(' ', '_')}_ps": value for term, value in response.terms.items()} if response else {},
+    }
+
+
+def _chain_json(chain: ChainResult, all_methods: bool) -> dict[str, Any]:
+    return {
+        "name": chain.name,
+        "communication": chain.communication,
+        "routes": list(chain.routes),
+        "why": chain.why,
+        "reason": chain.reason,
+        "values": [
+            {
+                "quantity": value.quantity,
+                "value_ps": value.value,
+                "claim": value.claim,
+                "method": value.method,
+                "source": value.source,
+            }
+            for value in (chain.everything if all_methods else chain.values)
+        ],
+    }

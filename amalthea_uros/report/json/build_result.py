@@ -1,0 +1,43 @@
+"""What was built, and what was decided on the way, for programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amalthea_uros.report.findings import finding_json
+from amalthea_uros.services.build import BuildResult
+
+
+def content(result: BuildResult) -> dict[str, Any]:
+    """The model, the choices, the messages, and the start and the pools of the middleware."""
+    assembly = result.assembly
+    start = assembly.initialisation
+    return {
+        "model": str(result.document.path or "unsaved"),
+        "description": str(result.description),
+        "amalthea": result.document.version,
+        "choices": [{"task": c.task, "period_ps": c.period, "reason": c.reason} for c in assembly.choices],
+        "messages": [
+            {
+                "topic": item.message.topic,
+                "incoming": item.incoming,
+                "interval_ps": item.message.interval,
+                "bytes": item.length,
+                "frames": item.frames,
+                "bus_time_ps": item.transmission_time,
+            }
+            for item in assembly.messages
+        ],
+        "initialisation": start
+        and {
+            "entities": [{"kind": entity.kind, "name": entity.name} for entity in start.entities],
+            "least_cycles": start.min_cycles,
+            "most_cycles": start.max_cycles,
+            "least_time_ps": start.min_time,
+            "most_time_ps": start.max_time,
+        },
+        "pools": [
+            {"option": p.option, "needed": p.needed, "available": p.available, "stated": p.configured} for p in assembly.pools
+        ],
+        "findings": [finding_json(finding) for finding in assembly.findings],
+    }

@@ -1,0 +1,158 @@
+"""An analysis for people."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil
+
+from amalthea_uros.analyze.assignment import Proposal
+from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, RequirementResult, Verdict
+from amalthea_uros.analyze.sensitivity import GREATEST, Sensitivity
+from amalthea_uros.report.latencies import write_chains
+from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.services.analyze import AnalysisResult
+from amalthea_uros.units import Time, frequency_text, time_text
+
+BAR = 20
+_BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET)
+
+
+def write(result: AnalysisResult, terminal: Terminal) -> None:
+    """Write tables of loads, response times, chains and requirements, worst first, and what they rest on."""
+    analysis = result.analysis
+    _processors(terminal, analysis)
+    _processes(terminal, analysis)
+    write_chains(terminal, analysis.chains)
+    _requirements(terminal, analysis)
+    _sensitivity(terminal, result.sensitivity)
+    for proposal in result.proposals or ():
+        _proposal(terminal, proposal)
+    _methods(terminal, analysis)
+    if analysis.assumptions:
+        terminal.heading("Assumptions")
+        for sentence in analysis.assumptions:
+            terminal.line(f"  {sentence}")
+
+
+def _processors(terminal: Terminal, analysis: Analysis) -> None:
+    used = [processor for processor in analysis.processors if processor.worst != 0]
+    if not used:
+        return
+    terminal.line(terminal.style("Load", "1"))
+    rows = []
+    for processor in used:
+        clock = frequency_text(processor.frequency) if processor.frequency else "?"
+        loads = [_percent(load) for load in (processor.best, processor.mean, processor.worst)]
+        rows.append((processor.name, clock, *loads, _bar(processor)))
+    terminal.table(("core", "clock", "best", "mean", "worst", ""), rows, right=(1, 2, 3, 4))
+
+
+def _percent(load: Fraction | None) -> str:
+    return "?" if load is None else f"{float(load):.3%}"
+
+
+def _bar(processor: ProcessorResult) -> str:
+    """The worst load as a bar, with an exclamation mark above 100 %."""
+    if processor.worst is None:
+        return ""
+    filled = ceil(processor.worst * BAR)
+    return "#" * min(filled, BAR) + "." * (BAR - filled) + ("!" if processor.worst > 1 else "")
+
+
+def _processes(terminal: Terminal, analysis: Analysis) -> None:
+    terminal.heading("Response times")
+    ordered = sorted(analysis.processes, key=_urgency)
+    rows = []
+    for process in ordered:
+        response = process.response
+        rows.append(
+            (
+                process.name,
+                process.processor or "?",
+                "?" if process.priority is None else f"{'ISR ' if process.is_isr else ''}{process.priority}",
+                _time(process.wcet),
+                _time(response.best if response else None),
+                _time(response.worst if response else None),
+                _time(process.deadline, "-"),
+                process.verdict if process.verdict is not Verdict.UNKNOWN or response is None else "-",
+                process.reason or (str(response.claim) if response else ""),
+            )
+        )
+    headings = ("process", "core", "priority", "WCET", "best", "worst", "deadline", "verdict", "")
+    terminal.table(headings, rows, right=(2, 3, 4, 5, 6))
+
+
+def _urgency(process: ProcessResult) -> tuple[int, float]:
+    """Bad verdicts first, then those that use up most of their deadline."""
+    response = process.response
+    use = 0.0
+    if response is not None and response.worst is not None and process.deadline:
+        use = response.worst / process.deadline
+    return (_BADNESS.index(process.verdict), -use)
+
+
+def _time(value: Time | None, missing: str = "?") -> str:
+    return missing if value is None else time_text(value)
+
+
+def _requirements(terminal: Terminal, analysis: Analysis) -> None:
+    if not analysis.requirements:
+        return
+    terminal.heading("Requirements")
+    ordered = sorted(analysis.requirements, key=lambda r: _BADNESS.index(r.verdict))
+    rows = [
+        (
+            requirement.name,
+            f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity,
+            _limit(requirement),
+            _time(requirement.value),
+            requirement.verdict,
+            _margin(requirement),
+        )
+        for requirement in ordered
+    ]
+    terminal.table(("requirement", "what", "limit", "value", "verdict", "margin"), rows, right=(3, 5))
+
+
+def _limit(requirement: RequirementResult) -> str:
+    if requirement.limit is None:
+        return "-"
+    return ("at most " if requirement.is_upper else "at least ") + time_text(requirement.limit)
+
+
+def _margin(requirement: RequirementResult) -> str:
+    return requirement.reason if requirement.margin is None else time_text(requirement.margin)
+
+
+def _sensitivity(terminal: Terminal, found: Sensitivity | None) -> None:
+    if found is None:
+        return
+    terminal.heading("Maximum factors on execution times")
+    rows = [("all together", _factor(found.everything)), *((name, _factor(f)) for name, f in found.processes.items())]
+    terminal.table(("process", "factor"), rows, right=(1,))
+
+
+def _factor(factor: Fraction | None) -> str:
+    if factor is None:
+        return "none"
+    return f"{float(factor):.3f}" if factor < GREATEST else f"{GREATEST} or more"
+
+
+def _proposal(terminal: Terminal, proposal: Proposal) -> None:
+    terminal.heading(f"Priorities on {proposal.core}")
+    if proposal.priorities is None:
+        terminal.line(f"  no proposal: {proposal.reason}")
+        return
+    ordered = sorted(proposal.priorities.items(), key=lambda item: -item[1])
+    rows = [(name, "?" if (now := proposal.current[name]) is None else str(now), str(to)) for name, to in ordered]
+    terminal.table(("task", "now", "proposed"), rows, right=(1, 2))
+
+
+def _methods(terminal: Terminal, analysis: Analysis) -> None:
+    methods = dict.fromkeys(
+        f"{process.response.method} ({process.response.source})" for process in analysis.processes if process.response
+    )
+    if methods:
+        terminal.heading("Methods")
+        for method in methods:
+            terminal.line(f"  {method}")

@@ -1,0 +1,26 @@
+"""One event chain for people."""
+
+from __future__ import annotations
+
+from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.report.latencies import value_text
+from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.services.analyze import ChainDetail
+
+
+def write(detail: ChainDetail, terminal: Terminal) -> None:
+    """Write all values of a chain, and how its events are connected."""
+    chain = detail.chain
+    terminal.line(f"{terminal.style(chain.name, '1')}, communication {chain.communication}")
+    for route in chain.routes:
+        terminal.line(f"  {route}")
+    for sentence in filter(None, (chain.why, chain.reason)):
+        terminal.line(f"  {sentence}")
+    values = chain.everything if detail.all_methods else chain.values
+    if values:
+        ordered = sorted(values, key=lambda value: list(Quantity).index(value.quantity))
+        rows = [
+            (value.quantity.replace("_", " "), value_text(value), value.claim, f"{value.method} ({value.source})")
+            for value in ordered
+        ]
+        terminal.table(("quantity", "value", "claim", "method"), rows, right=(1,))

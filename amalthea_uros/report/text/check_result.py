@@ -1,0 +1,47 @@
+"""Findings for people."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from amalthea_uros.findings.grouping import Group
+from amalthea_uros.findings.presentation import Presentation
+from amalthea_uros.findings.targets import summary
+from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.wording import findings_text
+from amalthea_uros.services.check import CheckResult
+
+#: At most so many findings of a rule are shown; nobody reads more, and the others are counted.
+SHOWN = 100
+
+
+def write(result: CheckResult, terminal: Terminal) -> None:
+    """Write each flaw with its line; of a rule that fires very often, the first ones."""
+    count: Counter[str] = Counter()
+    for group in result.presentation.groups:
+        shown = group.shown
+        count[shown.rule] += 1
+        if count[shown.rule] <= SHOWN:
+            terminal.findings([shown])
+            _write_rest(group, terminal)
+    for rule, number in count.items():
+        if number > SHOWN:
+            terminal.line(f"{rule}: {number - SHOWN} more not shown; --output json has all of them")
+    write_sum(result.presentation, terminal)
+
+
+def _write_rest(group: Group, terminal: Terminal) -> None:
+    """The other rules that report the same flaw, and how much follows from it."""
+    if group.also:
+        terminal.line(f"  {terminal.style('also:', '36')} {', '.join(group.also)}")
+    if group.consequences:
+        count = Counter(finding.rule for finding in group.consequences)
+        text = ", ".join(f"{rule} ({number})" for rule, number in count.items())
+        terminal.line(f"  {terminal.style('consequences:', '36')} {text}")
+
+
+def write_sum(presentation: Presentation, terminal: Terminal) -> None:
+    """Write a line for each target tool that nobody asked for, and the number of flaws."""
+    for target, groups in presentation.targets.items():
+        terminal.line(summary(target, (group.shown for group in groups)))
+    terminal.line(findings_text(presentation.shown))

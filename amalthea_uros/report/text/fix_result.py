@@ -1,0 +1,17 @@
+"""What was repaired, for people."""
+
+from __future__ import annotations
+
+from amalthea_uros.report.findings import joined
+from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.wording import counted
+from amalthea_uros.services.fix import FixResult
+
+
+def write(result: FixResult, terminal: Terminal) -> None:
+    """Write a line for each rule and model."""
+    for model in result.models:
+        for rule, number in model.repaired.items():
+            terminal.line(f"{joined(model.paths)}: {rule} repaired in {counted(number, 'object')}")
+    for path in result.descriptions:
+        terminal.line(f"{path}: a description is not repaired, only its author knows what is meant")

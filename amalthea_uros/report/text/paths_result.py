@@ -1,0 +1,22 @@
+"""Paths through processes for people."""
+
+from __future__ import annotations
+
+from amalthea_uros.report.latencies import cells
+from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.services.chains import PathsResult
+
+_COLUMNS = ("min", "max", "data age")
+
+
+def write(result: PathsResult, terminal: Terminal) -> None:
+    """Write paths with their numbers and latencies."""
+    if not result.paths:
+        terminal.line(f"there is no path from {result.start} to {result.end}")
+        return
+    rows = []
+    for number, (path, chain) in enumerate(zip(result.paths, result.chains, strict=True), start=1):
+        first, *others = path.processes
+        text = first + "".join(f" -[{', '.join(links)}]-> {process}" for links, process in zip(path.links, others, strict=True))
+        rows.append((number, *cells(chain, _COLUMNS), text))
+    terminal.table(("", *_COLUMNS, "", "path"), rows, right=(0, 1, 2, 3))

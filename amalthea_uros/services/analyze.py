@@ -1,0 +1,117 @@
+"""Response times, loads, latencies and verdicts of files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from amalthea_uros.analyze.assignment import Proposal, propose_priorities
+from amalthea_uros.analyze.explanation import Share, shares
+from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult
+from amalthea_uros.analyze.sensitivity import Sensitivity, sensitivity
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.perf.system import System
+from amalthea_uros.services.inputs import StrPath, as_paths, open_system
+from amalthea_uros.services.names import require
+from amalthea_uros.timing.settings import Settings
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AnalysisResult:
+    """The analysis of some files, with what it rests on.
+
+    Attributes
+    ----------
+    findings : problems found while reading the files, and what the analysis could not take into account
+    sensitivity, proposals : None if they were not requested
+    all_methods : whether the values of all methods are shown, or the tightest ones
+    """
+
+    paths: tuple[Path, ...]
+    system: System
+    settings: Settings
+    analysis: Analysis
+    findings: tuple[Finding, ...]
+    sensitivity: Sensitivity | None = None
+    proposals: tuple[Proposal, ...] | None = None
+    all_methods: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """What the response time of a process is made of, and whose jobs interfere."""
+
+    process: ProcessResult
+    shares: tuple[Share, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ChainDetail:
+    """All values of a chain, by all methods or the tightest ones, and how its events are connected."""
+
+    chain: ChainResult
+    all_methods: bool
+
+
+def analyze_files(
+    paths: StrPath | Iterable[StrPath],
+    settings: Settings | None = None,
+    *,
+    with_sensitivity: bool = False,
+    with_priorities: bool = False,
+    all_methods: bool = False,
+) -> AnalysisResult:
+    """Analyze an `app.yaml` or AMALTHEA models.
+
+    Parameters
+    ----------
+    with_sensitivity : also find out by how much execution times may grow
+    with_priorities : also propose priorities that meet all deadlines
+    all_methods : show the values of all methods for chains
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    InvalidArgumentError : the settings name a core or a mode label that does not exist.
+    """
+    files, settings = as_paths(paths), settings or Settings()
+    opened = open_system(files)
+    system = opened.system
+    require("core", settings.frequencies, system.cores)
+    require("process", settings.factors, system.processes)
+    require("mode label", settings.modes, [label.name for label in system.software.mode_labels])
+    analysis = analyze_system(system, settings)
+    return AnalysisResult(
+        paths=files,
+        system=system,
+        settings=settings,
+        analysis=analysis,
+        findings=(*opened.findings, *analysis.findings),
+        sensitivity=sensitivity(analysis) if with_sensitivity else None,
+        proposals=tuple(propose_priorities(analysis)) if with_priorities else None,
+        all_methods=all_methods,
+    )
+
+
+def explain(result: AnalysisResult, process: str) -> Explanation:
+    """Explain the response time of a process.
+
+    Raises
+    ------
+    InvalidArgumentError : there is no such process.
+    """
+    require("process", [process], result.system.processes)
+    return Explanation(result.analysis.processes[process], tuple(shares(result.analysis, process)))
+
+
+def chain_detail(result: AnalysisResult, chain: str) -> ChainDetail:
+    """All values of a chain.
+
+    Raises
+    ------
+    InvalidArgumentError : there is no such chain.
+    """
+    require("chain", [chain], result.system.chains)
+    return ChainDetail(result.analysis.chains[chain], result.all_methods)

@@ -1,0 +1,94 @@
+"""The paths along which data and triggers go, and chains made of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from amalthea_uros.analyze.results import ChainResult
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.services.inputs import StrPath, is_description, open_system
+from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.timing.dataflow.paths import Path as ProcessPath
+from amalthea_uros.timing.dataflow.paths import UnknownEndError, paths, with_chains
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathsResult:
+    """The paths from one process, runnable or label to another, with their latencies.
+
+    Attributes
+    ----------
+    model : the file or folder that was read
+    paths : the shortest first
+    chains : the analysis of each path as a chain
+    """
+
+    model: Path
+    start: str
+    end: str
+    paths: tuple[ProcessPath, ...]
+    chains: tuple[ChainResult, ...]
+
+
+def find_paths(model: StrPath, start: str, end: str) -> PathsResult:
+    """Find the paths from one process, runnable or label to another, and analyze them.
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    InvalidArgumentError : there is no process, runnable or label of a name.
+    """
+    system = open_system([model]).system
+    try:
+        found = paths(system, start, end)
+    except (UnknownEndError, UnresolvedError) as error:
+        raise InvalidArgumentError(str(error)) from None
+    chains = analyze_system(with_chains(system, found)).chains if found else ()
+    return PathsResult(model=Path(model), start=start, end=end, paths=tuple(found), chains=tuple(chains))
+
+
+def add_path(found: PathsResult, number: int, name: str, target: StrPath) -> None:
+    """Write the model with one of the paths as an event chain.
+
+    Parameters
+    ----------
+    number : of the path, counted from 1
+    name : of the chain
+    target : the file to write
+
+    Raises
+    ------
+    InvalidArgumentError : there is no such path, the model has a chain of that name, or it is a description.
+    WriteError : the file cannot be written.
+    """
+    from amalthea_uros.bridge.add_chain import add_chain
+    from amalthea_uros.xmi.load import load
+    from amalthea_uros.xmi.save import save
+
+    path = chosen_path(found, number)
+    if is_description(found.model):
+        members = ", ".join(path.processes)
+        raise InvalidArgumentError(
+            f"a description is not rewritten; add to {found.model}: chains: [{{name: {name}, path: [{members}]}}]"
+        )
+    model = load(found.model)
+    try:
+        add_chain(model, *path.chain(name))
+    except ValueError as error:
+        raise InvalidArgumentError(str(error)) from None
+    save(model, target)
+
+
+def chosen_path(found: PathsResult, number: int) -> ProcessPath:
+    """A path by its number.
+
+    Raises
+    ------
+    InvalidArgumentError : there is no such path.
+    """
+    if not 1 <= number <= len(found.paths):
+        paths_found = "there is only 1 path" if len(found.paths) == 1 else f"there are {len(found.paths)} paths"
+        raise InvalidArgumentError(f"no path {number}; {paths_found}")
+    return found.paths[number - 1]

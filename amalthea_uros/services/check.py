@@ -1,0 +1,237 @@
+"""Models and descriptions checked by rules."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from amalthea_uros._internal.garbage import paused_garbage_collection
+from amalthea_uros.diagnostics import Finding, Severity, by_place
+from amalthea_uros.errors import InvalidArgumentError, ReadError
+from amalthea_uros.findings.baseline import baseline_text, read_baseline
+from amalthea_uros.findings.fingerprint import fingerprint
+from amalthea_uros.findings.grouping import Group
+from amalthea_uros.findings.presentation import Presentation, present
+from amalthea_uros.findings.suppression import is_suppressed
+from amalthea_uros.findings.targets import TARGETS, Target
+from amalthea_uros.metamodel.model import Model
+from amalthea_uros.perf.system import System
+from amalthea_uros.services.inputs import StrPath, as_paths, by_model, open_model
+from amalthea_uros.services.settings import CheckSettings, project_settings
+from amalthea_uros.validate import registry
+from amalthea_uros.validate.engine import run, run_system
+from amalthea_uros.validate.rule import ModelRule, Profile, SystemRule
+from amalthea_uros.validate.selection import Selection
+from amalthea_uros.validate.user_rules import rules_of_file
+
+#: Findings about a file that could not be checked at all.
+_UNREADABLE = ("XMI", "YML00")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckResult:
+    """The findings about some files that are not suppressed, by file and line.
+
+    Attributes
+    ----------
+    findings : all of them, also those that report the same flaw, and those about target tools that nobody asked for
+    presentation : the same as they are shown: one for each flaw, and one line about each of these tools
+    fail_on : minimum severity at which the check fails
+    is_readable : whether every file could be checked
+    """
+
+    paths: tuple[Path, ...]
+    findings: tuple[Finding, ...]
+    presentation: Presentation
+    fail_on: Severity
+    is_readable: bool
+
+    @property
+    def fails(self) -> bool:
+        """Whether a flaw is at least as severe as `fail_on`."""
+        failing = tuple(Severity)[: tuple(Severity).index(self.fail_on) + 1]
+        return any(finding.severity in failing for finding in self.presentation.shown)
+
+
+@dataclass(frozen=True, slots=True)
+class CheckStatistics:
+    """How often each rule fires."""
+
+    result: CheckResult
+
+
+def check(model: Model, rules: Iterable[str] | None = None) -> list[Finding]:
+    """Check a model by rules; comments such as `amuros: ignore[TIM-CLOCK]` in its files are respected.
+
+    Parameters
+    ----------
+    rules : ids of the rules; all of them if none are given
+
+    Returns
+    -------
+    list : the findings, by file and line.
+
+    Raises
+    ------
+    InvalidArgumentError : there is no rule with an id.
+    """
+    if not isinstance(model, Model):
+        raise TypeError(f"check() takes a Model, not {type(model).__name__}; use check_files() for paths")
+    if isinstance(rules, str):
+        raise TypeError(f"rules must be a list, e.g. [{rules!r}], not the string {rules!r}")
+    chosen = list(registry.ids() if rules is None else rules)
+    for identifier in chosen:
+        if registry.profile_of(identifier) is None:
+            raise InvalidArgumentError(f"unknown rule {identifier!r}; `amuros rules` lists all rules")
+    return sorted((finding for finding in _run(model, chosen) if not is_suppressed(finding)), key=by_place)
+
+
+def check_files(
+    paths: StrPath | Iterable[StrPath], settings: CheckSettings | None = None, *, each: bool = False
+) -> CheckResult:
+    """Check an `app.yaml`, or AMALTHEA models; problems found while reading the files are also reported.
+
+    Parameters
+    ----------
+    settings : what is not given is taken from the project of the first file
+    each : every file is a model of its own; otherwise the AMALTHEA files are one model together
+
+    Raises
+    ------
+    ReadError : the settings of the project are wrong.
+    InvalidArgumentError : a rule does not exist, or the baseline cannot be read.
+    """
+    files = as_paths(paths)
+    settings = (settings or CheckSettings()).over(project_settings(files[0]))
+    selection = selection_of(settings)
+    accepted = _accepted(settings.baseline)
+    rules = selection.rules()
+    found: list[Finding] = []
+    is_readable = True
+    for group in by_model(files, each):
+        try:
+            found += _check_group(group, rules)
+        except ReadError as error:
+            found += error.findings
+            is_readable &= not any(finding.rule.startswith(_UNREADABLE) for finding in error.findings)
+    findings = tuple(finding for finding in found if _is_shown(finding, selection, accepted))
+    return CheckResult(
+        paths=files,
+        findings=findings,
+        presentation=present(findings, _asked(selection, settings.targets)),
+        fail_on=settings.fail_on or Severity.ERROR,
+        is_readable=is_readable,
+    )
+
+
+def write_baseline(result: CheckResult, path: StrPath) -> None:
+    """Write a baseline that accepts all findings of a check.
+
+    Raises
+    ------
+    WriteError : the file cannot be written.
+    """
+    from amalthea_uros.xmi.files import FileText, write_text
+
+    write_text(Path(path), FileText(baseline_text(result.findings)))
+
+
+def add_rules(files: Iterable[StrPath]) -> None:
+    """Make the rules of Python files known, for as long as the process runs; the files are executed.
+
+    Raises
+    ------
+    ReadError : a file cannot be loaded, or the id of a rule is taken.
+    """
+    for file in files:
+        registry.add(rules_of_file(Path(file)))
+
+
+def summaries(model: Model, targets: Iterable[str]) -> Mapping[Target, Sequence[Group]]:
+    """What target tools make of a model, by flaw.
+
+    Parameters
+    ----------
+    targets : names of the tools
+    """
+    return present(check(model, registry.ids(map(Profile, targets)))).targets
+
+
+def selection_of(settings: CheckSettings) -> Selection:
+    """The rules that settings select.
+
+    Raises
+    ------
+    InvalidArgumentError : a pattern matches no rule.
+    """
+    selection = Selection(
+        profiles=tuple(map(Profile, settings.profiles)), selected=tuple(settings.select), ignored=tuple(settings.ignore)
+    )
+    for pattern in selection.unknown():
+        raise InvalidArgumentError(f"unknown rule {pattern!r}; `amuros rules` lists all rules")
+    return selection
+
+
+def _accepted(baseline: Path | None) -> Collection[str]:
+    try:
+        return read_baseline(baseline) if baseline is not None else ()
+    except ValueError as error:
+        raise InvalidArgumentError(str(error)) from None
+
+
+def _is_shown(finding: Finding, selection: Selection, accepted: Collection[str]) -> bool:
+    """Whether a finding is not suppressed in any way."""
+    return not (selection.is_ignored(finding.rule) or is_suppressed(finding) or fingerprint(finding) in accepted)
+
+
+def _asked(selection: Selection, targets: Iterable[str]) -> set[str]:
+    """The target tools whose findings count: those of the settings and profiles, and those of which rules are selected."""
+    selected = TARGETS if selection.selected else ()
+    return {*targets, *map(str, selection.profiles), *(target.name for target in selected)}
+
+
+def _check_group(paths: Sequence[Path], rules: Collection[str]) -> list[Finding]:
+    """The findings about one model, those of reading and building it included."""
+    opened = open_model(paths)
+    general = [finding for finding in opened.findings if _is_selected(finding, rules)]
+    return sorted([*general, *_run(opened.model, rules, opened.system)], key=by_place)
+
+
+def _run(model: Model, identifiers: Iterable[str], system: System | None = None) -> list[Finding]:
+    """The findings of rules, those that are suppressed included.
+
+    Parameters
+    ----------
+    system : the one that the model was built from, if it was
+    """
+    rules = [registry.rule(identifier) for identifier in identifiers]
+    with paused_garbage_collection():
+        findings = run(model, [rule for rule in rules if isinstance(rule, ModelRule)])
+        findings += _system_findings(model, system, [rule for rule in rules if isinstance(rule, SystemRule)])
+        return findings + _schema_findings(model, {rule.id for rule in rules})
+
+
+def _system_findings(model: Model, system: System | None, rules: Sequence[SystemRule]) -> list[Finding]:
+    if not rules:
+        return []
+    if system is None:
+        from amalthea_uros.bridge.extract import extract
+
+        system = extract(model).system
+    return run_system(system, rules)
+
+
+def _schema_findings(model: Model, rules: Collection[str]) -> list[Finding]:
+    """The findings of the XML schema, if any of its rules is selected."""
+    if set(rules).isdisjoint(registry.ids([Profile.SCHEMA])):
+        return []
+    from amalthea_uros.xmi.schema_findings import schema_findings
+
+    return [f for document in model.documents for f in schema_findings(document) if f.rule in rules]
+
+
+def _is_selected(finding: Finding, rules: Collection[str]) -> bool:
+    """Whether a finding of reading or building belongs to no rule, or to a selected one that has no check of its own."""
+    profile = registry.profile_of(finding.rule)
+    return profile is None or (profile is Profile.MICRO_ROS and finding.rule in rules)

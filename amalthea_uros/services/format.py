@@ -1,0 +1,78 @@
+"""Models in canonical form, as APP4MC writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.errors import ReadError, WriteError
+from amalthea_uros.services.inputs import StrPath, as_paths
+from amalthea_uros.xmi.load import load, model_files
+from amalthea_uros.xmi.save import save
+from amalthea_uros.xmi.writer import document_text
+
+
+@dataclass(frozen=True, slots=True)
+class FormattedFile:
+    """A file that was not in canonical form: its text before and after."""
+
+    path: Path
+    before: str
+    after: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FormatResult:
+    """The files that were not in canonical form.
+
+    Attributes
+    ----------
+    is_written : whether they are now
+    findings : why a file could not be read or written
+    """
+
+    changed: tuple[FormattedFile, ...]
+    is_written: bool
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FormatDiff:
+    """What canonical form changes, line by line."""
+
+    result: FormatResult
+
+
+def format_files(paths: StrPath | Iterable[StrPath], write: bool = True) -> FormatResult:
+    """Rewrite models in canonical form; files that are in it already are not touched.
+
+    Parameters
+    ----------
+    write : False: only find out which files would change
+
+    Raises
+    ------
+    ReadError : a folder has no models.
+    """
+    changed: list[FormattedFile] = []
+    findings: list[Finding] = []
+    for path in model_files(as_paths(paths)):
+        try:
+            changed += _format(path, write)
+        except (ReadError, WriteError) as error:
+            findings += error.findings
+    return FormatResult(changed=tuple(changed), is_written=write, findings=tuple(findings))
+
+
+def _format(path: Path, write: bool) -> Iterable[FormattedFile]:
+    model = load(path)
+    (document,) = model.documents
+    before = document.source.text if document.source else ""
+    after = document_text(document, canonical=True)
+    if after == before:
+        return ()
+    if write:
+        save(model, canonical=True)
+    return (FormattedFile(path, before, after),)

@@ -1,0 +1,127 @@
+"""What a path is, and what is read from it: an `app.yaml`, or AMALTHEA models."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from amalthea_uros.diagnostics import Finding
+
+if TYPE_CHECKING:
+    from amalthea_uros.metamodel.model import Model
+    from amalthea_uros.perf.system import System
+
+StrPath = str | PathLike[str]
+
+_DESCRIPTION_SUFFIXES = (".yaml", ".yml")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModelInput:
+    """The AMALTHEA model of some files.
+
+    Attributes
+    ----------
+    model : the one that was read, or the one that was built from a description, whose objects know its lines
+    findings : problems found while reading or building
+    system : the one that a description describes, None for AMALTHEA models
+    """
+
+    model: Model
+    findings: tuple[Finding, ...]
+    system: System | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SystemInput:
+    """The system of some files.
+
+    Attributes
+    ----------
+    model : the AMALTHEA model that it was extracted from, None for a description
+    findings : problems found while reading, and what could not be extracted
+    """
+
+    system: System
+    model: Model | None
+    findings: tuple[Finding, ...]
+
+
+def is_description(path: StrPath) -> bool:
+    """Whether a file is an `app.yaml`, by its name."""
+    return Path(path).suffix in _DESCRIPTION_SUFFIXES
+
+
+def as_paths(paths: StrPath | Iterable[StrPath]) -> tuple[Path, ...]:
+    """One path or several, as a tuple.
+
+    Raises
+    ------
+    ValueError : there is none.
+    """
+    found = (Path(paths),) if isinstance(paths, str | PathLike) else tuple(map(Path, paths))
+    if not found:
+        raise ValueError("no path given; expected at least one file or folder")
+    return found
+
+
+def by_model(paths: Iterable[Path], each: bool = False) -> Iterator[tuple[Path, ...]]:
+    """The paths that make one model together: all models, but each description on its own.
+
+    Parameters
+    ----------
+    each : every path is a model of its own
+    """
+    models = []
+    for path in paths:
+        if each or is_description(path):
+            yield (path,)
+        else:
+            models.append(path)
+    if models:
+        yield tuple(models)
+
+
+def open_model(paths: Sequence[StrPath]) -> ModelInput:
+    """The AMALTHEA model of files.
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    """
+    if _is_one_description(paths):
+        from amalthea_uros.services.build import build
+
+        built = build(paths[0])
+        return ModelInput(model=built.model, findings=built.findings, system=built.assembly.system)
+    from amalthea_uros.xmi.load import load
+
+    model = load(*paths)
+    return ModelInput(model=model, findings=model.findings)
+
+
+def open_system(paths: Sequence[StrPath]) -> SystemInput:
+    """The system of an `app.yaml` or of AMALTHEA models.
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    """
+    if _is_one_description(paths):
+        from amalthea_uros.services.build import describe
+
+        assembly = describe(paths[0])
+        return SystemInput(system=assembly.system, model=None, findings=assembly.findings)
+    from amalthea_uros.bridge.extract import extract
+    from amalthea_uros.xmi.load import load
+
+    model = load(*paths)
+    extraction = extract(model)
+    return SystemInput(system=extraction.system, model=model, findings=(*model.findings, *extraction.findings))
+
+
+def _is_one_description(paths: Sequence[StrPath]) -> bool:
+    return len(paths) == 1 and is_description(paths[0])

@@ -1,0 +1,33 @@
+"""Names that callers give, looked up in what was read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+from amalthea_uros.errors import InvalidArgumentError
+
+#: Longer lists of names are cut.
+_MOST_NAMES = 20
+
+
+def require(kind: str, names: Iterable[str], known: Iterable[str]) -> None:
+    """Refuse a name that is not known.
+
+    Raises
+    ------
+    InvalidArgumentError : says what the name may mean, or which names there are.
+    """
+    existing = list(known)
+    for name in names:
+        if name not in existing:
+            raise InvalidArgumentError(f"unknown {kind} {name!r}; {_advice(kind, name, existing)}")
+
+
+def _advice(kind: str, name: str, existing: list[str]) -> str:
+    if not existing:
+        return f"the model has no {kind}"
+    if near := get_close_matches(name, existing, n=3):
+        return f"did you mean {' or '.join(map(repr, near))}?"
+    rest = len(existing) - _MOST_NAMES
+    return f"known: {', '.join(existing[:_MOST_NAMES])}" + (f" and {rest} more" if rest > 0 else "")

@@ -1,0 +1,52 @@
+"""Formats are found by their presence, and each result can be shown."""
+
+from dataclasses import is_dataclass
+from importlib import import_module
+from io import StringIO
+from pkgutil import iter_modules
+
+import pytest
+
+from amalthea_uros import services
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.report import formats
+from amalthea_uros.report.wording import counted, findings_text
+from amalthea_uros.services.check import CheckResult
+from amalthea_uros.services.info import InfoResult
+
+MODULES = [import_module(f"{services.__name__}.{module.name}") for module in iter_modules(services.__path__)]
+RESULTS = {
+    value
+    for module in MODULES
+    for value in vars(module).values()
+    if is_dataclass(value) and value.__module__ == module.__name__ and value.__name__.endswith("Result")
+}
+
+
+@pytest.mark.parametrize("result", sorted(RESULTS, key=lambda result: result.__name__))
+def test_every_result_can_be_shown_as_text(result):
+    assert formats.formats_for(result)[0] == "text"
+
+
+def test_a_command_offers_the_formats_that_can_write_its_result():
+    assert formats.formats_for(CheckResult) == ["text", "github", "json", "junit", "sarif"]
+    assert formats.formats_for(InfoResult) == ["text", "json"]
+
+
+def test_a_new_format_is_one_file(tmp_path, monkeypatch):
+    (tmp_path / "lines.py").write_text(
+        "RENDERS = ('CheckResult',)\n\ndef write(result, stream):\n    stream.write(f'{len(result.findings)} lines')\n"
+    )
+    monkeypatch.setattr(formats, "__path__", [*formats.__path__, str(tmp_path)])
+    assert formats.formats_for(CheckResult) == ["text", "github", "json", "junit", "lines", "sarif"]
+    stream = StringIO()
+    formats.write("lines", CheckResult(paths=(), findings=(), fail_on=Severity.ERROR, is_readable=True), stream)
+    assert stream.getvalue() == "0 lines"
+
+
+def test_numbers_in_sentences():
+    found = [Finding("X", severity, "x") for severity in (Severity.WARNING, Severity.INFO, Severity.WARNING, Severity.ERROR)]
+    assert findings_text(found) == "4 findings: 1 error, 2 warnings, 1 info"
+    assert findings_text(found[:1]) == "1 finding: 1 warning"
+    assert findings_text([]) == "no findings"
+    assert (counted(1, "unresolved reference"), counted(1200, "object")) == ("1 unresolved reference", "1,200 objects")
