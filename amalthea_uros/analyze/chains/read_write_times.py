@@ -121,11 +121,24 @@ class StageTiming:
         return response.worst * self.unit
 
     def _least(self, stage: Stage) -> Time:
-        """The least time from the activation of a triggered process to where it is left."""
-        leave = stage.leave
-        if isinstance(leave, At) and leave.occurrence.when in (JobPhase.ACTIVATION, JobPhase.START):
-            return 0
+        """The minimum time from the activation of a triggered process to where it is left."""
+        match kind(stage.leave):
+            case JobPhase.ACTIVATION | JobPhase.START:
+                return 0
+            case JobPhase.BEFORE | JobPhase.AFTER:
+                return self._least_before(stage)
         return self._response(stage.process).best * self.unit
+
+    def _least_before(self, stage: Stage) -> Time:
+        """The minimum that a job executes before it leaves the stage at an activity."""
+        leave = stage.leave
+        position = leave.occurrence.position if isinstance(leave, At) else leave.position
+        if position is None or not position.is_certain:
+            return 0
+        demand = self.context.demand_model.of_activities(
+            stage.process, position.before, self.context.scheduled[stage.process.name].core
+        )
+        return demand.best * self.unit // self.context.time_base(stage.process.name)
 
     def _counters(self, stages: Sequence[Stage]) -> list[Counter]:
         """What lets only some jobs of the first stage take part; those of triggers count its jobs, too."""
