@@ -1,7 +1,9 @@
 """Which room may import which, and in which order data pass through them: the rules of docs/architecture.md."""
 
+import re
 import shutil
 import sys
+from importlib import import_module
 
 import pytest
 from draw_rooms import BASE, PACKAGE, PAGE, circles, main, module_imports, room_imports, room_of
@@ -32,8 +34,8 @@ INNER = tuple(ROOMS)
 ROOMS["services"] = INNER
 #: `report` shows the results of services; it neither reads files nor converts models.
 ROOMS["report"] = tuple(room for room in (*INNER, "services") if room not in ("bridge", "spec", "xmi"))
-ROOMS["am"] = ("metamodel",)
 ROOMS["cli"] = (*INNER, "services", "report")
+ROOMS["am"] = ("metamodel",)
 
 
 @pytest.mark.parametrize("room", ROOMS)
@@ -69,6 +71,43 @@ def test_no_modules_import_each_other():
     modules = module_imports()
     modules.remove_nodes_from([module for module in modules if room_of(module) == "metamodel"])
     assert circles(modules) == []
+
+
+def test_the_page_has_the_table_of_rooms():
+    rows = re.findall(r"^\| (`\w+`(?:, `\w+`)*) \| .* \| (.*) \|$", PAGE.read_text(), re.MULTILINE)
+    rooms, imports = {}, {}
+    for names, cell in rows:
+        stated = set(re.findall(r"`(\w+)`", cell))
+        allowed = rooms.keys() - BASE - stated if cell.startswith("everything above") else stated
+        for name in re.findall(r"`(\w+)`", names):
+            rooms[name] = cell
+            imports[name] = allowed
+    assert imports == {room: set(allowed) - set(BASE) for room, allowed in ROOMS.items()}
+
+
+@pytest.mark.parametrize("page", [PAGE, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.name)
+def test_everything_that_a_page_names_exists(page):
+    names = re.findall(r"`([\w./<>-]+)`", page.read_text())
+    paths = [name for name in names if "/" in name and "<" not in name]
+    assert [path for path in paths if not (ROOT / path).exists()] == []
+    objects = [name for name in names if "." in name and "/" not in name and name.split(".")[0] in ROOMS]
+    assert [name for name in objects if not is_defined(name)] == []
+    assert len(paths) + len(objects) > 20
+
+
+def is_defined(name):
+    """Whether the package has a module, object, or field of a class, e.g. `units` or `spec.processes.Process.period`."""
+    found = import_module(PACKAGE)
+    for part in name.split("."):
+        if part in getattr(found, "__annotations__", {}) or any(part in vars(base) for base in getattr(found, "__mro__", ())):
+            return True
+        if not hasattr(found, part):
+            try:
+                import_module(f"{found.__name__}.{part}")
+            except ImportError:
+                return False
+        found = getattr(found, part)
+    return True
 
 
 def test_the_picture_shows_the_imports(tmp_path):
