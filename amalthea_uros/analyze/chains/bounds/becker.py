@@ -8,7 +8,6 @@ next one has ended; the last job that can be reached at each step gives the long
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask, first_releases
@@ -27,8 +26,3 @@ def reduced_data_age(steps: Sequence[ChainTask]) -> Time | None:
         overwritten = release + step.period + step.response - (reader.offset or 0)
         release = (reader.offset or 0) + (-(-overwritten // reader.period) - 1) * reader.period
     return int((release - first).max()) + steps[-1].response
-
-
-def reduced_data_age_without_information(steps: Sequence[ChainTask]) -> Time | None:
-    """The same where no more is known than that each job ends within its period."""
-    return reduced_data_age([replace(step, response=step.period) for step in steps])
