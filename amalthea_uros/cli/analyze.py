@@ -91,7 +91,7 @@ class ModeValue(click.ParamType[tuple[str, str]]):
     show_default=True,
     help="Show the tightest values of chains, or those of all methods.",
 )
-@click.option("--any-phase", is_flag=True, help="Analyze chains for all phases of the counters at which they start.")
+@click.option("--all-phases", is_flag=True, help="Analyze chains for all phases of the counters at which they start.")
 @click.option("--explain", "process", metavar="PROCESS", help="Show the terms of the response time of a process.")
 @click.option("--sensitivity", "with_sensitivity", is_flag=True, help="Show by how much execution times may grow.")
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
@@ -105,7 +105,7 @@ def command(
     chain: str | None,
     communication: str,
     method: str,
-    any_phase: bool,
+    all_phases: bool,
     process: str | None,
     with_sensitivity: bool,
     with_priorities: bool,
@@ -122,7 +122,7 @@ def command(
         modes=dict(modes),
         memory=Memory(memory),
         communication=_COMMUNICATION.get(communication),
-        any_phase=any_phase,
+        all_phases=all_phases,
     )
     result = analyze_files(
         paths, settings, with_sensitivity=with_sensitivity, with_priorities=with_priorities, all_methods=method == "all"

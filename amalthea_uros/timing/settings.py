@@ -30,7 +30,7 @@ class Settings:
     factors : the same for single processes
     modes : values of mode labels that do not change
     communication : how all labels are read and written; None: as the model says, and implicit where it says nothing
-    any_phase : whether counters at which chains start may start at any of their occurrences
+    all_phases : whether counters at which chains start may start at any of their occurrences
     """
 
     frequencies: Mapping[str, Frequency] = field(default_factory=dict)
@@ -39,7 +39,7 @@ class Settings:
     modes: Mapping[str, str] = field(default_factory=dict)
     memory: Memory = Memory.NONE
     communication: Communication | None = None
-    any_phase: bool = False
+    all_phases: bool = False
 
     def __post_init__(self) -> None:
         for name, kind in (("memory", Memory), ("communication", Communication)):

@@ -202,7 +202,7 @@ class TestSchedulersBelowEachOther:
             ("above", 10, [ticks(9)], {"scheduler": "root", "priority": 9}),
         ]
         built = system([root(), under("server", Policy.POLLING_SERVER, 5, capacity=2, period=10)], tasks)
-        assert worst(built) == {"inside": "the server 'server' is not sure to get its budget in each period", "above": 9}
+        assert worst(built) == {"inside": "the server 'server' is not guaranteed its budget in each period", "above": 9}
 
 
 class TestCosts:
@@ -344,7 +344,7 @@ class TestEventsThatActivate:
         assert "nothing in the model raises" in self.respond(CustomEvent(name="event"))
 
     def test_who_is_triggered_by_something_unknown_is_unknown_too(self):
-        assert "too little is known" in self.respond(
+        assert "could not be analysed" in self.respond(
             CustomEvent(name="event"), RaiseEvent(event="event"), WaitEvent(events=("e",))
         )
 

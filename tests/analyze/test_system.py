@@ -185,7 +185,7 @@ def one_core(*tasks, stimuli=None, **more):
     )
 
 
-def cost_of(*activities, runnables=()):
+def demand_of(*activities, runnables=()):
     process = by_name(analyze_system(one_core(("T", 1000, activities), runnables=runnables)))["T"]
     return (
         None if process.bcet is None else process.bcet // US,
@@ -197,7 +197,7 @@ def cost_of(*activities, runnables=()):
 class TestDemand:
     def test_calls_and_what_they_contain(self):
         runnable = Runnable(name="R", activities=(ticks(5, 3), ticks(2)))
-        assert cost_of(ticks(1), Call(runnable="R"), Call(runnable="R"), runnables=[runnable]) == (11, 15, "")
+        assert demand_of(ticks(1), Call(runnable="R"), Call(runnable="R"), runnables=[runnable]) == (11, 15, "")
 
     def test_branches(self):
         branches = ProbabilitySwitch(
@@ -207,15 +207,15 @@ class TestDemand:
                 Chance(weight=0, activities=()),
             )
         )
-        assert cost_of(branches) == (0, 10, "")
-        assert cost_of(Switch(cases=(Case(activities=(ticks(7),)), Case(activities=(ticks(4),))))) == (0, 7, "")
-        assert cost_of(Switch(cases=(Case(activities=(ticks(7),)),), default=(ticks(4),))) == (4, 7, "")
+        assert demand_of(branches) == (0, 10, "")
+        assert demand_of(Switch(cases=(Case(activities=(ticks(7),)), Case(activities=(ticks(4),))))) == (0, 7, "")
+        assert demand_of(Switch(cases=(Case(activities=(ticks(7),)),), default=(ticks(4),))) == (4, 7, "")
 
     def test_what_has_no_bound(self):
-        assert cost_of(Loop(activities=(ticks(1),)))[2].startswith("there is a loop")
+        assert demand_of(Loop(activities=(ticks(1),)))[2].startswith("there is a loop")
         circle = [Runnable(name="A", activities=(Call(runnable="B"),)), Runnable(name="B", activities=(Call(runnable="A"),))]
-        assert cost_of(Call(runnable="A"), runnables=circle) == (None, None, "the runnable 'A' calls itself")
-        assert cost_of(Call(runnable="nothing"))[2] == "the runnable 'nothing' is not part of the model"
+        assert demand_of(Call(runnable="A"), runnables=circle) == (None, None, "the runnable 'A' calls itself")
+        assert demand_of(Call(runnable="nothing"))[2] == "the runnable 'nothing' is not part of the model"
 
 
 class TestTasksThatCannotAlwaysBeInterrupted:
@@ -317,7 +317,7 @@ class TestWhatIsNotKnown:
         built = one_core(("loop", 1000, [Loop(activities=())]), ("behind", 1000, [ticks(1)]))
         found = by_name(analyze_system(built))
         assert found["behind"].response is None
-        assert "too little is known of 'loop'" in found["behind"].reason
+        assert "depends on 'loop', which could not be analysed" in found["behind"].reason
 
     def test_a_task_that_may_run_on_several_cores_makes_the_others_there_unknown(self):
         tasks = [Task(name=name, stimuli=("s",), activities=(ticks(1),)) for name in ("fixed", "free", "elsewhere")]
@@ -338,7 +338,7 @@ class TestWhatIsNotKnown:
         analysis = analyze_system(replace(built, os=Os(systems=(OperatingSystem(name="OS", schedulers=schedulers),))))
         found = by_name(analysis)
         assert found["free"].reason == "several cores serve it"
-        assert found["fixed"].reason == "too little is known of 'free', which may come before it"
+        assert found["fixed"].reason == "depends on 'free', which could not be analysed"
         assert found["elsewhere"].response.worst is not None
         assert [processor.worst is None for processor in analysis.processors] == [True, True, False]
 
@@ -449,6 +449,6 @@ def test_tasks_that_make_each_other_grow_leave_the_others_alone():
         mapping=Mapping(tasks=(*built.mapping.tasks, *other.mapping.tasks)),
     )
     found = by_name(analyze_system(both))
-    assert "grow without an end" in found["source"].reason
+    assert "increase each other without limit" in found["source"].reason
     assert found["sink"].response is None
     assert found["free"].response is not None

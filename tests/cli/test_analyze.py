@@ -137,7 +137,7 @@ def test_proposed_priorities(tmp_path):
 
 
 def test_a_chain():
-    run = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--any-phase")
+    run = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--all-phases")
     assert run.returncode == 0
     assert "Executor_Task_start -[data memory_1]-> Message_Factor_finish -[data memory_2]->" in run.stdout
     assert "max reduced reaction time    20.029 ms  exact" in run.stdout

@@ -16,7 +16,7 @@ from amalthea_uros.perf.events import Sequence as InSequence
 from amalthea_uros.perf.system import System
 
 #: A chain with more routes is not evaluated.
-MOST_ROUTES = 256
+MAX_ROUTES = 256
 
 
 class UnfoldError(Exception):
@@ -52,8 +52,8 @@ def unfold(chain: EventChain, system: System) -> tuple[Unfolded, tuple[str, ...]
     """
     unfolding = _Unfolding(system)
     found = unfolding.item(chain, (chain.name,))
-    if routes(found) > MOST_ROUTES:
-        raise UnfoldError(f"it has more than {MOST_ROUTES} routes")
+    if routes(found) > MAX_ROUTES:
+        raise UnfoldError(f"it has more than {MAX_ROUTES} routes")
     if any(len(events) < 2 for events in sequences(found)):
         raise UnfoldError("it has no stimulus or no response, and nothing inside that could stand for it")
     return found, tuple(unfolding.left_out)

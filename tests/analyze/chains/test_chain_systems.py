@@ -86,8 +86,8 @@ def system(tasks, events, chains=None, stimuli=(), runnables=(), cores=("core",)
         for core in cores
     )
     names = [event.name for event in events]
-    steps = tuple(Segment(stimulus=first, response=then) for first, then in pairwise(names))
-    whole = EventChain(name="chain", stimulus=names[0], response=names[-1], items=Sequence(steps))
+    segments = tuple(Segment(stimulus=first, response=then) for first, then in pairwise(names))
+    whole = EventChain(name="chain", stimulus=names[0], response=names[-1], items=Sequence(segments))
     return System(
         hardware=Hardware(clocks=(Clock(name="clock", frequency=Fraction(10**12, unit)),), structures=structures),
         os=Os(
@@ -174,11 +174,11 @@ class TestTheThesis:
 
     def test_over_all_phases_of_the_message(self):
         system = describe(self.SAMPLE).system
-        _, values, claims, _ = evaluate(system, any_phase=True)
+        _, values, claims, _ = evaluate(system, all_phases=True)
         assert claims == {"exact"}
         # By hand: taken in the tick of Message_Factor 1000 + 16; taken in the tick behind it, up to the long job 20 ticks later.
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (1016, 20029)
-        # Ticks 0 to 19 behind Message_Factor: 20 in steps of one, of which each ends at 16 or, where it meets a message, at 29.
+        # Ticks 0 to 19 behind Message_Factor: 20 in steps of one, each of which ends at 16 or, where it meets a message, at 29.
         assert values["mean_first_to_first"] == pytest.approx(sum(range(1, 21)) * 1000 / 20 + 16 + 13 / 20)
         assert (values["min_last_to_last"], values["max_reduced_data_age"]) == (1016, 39016)
 
@@ -192,17 +192,17 @@ class TestTheThesis:
         segments = tuple(Segment(stimulus=a.name, response=b.name) for a, b in pairwise(events))
         chain = EventChain(name="c", stimulus=events[0].name, response=events[-1].name, items=Sequence(segments))
         system = replace(system, events=Events(events=events, chains=(chain,)))
-        _, values, _, _ = evaluate(system, any_phase=True)
+        _, values, _, _ = evaluate(system, all_phases=True)
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (least, most)
 
     def test_within_five_per_cent_of_what_was_measured(self):
-        _, values, _, _ = evaluate(describe(self.SAMPLE).system, any_phase=True)
+        _, values, _, _ = evaluate(describe(self.SAMPLE).system, all_phases=True)
         measured = {"min_first_to_first": 970, "mean_first_to_first": 10320, "max_reduced_reaction_time": 19978}
         for quantity, value in measured.items():
             assert abs(values[quantity] - value) / value < 0.05
 
     def test_logical_execution_times(self):
-        _, values, claims, _ = evaluate(describe(self.SAMPLE).system, any_phase=True, communication=Communication.LET)
+        _, values, claims, _ = evaluate(describe(self.SAMPLE).system, all_phases=True, communication=Communication.LET)
         assert claims == {"exact"}
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (22000, 41000)
 
@@ -462,7 +462,7 @@ class TestWhatCarries:
         assert (values["max_reduced_reaction_time"], values["max_reaction_time"]) == (11, 21)
         _, values, claims, _ = evaluate(system(tasks, events, cores=("one", "two"), controllers=True))
         assert claims == {"bound"}
-        # Clocks that are not synchronized: a period and a response time at each step.
+        # Clocks that are not synchronized: a period and a response time at each task.
         assert values["max_reaction_time"] == 10 + 4 + 10 + 1
 
 
@@ -562,7 +562,7 @@ class TestNoFiniteBound:
         tasks = [("A", 10, [ticks(8), write("L")]), ("B", 10, [read("L"), ticks(4)])]
         chain, values, _, rules = evaluate(system(tasks, [at("A", START), at("B", END)]))
         assert rules == ["CHN003"]
-        assert "'B' has no bound: the demand up to this priority is 120.0%" in chain.reason
+        assert "'B' is unbounded: overload: tasks at this priority or higher need 120.0 % of the core" in chain.reason
         assert not values
 
     def test_what_may_stay_away(self):

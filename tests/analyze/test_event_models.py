@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from support import SHARED
 
 from amalthea_uros.analyze.propagation import completions
-from amalthea_uros.analyze.response_times import non_preemptive
-from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times import non_preemptive, priority_levels
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import Constant, Uniform
@@ -136,16 +135,16 @@ def test_the_tutorial_of_compositional_analysis():
     arrivals = {name: Periodic(source["P"], source["J"]) for name, source in case["sources"].items()}
     worst = {}
     for resource, analysis in (
-        ("CPU1", levels.response_times),
+        ("CPU1", priority_levels.response_times),
         ("BUS", non_preemptive.response_times),
-        ("CPU2", levels.response_times),
+        ("CPU2", priority_levels.response_times),
     ):
         tasks = [
             # Lower numbers are more important there.
             Task(
                 name=t["name"],
-                arrivals=arrivals[t["name"]],
-                cost=MultiframeDemand.constant(t["wcet"], t["bcet"]),
+                events=arrivals[t["name"]],
+                demand=MultiframeDemand.constant(t["wcet"], t["bcet"]),
                 priority=-t["priority"],
             )
             for t in case["tasks"]
@@ -156,5 +155,5 @@ def test_the_tutorial_of_compositional_analysis():
             for chain in case["precedence"]:
                 if task.name in chain[:-1]:
                     follower = chain[chain.index(task.name) + 1]
-                    arrivals[follower] = completions(task.arrivals, response, task.cost.best)
+                    arrivals[follower] = completions(task.events, response, task.demand.best)
     assert worst == case["expected_wcrt"]
