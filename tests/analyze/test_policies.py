@@ -333,7 +333,7 @@ class TestEventsThatActivate:
     def test_accesses_to_labels(self):
         write = LabelAccess(label="L", kind=AccessKind.WRITE)
         assert self.respond(LabelEvent(name="event", label="L", change=LabelChange.WRITE), write) == 9
-        assert "nothing triggers" in self.respond(LabelEvent(name="event", label="L", change=LabelChange.READ), write)
+        assert "no process triggers" in self.respond(LabelEvent(name="event", label="L", change=LabelChange.READ), write)
 
     def test_twice_in_a_job(self):
         twice = (RaiseEvent(event="event"), RaiseEvent(event="event"))
@@ -341,7 +341,7 @@ class TestEventsThatActivate:
         assert self.respond(CustomEvent(name="event"), *twice) == 13
 
     def test_events_from_outside(self):
-        assert "nothing in the model raises" in self.respond(CustomEvent(name="event"))
+        assert "no activity in the model raises" in self.respond(CustomEvent(name="event"))
 
     def test_who_is_triggered_by_something_unknown_is_unknown_too(self):
         assert "could not be analysed" in self.respond(

@@ -212,7 +212,7 @@ class TestDemand:
         assert demand_of(Switch(cases=(Case(activities=(ticks(7),)),), default=(ticks(4),))) == (4, 7, "")
 
     def test_what_has_no_bound(self):
-        assert demand_of(Loop(activities=(ticks(1),)))[2].startswith("there is a loop")
+        assert demand_of(Loop(activities=(ticks(1),)))[2].startswith("it contains a loop")
         circle = [Runnable(name="A", activities=(Call(runnable="B"),)), Runnable(name="B", activities=(Call(runnable="A"),))]
         assert demand_of(Call(runnable="A"), runnables=circle) == (None, None, "the runnable 'A' calls itself")
         assert demand_of(Call(runnable="nothing"))[2] == "the runnable 'nothing' is not part of the model"
@@ -301,10 +301,10 @@ class TestWhatIsNotKnown:
     @pytest.mark.parametrize(
         ("change", "reason"),
         [
-            ({"stimuli": Stimuli()}, "the stimulus 'every low' is not part of the model"),
+            ({"stimuli": Stimuli()}, "the stimulus 'every low' is not defined in the model"),
             (
                 {"stimuli": Stimuli(stimuli=(perf_stimuli.Custom(name="every low"),))},
-                "nothing bounds how often 'every low' occurs",
+                "the rate of the stimulus 'every low' is unbounded",
             ),
             ({"mapping": Mapping()}, "it is not allocated to a scheduler"),
         ],
@@ -337,7 +337,7 @@ class TestWhatIsNotKnown:
         )
         analysis = analyze_system(replace(built, os=Os(systems=(OperatingSystem(name="OS", schedulers=schedulers),))))
         found = by_name(analysis)
-        assert found["free"].reason == "several cores serve it"
+        assert found["free"].reason == "several cores can execute it"
         assert found["fixed"].reason == "depends on 'free', which could not be analysed"
         assert found["elsewhere"].response.worst is not None
         assert [processor.worst is None for processor in analysis.processors] == [True, True, False]

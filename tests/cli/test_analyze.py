@@ -69,7 +69,7 @@ def test_overload(tmp_path):
     run = amuros("analyze", path, "--scale", "80")
     assert run.returncode == 1
     assert "unbounded" in run.stdout
-    assert "of the processor" in run.stdout
+    assert "overload: tasks at this priority or higher need" in run.stdout
     assert "####################!" in run.stdout
 
 

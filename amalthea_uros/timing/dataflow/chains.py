@@ -1,8 +1,8 @@
-"""Event chains as sequences of events: containers and references unfolded, alternatives and joins side by side.
+"""Event chains as sequences of events: containers and references are unfolded, alternatives and joins become forks.
 
-Where INCHRON's importer drops or changes a chain, it is taken as it stands here: what is missing inside is left out, and where a
-segment starts elsewhere than the one before ended, both events are kept. Only a first segment that does not start with the chain,
-or a last one that does not end with it, has to give way, which is told.
+Chains are not changed as by INCHRON's importer: missing inner events are skipped, and if a segment does not start with the end of the
+previous one, both events are kept. Only the start of a first segment, or the end of a last one, that differs from that of the chain
+is ignored and reported.
 """
 
 from __future__ import annotations
@@ -55,12 +55,12 @@ def unfold(chain: EventChain, system: System) -> tuple[Unfolded, tuple[str, ...]
     if routes(found) > MAX_ROUTES:
         raise UnfoldError(f"it has more than {MAX_ROUTES} routes")
     if any(len(events) < 2 for events in sequences(found)):
-        raise UnfoldError("it has no stimulus or no response, and nothing inside that could stand for it")
+        raise UnfoldError("it has no stimulus or no response, and no segment that defines one")
     return found, tuple(unfolding.left_out)
 
 
 def routes(unfolded: Unfolded) -> int:
-    """How many ways through a chain there are."""
+    """The number of ways through a chain."""
     product = 1
     for part in unfolded:
         if isinstance(part, Fork):
@@ -102,11 +102,11 @@ class _Unfolding:
         if isinstance(item, Segment):
             return self.item(item, above)
         if item.chain in above:
-            circle = " -> ".join((*above[above.index(item.chain) :], item.chain))
-            raise UnfoldError(f"it is part of itself: {circle}")
+            cycle = " -> ".join((*above[above.index(item.chain) :], item.chain))
+            raise UnfoldError(f"it contains itself: {cycle}")
         chain = self.system.chains.get(item.chain)
         if chain is None:
-            raise UnfoldError(f"its part {item.chain!r} is not in the model")
+            raise UnfoldError(f"its part {item.chain!r} is not defined in the model")
         return self.item(chain, (*above, chain.name))
 
     def _event(self, name: str | None) -> Unfolded:
@@ -114,7 +114,7 @@ class _Unfolding:
             return ()
         event = self.system.events_by_name.get(name)
         if event is None:
-            raise UnfoldError(f"the event {name!r} is not in the model")
+            raise UnfoldError(f"the event {name!r} is not defined in the model")
         if not isinstance(event, EventSet):
             return (name,)
         parts = tuple(self._event(inner) for inner in event.events)
@@ -141,7 +141,7 @@ def _is_same_set(one: str | Fork, other: str | Fork) -> bool:
 
 
 def _without(fork: Fork, event: str, at_start: bool) -> Fork:
-    """A fork whose branches do not repeat the event in front of it, or behind it."""
+    """A fork whose branches do not repeat the event before or after it."""
 
     def trimmed(branch: Unfolded) -> Unfolded:
         if at_start:
@@ -161,9 +161,9 @@ def sequences(unfolded: Unfolded) -> list[tuple[str, ...]]:
 
 
 def combined(unfolded: Unfolded, value: Mapping[tuple[str, ...], int | None], before: tuple[str, ...] = ()) -> int | None:
-    """The value of a chain of which those of all ways through are known; None stands for more than any.
+    """The value of a chain of which those of all ways through are known; None means unbounded.
 
-    Of a fork the branches are sorted, and the one counts with which enough of them have completed.
+    The branches of a fork are sorted by value; the value of the fork is that of the branch with which enough of them have completed.
     """
     for index, part in enumerate(unfolded):
         if isinstance(part, Fork):

@@ -29,7 +29,7 @@ MAX_PROCESSES = 12
 
 
 class UnknownEndError(Exception):
-    """There is nothing of a name at which a path could start or end."""
+    """A path cannot start or end at a name, because it is undefined."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ from amalthea_uros.perf.software import (
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 
-#: Calls that multiply, or nest deeper, are not followed.
+#: Processes with more activities, or deeper calls, are not analysed.
 MAX_POSITIONS = 200_000
 MAX_CALL_DEPTH = 100
 
@@ -31,7 +31,7 @@ Nesting: TypeAlias = tuple[tuple[tuple[Activity, ...], int], ...]
 
 
 class TooComplexError(Exception):
-    """A process executes too many activities to be followed; the text says which."""
+    """A process executes too many activities to be analysed; the text says which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,16 +63,16 @@ class ActivityPosition:
 
     @property
     def before(self) -> tuple[Activity, ...]:
-        """What a job has done when it reaches this position."""
+        """The activities that a job has executed when it reaches this position."""
         return tuple(activity for activities, index in self.outer for activity in activities[:index])
 
 
 def positions(process: Process, system: System) -> list[ActivityPosition]:
-    """Everything that the jobs of a process may do, in order; calls are followed by what the runnables do.
+    """All activities of the jobs of a process, in order; a call is followed by the activities of its runnable.
 
     Raises
     ------
-    TooComplexError : its calls multiply to more than `MAX_POSITIONS` activities, or nest deeper than `MAX_CALL_DEPTH`.
+    TooComplexError : it has more than `MAX_POSITIONS` activities, or calls nested deeper than `MAX_CALL_DEPTH`.
     """
     walk = _Walk(process, system)
     walk.through(process.activities, _Branch())
@@ -81,7 +81,7 @@ def positions(process: Process, system: System) -> list[ActivityPosition]:
 
 @dataclass(frozen=True, slots=True)
 class _Branch:
-    """What holds for all activities of a list."""
+    """The common properties of all activities of a list."""
 
     runnable: str | None = None
     outer: Nesting = ()
@@ -108,7 +108,7 @@ class _Walk:
             conditions = _conditions(activity, self.system)
             place = len(self.found)
             if place >= MAX_POSITIONS or len(branch.above) > MAX_CALL_DEPTH:
-                raise TooComplexError(f"the calls of {self.process.name!r} are too many or nested too deep to be followed")
+                raise TooComplexError(f"{self.process.name!r} has too many calls, or too deeply nested calls, to be analysed")
             # Its last number is known after what it contains.
             self.found.append(None)
             if isinstance(activity, Call):

@@ -502,7 +502,7 @@ class TestForms:
             EventChain(name="d", items=Sequence((ChainReference(chain="c"),))),
         )
         chain, values, _, rules = self.evaluate(*chains)
-        assert chain.reason == "it is part of itself: c -> d -> c"
+        assert chain.reason == "it contains itself: c -> d -> c"
         assert rules == ["CHN001", "CHN001"]
         assert not values
 
