@@ -215,7 +215,7 @@ class TestDemand:
         assert demand_of(Loop(activities=(ticks(1),)))[2].startswith("it contains a loop")
         circle = [Runnable(name="A", activities=(Call(runnable="B"),)), Runnable(name="B", activities=(Call(runnable="A"),))]
         assert demand_of(Call(runnable="A"), runnables=circle) == (None, None, "the runnable 'A' calls itself")
-        assert demand_of(Call(runnable="nothing"))[2] == "the runnable 'nothing' is not part of the model"
+        assert demand_of(Call(runnable="nothing"))[2] == "the runnable 'nothing' is not defined in the model"
 
 
 class TestTasksThatCannotAlwaysBeInterrupted:

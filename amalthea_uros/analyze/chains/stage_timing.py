@@ -120,10 +120,22 @@ class StageTiming:
 
     def _min_delay(self, stage: Stage) -> Time:
         """The minimum time from the activation of a triggered process to the end of its stage."""
-        leave = stage.leave
-        if isinstance(leave, At) and leave.occurrence.when in (JobPhase.ACTIVATION, JobPhase.START):
-            return 0
+        match kind(stage.leave):
+            case JobPhase.ACTIVATION | JobPhase.START:
+                return 0
+            case JobPhase.BEFORE | JobPhase.AFTER:
+                return self._min_demand(stage)
         return self._response(stage.process).best * self.unit
+
+    def _min_demand(self, stage: Stage) -> Time:
+        """The minimum demand of a job before the activity at which it leaves the stage."""
+        leave = stage.leave
+        position = leave.occurrence.position if isinstance(leave, At) else leave.position
+        if position is None or not position.is_certain:
+            return 0
+        core = self.context.scheduled[stage.process.name].core
+        demand = self.context.demand_model.of_activities(stage.process, position.before, core)
+        return demand.best * self.unit // self.context.time_base(stage.process.name)
 
     def _counters(self, stages: Sequence[Stage]) -> list[Counter]:
         """The counters that let only some jobs of the first stage take part, including those of triggers."""

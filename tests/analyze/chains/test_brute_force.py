@@ -5,7 +5,7 @@ from itertools import pairwise
 from random import Random
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from test_chain_systems import END, START, at, evaluate, read, system, ticks, write
 
@@ -222,6 +222,17 @@ def test_two_cores_and_tasks_that_are_not_interrupted(communication, drawn):
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
 @settings(max_examples=60)
 @given(systems(["one", "two"], ANY, varying=True, triggered=True))
+# The triggered task writes before it executes anything.
+@example(
+    (
+        [
+            Drawn("T0", 6, 5, "one", Preemption.PREEMPTIVE, ((0, 0), (0, 0), (1, 2))),
+            Drawn("T1", 12, 4, "one", Preemption.PREEMPTIVE, ((0, 1), (0, 1), (1, 1)), triggers="T2"),
+            Drawn("T2", None, 4, "two", Preemption.PREEMPTIVE, ((0, 0), (0, 0), (1, 2))),
+        ],
+        ["T1", "T2", "T0"],
+    )
+)
 def test_triggers(communication, drawn):
     check(drawn, communication)
 
