@@ -147,6 +147,12 @@ def test_a_chain():
     assert "unknown chain 'x'" in amuros("analyze", ADVANCED, "--chain", "x").stderr
 
 
+def test_any_phase_is_an_alias_of_all_phases():
+    runs = [amuros("analyze", ADVANCED, "--chain", "factor-to-output", option) for option in ("--all-phases", "--any-phase")]
+    assert runs[0].stdout == runs[1].stdout
+    assert "over all 20 phases" in runs[1].stdout
+
+
 def test_a_chain_that_is_too_slow(tmp_path):
     path = tmp_path / "app.yaml"
     path.write_text(ADVANCED.read_text().replace("reaction: 25 ms", "reaction: 2 ms"))

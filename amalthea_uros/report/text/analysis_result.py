@@ -18,7 +18,7 @@ _BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET)
 
 
 def write(result: AnalysisResult, terminal: Terminal) -> None:
-    """Write tables of loads, response times, chains and requirements, worst first, and what they rest on."""
+    """Write tables of loads, response times, chains and requirements, worst first, with methods and assumptions."""
     analysis = result.analysis
     _processors(terminal, analysis)
     _processes(terminal, analysis)
