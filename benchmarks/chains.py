@@ -94,7 +94,7 @@ def whole_system(tasks: list[PeriodicTask], chains: list[list[int]]) -> System:
 
 
 def least_time(work: Callable[[], object], repeat: int) -> float:
-    """The least time of several runs, in milliseconds."""
+    """The minimum time of several runs, in milliseconds."""
     times = []
     for _ in range(repeat):
         start = time.perf_counter()

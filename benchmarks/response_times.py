@@ -77,7 +77,7 @@ def challenge_system(random: Random) -> System:
 
 
 def least_time(work: Callable[[], object], repeat: int) -> float:
-    """The least time of several runs, in milliseconds."""
+    """The minimum time of several runs, in milliseconds."""
     times = []
     for _ in range(repeat):
         start = time.perf_counter()

@@ -64,12 +64,12 @@ def _chains(evaluation: ChainEvaluator) -> Iterator[ChainResult]:
 def _note_ignored(solution: Solution) -> None:
     """Report what the analysis does not take into account."""
     system, notes = solution.context.system, solution.context.notes
-    costs = {overhead.name: overhead for overhead in system.os.overheads}
+    overheads = {overhead.name: overhead for overhead in system.os.overheads}
     for operating_system in system.os.systems:
-        overhead = costs.get(operating_system.overhead or "")
+        overhead = overheads.get(operating_system.overhead or "")
         for service, _ in overhead.services if overhead else ():
             if service not in COUNTED:
-                message = f"the cost of {service!r} in {operating_system.name!r} is not taken into account"
+                message = f"the overhead of {service!r} in {operating_system.name!r} is ignored"
                 notes.warning("ANA006", message, overhead)
     for name, response in solution.responses.items():
         process = solution.context.scheduled[name].process

@@ -291,9 +291,9 @@ def _any_time(frame: Frame) -> Frame:
 
 def _repeated(frame: Frame, times: Count | float) -> Frame:
     """A frame that is executed several times."""
-    least, average, most = (times.least, times.mean, times.most) if isinstance(times, Count) else (times, times, times)
+    minimum, average, maximum = (times.least, times.mean, times.most) if isinstance(times, Count) else (times, times, times)
     return replace(
-        frame, worst=frame.worst * ceil(most), best=frame.best * floor(least), average=frame.average * Fraction(average)
+        frame, worst=frame.worst * ceil(maximum), best=frame.best * floor(minimum), average=frame.average * Fraction(average)
     )
 
 

@@ -69,8 +69,8 @@ class Overheads:
     def of_activity(self, activity: Activity, core: str) -> Iterator[Demand]:
         """The demands of the services that an activity calls."""
         if core in self._by_core:
-            _, costs = self._by_core[core]
-            yield from (costs[service] for service in self._services(activity) if service in costs)
+            _, demands = self._by_core[core]
+            yield from (demands[service] for service in self._services(activity) if service in demands)
 
     def _services(self, activity: Activity) -> tuple[Service, ...]:
         match activity:

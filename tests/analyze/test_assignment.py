@@ -36,8 +36,8 @@ def meets(order, tasks, deadlines):
 @given(ROWS)
 def test_there_is_an_assignment_if_and_only_if_one_of_all_orders_is_one(rows):
     tasks = [
-        AnalysedTask(name=str(index), events=PeriodicEvents(period, jitter), demand=MultiframeDemand.constant(cost))
-        for index, (period, jitter, cost, _) in enumerate(rows)
+        AnalysedTask(name=str(index), events=PeriodicEvents(period, jitter), demand=MultiframeDemand.constant(wcet))
+        for index, (period, jitter, wcet, _) in enumerate(rows)
     ]
     deadlines = [deadline for *_, deadline in rows]
     found = assign(tasks, deadlines)
@@ -78,7 +78,7 @@ def tasks_on_a_core(*rows, **more):
             Periodic(name=f"every {name}", period=period * US, offset=index * US)
             for index, (name, period, _, _) in enumerate(rows)
         ],
-        [Task(name=name, stimuli=(f"every {name}",), activities=(ticks(cost),)) for name, _, cost, _ in rows],
+        [Task(name=name, stimuli=(f"every {name}",), activities=(ticks(wcet),)) for name, _, wcet, _ in rows],
         [
             TaskAllocation(task=name, scheduler="core", priority=index, deadline=deadline * US if deadline else None)
             for index, (name, _, _, deadline) in enumerate(rows)

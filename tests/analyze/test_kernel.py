@@ -56,10 +56,10 @@ def test_the_same_schedule(rows):
             name=str(index),
             period=period,
             offset=offset,
-            demand=MultiframeDemand((Frame(worst=cost, best=cost), Frame(worst=1, best=0, prescaler=prescaler, offset=start))),
+            demand=MultiframeDemand((Frame(worst=wcet, best=wcet), Frame(worst=1, best=0, prescaler=prescaler, offset=start))),
             priority=-index // 2,
         )
-        for index, (period, offset, cost, prescaler, start) in enumerate(rows)
+        for index, (period, offset, wcet, prescaler, start) in enumerate(rows)
     ]
     assume(sum(task.demand.mean_worst / task.period for task in tasks) <= 1)
     recorded = [index % 2 == 0 for index in range(len(tasks))]

@@ -53,13 +53,13 @@ def test_published_and_independent_figures(case):
 def test_liu_and_layland_1973(case):
     """Up to the bound of theorem 5 any tasks end within their periods, also those that just reach it."""
     count, bound = case["n"], case["expected"]
-    # The worst case of the proof: periods in the ratio of 2 ** (1 / n), each cost the distance to the next period.
+    # The worst case of the proof: periods in the ratio of 2 ** (1 / n), each wcet the distance to the next period.
     periods = [round(10**9 * 2 ** (index / count)) for index in range(count)]
-    costs = [(then - first) for first, then in pairwise([*periods, 2 * periods[0]])]
-    assert sum(cost / period for cost, period in zip(costs, periods, strict=True)) == pytest.approx(bound, rel=1e-8)
+    wcets = [(then - first) for first, then in pairwise([*periods, 2 * periods[0]])]
+    assert sum(wcet / period for wcet, period in zip(wcets, periods, strict=True)) == pytest.approx(bound, rel=1e-8)
     tasks = [
-        Task(name=f"t{index}", events=Periodic(period), demand=MultiframeDemand.constant(cost), priority=-index)
-        for index, (period, cost) in enumerate(zip(periods, costs, strict=True))
+        Task(name=f"t{index}", events=Periodic(period), demand=MultiframeDemand.constant(wcet), priority=-index)
+        for index, (period, wcet) in enumerate(zip(periods, wcets, strict=True))
     ]
     responses = priority_levels.response_times(tasks)
     assert all(response.worst <= period for response, period in zip(responses, periods, strict=True))
@@ -123,10 +123,10 @@ def drawn(rows, jitter=False):
         Task(
             name=str(index),
             events=Periodic(period, jittered if jitter else 0),
-            demand=MultiframeDemand.constant(cost, max(1, cost - 1)),
+            demand=MultiframeDemand.constant(wcet, max(1, wcet - 1)),
             priority=-index,
         )
-        for index, (period, cost, jittered) in enumerate(rows)
+        for index, (period, wcet, jittered) in enumerate(rows)
     ]
 
 
@@ -190,15 +190,15 @@ def test_the_order_of_tasks_does_not_matter(rows, random):
 
 def interrupted_never(tasks, until):
     """Brute force: jobs served whole, highest priority first, whichever arrived; integer time."""
-    arrivals = sorted(
+    activations = sorted(
         (k * t.events.period, -t.priority, i) for i, t in enumerate(tasks) for k in range(until // t.events.period + 1)
     )
     now, waiting, worst = 0, [], [0] * len(tasks)
-    while arrivals or waiting:
+    while activations or waiting:
         if not waiting:
-            now = max(now, arrivals[0][0])
-        while arrivals and arrivals[0][0] <= now:
-            waiting.append(arrivals.pop(0))
+            now = max(now, activations[0][0])
+        while activations and activations[0][0] <= now:
+            waiting.append(activations.pop(0))
         job = min(waiting, key=lambda job: (job[1], job[0]))
         waiting.remove(job)
         now += tasks[job[2]].demand.worst
@@ -246,7 +246,7 @@ class TestDemandThatIsNotTheSameInEachJob:
 
     @given(st.integers(1, 6), st.integers(1, 5), st.integers(1, 60))
     def test_no_sequence_of_jobs_costs_more(self, prescaler, extra, count):
-        cost = MultiframeDemand((Frame(worst=3, best=2), Frame(worst=extra, best=extra, prescaler=prescaler)))
+        demand = MultiframeDemand((Frame(worst=3, best=2), Frame(worst=extra, best=extra, prescaler=prescaler)))
         windows = [range(first, first + count) for first in range(1, 2 * prescaler + 1)]
-        assert max(sum(map(cost.worst_of, jobs)) for jobs in windows) == cost.max_demand(count)
-        assert min(sum(map(cost.best_of, jobs)) for jobs in windows) == cost.min_demand(count)
+        assert max(sum(map(demand.worst_of, jobs)) for jobs in windows) == demand.max_demand(count)
+        assert min(sum(map(demand.best_of, jobs)) for jobs in windows) == demand.min_demand(count)

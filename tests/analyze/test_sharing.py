@@ -16,21 +16,21 @@ from amalthea_uros.timing.scheduling import EqualPriority
 
 
 def shared(equal_priority, rows, above=()):
-    """Tasks of (period, cost, deadline or slice) that share a priority, below others of (period, cost)."""
+    """Tasks of (period, wcet, deadline or slice) that share a priority, below others of (period, wcet)."""
     higher = [
-        Task(name=f"H{index}", events=Periodic(period), demand=MultiframeDemand.constant(cost), priority=1 + index)
-        for index, (period, cost) in enumerate(above)
+        Task(name=f"H{index}", events=Periodic(period), demand=MultiframeDemand.constant(wcet), priority=1 + index)
+        for index, (period, wcet) in enumerate(above)
     ]
     lower = [
         Task(
             name=f"T{index}",
             events=Periodic(period),
-            demand=MultiframeDemand.constant(cost),
+            demand=MultiframeDemand.constant(wcet),
             equal_priority=equal_priority,
             deadline=last if equal_priority is EqualPriority.EDF else 0,
             slice=last,
         )
-        for index, (period, cost, last) in enumerate(rows)
+        for index, (period, wcet, last) in enumerate(rows)
     ]
     return [*higher, *lower]
 
@@ -104,8 +104,8 @@ def test_some_offsets_reach_the_bound(equal_priority, rows):
 def test_no_schedule_of_a_server_is_worse_than_the_bound(rows, offsets, budget, idle, phase):
     period = budget + idle
     tasks = [
-        Task(name=f"T{index}", events=Periodic(period * 3), demand=MultiframeDemand.constant(cost), priority=-index)
-        for index, (period, cost, _) in enumerate(rows)
+        Task(name=f"T{index}", events=Periodic(period * 3), demand=MultiframeDemand.constant(wcet), priority=-index)
+        for index, (period, wcet, _) in enumerate(rows)
     ]
     assume(load(tasks) < Fraction(budget, period))
     supply = Budget(budget=budget, period=period, wait=2 * idle)

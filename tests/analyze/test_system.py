@@ -239,12 +239,12 @@ class TestTasksThatCannotAlwaysBeInterrupted:
         assert self.respond(Preemption.PREEMPTIVE) == [2, 12, 25]
 
     def test_cooperative(self):
-        # A interrupts at once. B waits for c1 (8), starts b2 behind b1 (5) and A (2) at 15, ends at 20.
-        # C starts c2 behind c1 (8), B (10) and two jobs of A (4) at 22, ends at 25.
+        # A interrupts at once. B waits for c1 (8), starts b2 after b1 (5) and A (2) at 15, ends at 20.
+        # C starts c2 after c1 (8), B (10) and two jobs of A (4) at 22, ends at 25.
         assert self.respond(Preemption.COOPERATIVE) == [2, 20, 25]
 
     def test_non_preemptive(self):
-        # A waits for all of C (11). B starts behind C (11) and A (2) at 13, ends at 23. C starts behind B and A at 12, ends at 23.
+        # A waits for all of C (11). B starts after C (11) and A (2) at 13, ends at 23. C starts after B and A at 12, ends at 23.
         assert self.respond(Preemption.NON_PREEMPTIVE) == [13, 23, 23]
 
 
@@ -314,10 +314,10 @@ class TestWhatIsNotKnown:
         assert analyze_system(replace(built, **change)).processes[0].reason == reason
 
     def test_who_comes_behind_something_unknown_is_unknown_too(self):
-        built = one_core(("loop", 1000, [Loop(activities=())]), ("behind", 1000, [ticks(1)]))
+        built = one_core(("loop", 1000, [Loop(activities=())]), ("lower", 1000, [ticks(1)]))
         found = by_name(analyze_system(built))
-        assert found["behind"].response is None
-        assert "depends on 'loop', which could not be analysed" in found["behind"].reason
+        assert found["lower"].response is None
+        assert "depends on 'loop', which could not be analysed" in found["lower"].reason
 
     def test_a_task_that_may_run_on_several_cores_makes_the_others_there_unknown(self):
         tasks = [Task(name=name, stimuli=("s",), activities=(ticks(1),)) for name in ("fixed", "free", "elsewhere")]
@@ -375,11 +375,11 @@ class TestVerdicts:
 
 
 class TestRequirements:
-    """A task of 20 us behind one of 30, which comes every 100 with a jitter of 10, all at 1 MHz."""
+    """A task of 20 us below one of 30 with a period of 100 and a jitter of 10, all at 1 MHz."""
 
     JITTER = (Periodic(name="every high", period=100 * US, jitter=Uniform(lower=0, upper=10 * US)),)
 
-    def judged(self, metric, bound=Bound.UPPER, process="low"):
+    def value_of(self, metric, bound=Bound.UPPER, process="low"):
         limit = TimeLimit(metric=metric, value=0, bound=bound)
         requirement = Requirement(name="R", process=process, limit=limit)
         built = one_core(
@@ -393,7 +393,7 @@ class TestRequirements:
         return None if result.value is None else result.value // US
 
     @pytest.mark.parametrize(
-        ("metric", "least", "most"),
+        ("metric", "minimum", "maximum"),
         [
             (TimeMetric.RESPONSE_TIME, 15, 50),
             (TimeMetric.NET_EXECUTION_TIME, 15, 20),
@@ -412,12 +412,12 @@ class TestRequirements:
             (TimeMetric.OS_OVERHEAD, None, None),
         ],
     )
-    def test_metrics(self, metric, least, most):
-        assert (self.judged(metric, Bound.LOWER), self.judged(metric)) == (least, most)
+    def test_metrics(self, metric, minimum, maximum):
+        assert (self.value_of(metric, Bound.LOWER), self.value_of(metric)) == (minimum, maximum)
 
     def test_jitter_moves_activations(self):
-        assert self.judged(TimeMetric.ACTIVATE_TO_ACTIVATE, Bound.LOWER, "high") == 90
-        assert self.judged(TimeMetric.ACTIVATE_TO_ACTIVATE, process="high") == 110
+        assert self.value_of(TimeMetric.ACTIVATE_TO_ACTIVATE, Bound.LOWER, "high") == 90
+        assert self.value_of(TimeMetric.ACTIVATE_TO_ACTIVATE, process="high") == 110
 
     def test_limits_of_something_else_are_told(self):
         limit = CountLimit(metric=CountMetric.PREEMPTIONS, value=3)

@@ -94,13 +94,13 @@ class ConstraintEvaluator:
         chain = self.chains.get(constraint.chain)
         if chain is None:
             raise UnknownError(f"the chain {constraint.chain!r} is not defined in the model")
-        least, most = _AGE if constraint.kind is LatencyKind.AGE else _REACTION
+        minimum, maximum = _AGE if constraint.kind is LatencyKind.AGE else _REACTION
         kind = str(constraint.kind)
         if constraint.maximum is not None:
-            value = _time(chain.value(most))
+            value = _time(chain.value(maximum))
             yield _result(constraint, chain.name, kind, constraint.maximum, value, chain.reason)
         if constraint.minimum is not None:
-            value = _time(chain.value(least))
+            value = _time(chain.value(minimum))
             yield _result(constraint, chain.name, kind, constraint.minimum, value, chain.reason, is_upper=False)
 
     def _delay(self, constraint: DelayConstraint) -> Iterator[RequirementResult]:
@@ -112,12 +112,12 @@ class ConstraintEvaluator:
                     "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
                 )
         values = {value.quantity: value for value in self.evaluation.pair(source, target)}
-        least, most = _REACTION
+        minimum, maximum = _REACTION
         what = f"{constraint.source} to {constraint.target}"
         if constraint.upper is not None:
-            yield _result(constraint, what, "delay", constraint.upper, _time(values.get(most)))
+            yield _result(constraint, what, "delay", constraint.upper, _time(values.get(maximum)))
         if constraint.lower is not None:
-            yield _result(constraint, what, "delay", constraint.lower, _time(values.get(least)), is_upper=False)
+            yield _result(constraint, what, "delay", constraint.lower, _time(values.get(minimum)), is_upper=False)
 
     def _chain_synchronization(self, constraint: ChainSynchronization) -> RequirementResult:
         found = [self.chains.get(name) for name in constraint.chains]

@@ -69,9 +69,9 @@ def merged(results: Sequence[ChainResult]) -> ChainResult:
     found = []
     for quantity in Quantity:
         values = [result.value(quantity) for result in results]
-        known = [value for value in values if value is not None and value.value is not None]
-        if known and len(known) == len(values):
-            found.append(_over(quantity, known))
+        finite = [value for value in values if value is not None and value.value is not None]
+        if finite and len(finite) == len(values):
+            found.append(_over(quantity, finite))
     return replace(first, values=tuple(found), all_values=tuple(found))
 
 

@@ -204,8 +204,8 @@ def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[Value]]) 
         if reacts:
             time = combined(unfolded, times)
         else:
-            known = [time for time in times.values() if time is not None]
-            time = (max if value.quantity.is_upper else min)(known)
+            finite = [time for time in times.values() if time is not None]
+            time = (max if value.quantity.is_upper else min)(finite)
         found.append(
             Value(
                 quantity=value.quantity,

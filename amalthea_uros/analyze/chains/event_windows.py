@@ -53,12 +53,12 @@ class EventWindows:
         response = self.evaluation.solution.responses.get(occurrence.process.name)
         if response is None or response.worst is None:
             raise UnknownError(f"the response time of {occurrence.process.name!r} is unknown or unbounded")
-        least = self.evaluation.solution.bcet(occurrence.process.name)
+        bcet = self.evaluation.solution.bcet(occurrence.process.name)
         match occurrence.when:
             case JobPhase.ACTIVATION:
                 return 0, 0
             case JobPhase.START:
-                return 0, response.worst - least
+                return 0, response.worst - bcet
             case JobPhase.END:
                 return response.best, response.worst
         return 0, response.worst

@@ -31,7 +31,7 @@ class Fork:
     ----------
     branches : sequences of events and further forks
     needed : how many of them have to complete
-    name : of the set of events that it stands for, if it is one
+    name : of the set of events that it represents, if any
     """
 
     branches: tuple[Unfolded, ...]
@@ -122,7 +122,7 @@ class _Unfolding:
 
 
 def _joined(parts: Iterable[str | Fork]) -> Unfolded:
-    """Without events that come twice in a row; those at the ends of the branches of a fork are told apart from it."""
+    """The parts without consecutive duplicates; events at the ends of branches are not repeated before or after the fork."""
     found: list[str | Fork] = []
     for part in parts:
         if found and (found[-1] == part or _is_same_set(found[-1], part)):
@@ -136,7 +136,7 @@ def _joined(parts: Iterable[str | Fork]) -> Unfolded:
 
 
 def _is_same_set(one: str | Fork, other: str | Fork) -> bool:
-    """Whether both stand for a set with which one part of a chain ends and the next one starts."""
+    """Whether both represent the set of events at the end of one part of a chain and the start of the next one."""
     return isinstance(one, Fork) and isinstance(other, Fork) and bool(one.name) and one.name == other.name
 
 
@@ -161,7 +161,7 @@ def sequences(unfolded: Unfolded) -> list[tuple[str, ...]]:
 
 
 def combined(unfolded: Unfolded, value: Mapping[tuple[str, ...], int | None], before: tuple[str, ...] = ()) -> int | None:
-    """The value of a chain of which those of all ways through are known; None means unbounded.
+    """The value of a chain from those of all ways through it; None means unbounded.
 
     The branches of a fork are sorted by value; the value of the fork is that of the branch with which enough of them have completed.
     """

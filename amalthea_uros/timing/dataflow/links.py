@@ -43,7 +43,7 @@ class LinkKind(StrEnum):
     DATA = "data"
     OS_EVENT = "an OS event"
     SERVER_CALL = "a server call"
-    NOTHING = "nothing"
+    NOTHING = "no link"
 
 
 #: Without a link, a chain is evaluated as if there were a variable.

@@ -102,14 +102,14 @@ class _Walk:
             outer = (*branch.outer, (activities, index))
             counters, times = branch.counters, branch.times
             if isinstance(activity, Call | LabelAccess):
-                times *= _most(activity.times)
+                times *= _max_times(activity.times)
             if isinstance(activity, Call) and activity.counter is not None:
                 counters = (*counters, activity.counter)
             conditions = _conditions(activity, self.system)
             place = len(self.found)
             if place >= MAX_POSITIONS or len(branch.above) > MAX_CALL_DEPTH:
                 raise TooComplexError(f"{self.process.name!r} has too many calls, or too deeply nested calls, to be analysed")
-            # Its last number is known after what it contains.
+            # Its last number is known only after its inner activities.
             self.found.append(None)
             if isinstance(activity, Call):
                 called = self.system.runnables.get(activity.runnable)
@@ -156,7 +156,7 @@ def _conditions(activity: Activity, system: System) -> tuple[Condition, ...]:
     return tuple(condition for condition in found if condition is not None)
 
 
-def _most(times: Count | float | None) -> int:
+def _max_times(times: Count | float | None) -> int:
     if times is None:
         return 1
     return times.most if isinstance(times, Count) else ceil(times)

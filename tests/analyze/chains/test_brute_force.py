@@ -70,8 +70,8 @@ def built(tasks, chain):
     reads = {then: f"L{first}" for first, then in pairwise(chain)}
     rows = []
     for task in tasks:
-        before, between, behind = (ticks(worst, best) if worst > best else ticks(worst) for best, worst in task.parts)
-        body = [before, *([read(reads[task.name])] if task.name in reads else []), between, write(f"L{task.name}"), behind]
+        before, between, after = (ticks(worst, best) if worst > best else ticks(worst) for best, worst in task.parts)
+        body = [before, *([read(reads[task.name])] if task.name in reads else []), between, write(f"L{task.name}"), after]
         if task.triggers:
             body.append(Trigger(stimulus=f"go {task.triggers}"))
         rows.append((task.name, task.period, body, task.core, task.offset))
@@ -111,13 +111,13 @@ def run(tasks, until, random, communication):
             if job not in here or job["task"].preemption is not Preemption.NON_PREEMPTIVE:
                 job = min(here, key=lambda job: job["rank"])
             running[core] = job
-            times, (before, between, behind) = job["times"], job["spent"]
+            times, (before, between, after) = job["times"], job["spent"]
             times.setdefault("start", now)
             if job["done"] == before:
                 times.setdefault("read", now)
             if before + between == 0:
                 times.setdefault("write", now)
-            total = before + between + behind
+            total = before + between + after
             if total:
                 job["done"] += 1
             if job["done"] == before + between:
@@ -171,7 +171,7 @@ def ages(chain_times, triggered):
             yield begin, end, last[number + 1][3]
 
 
-def triggered_hops(tasks, chain):
+def triggered_links(tasks, chain):
     triggers = {(task.name, task.triggers) for task in tasks}
     return [link in triggers for link in pairwise(chain)]
 
@@ -189,16 +189,16 @@ def check(drawn, communication):
     for seed in range(4):
         jobs = run(tasks, 260, Random(seed), communication)
         chain_times = [jobs[name] for name in chain]
-        for before, start, end in reactions(chain_times, triggered_hops(tasks, chain)):
+        for before, start, end in reactions(chain_times, triggered_links(tasks, chain)):
             if before >= steady_state_start:
                 assert end - start <= values["max_reduced_reaction_time"]
                 assert end - start >= values.get("min_first_to_first", 0)
                 assert end - before <= values.get("max_reaction_time", end)
-        for begin, end, behind in ages(chain_times, triggered_hops(tasks, chain)):
+        for begin, end, overwritten in ages(chain_times, triggered_links(tasks, chain)):
             if begin >= steady_state_start:
                 assert end - begin <= values["max_reduced_data_age"]
                 assert end - begin >= values.get("min_last_to_last", 0)
-                assert behind - begin <= values.get("max_data_age", behind)
+                assert overwritten - begin <= values.get("max_data_age", overwritten)
 
 
 ALWAYS = [Preemption.PREEMPTIVE]
@@ -248,14 +248,16 @@ def test_constant_execution_times_are_met_exactly(communication, drawn):
     chain_times = [jobs[name] for name in chain]
     found = [
         (end - before, end - start)
-        for before, start, end in reactions(chain_times, triggered_hops(tasks, chain))
+        for before, start, end in reactions(chain_times, triggered_links(tasks, chain))
         if before >= 100
     ]
     assert max(found)[0] == values["max_reaction_time"]
     assert max(reduced for _, reduced in found) == values["max_reduced_reaction_time"]
     assert min(reduced for _, reduced in found) == values["min_first_to_first"]
     aged = [
-        (behind - begin, end - begin) for begin, end, behind in ages(chain_times, triggered_hops(tasks, chain)) if begin >= 100
+        (overwritten - begin, end - begin)
+        for begin, end, overwritten in ages(chain_times, triggered_links(tasks, chain))
+        if begin >= 100
     ]
     assert max(aged)[0] == values["max_data_age"]
     assert max(reduced for _, reduced in aged) == values["max_reduced_data_age"]

@@ -1,4 +1,4 @@
-"""Chains of whole systems: what carries the effect, when it is read and written, and what is told where nothing is known."""
+"""Chains of whole systems: links between events, read and write times, and reasons of unknown results."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -176,24 +176,24 @@ class TestTheThesis:
         system = describe(self.SAMPLE).system
         _, values, claims, _ = evaluate(system, all_phases=True)
         assert claims == {"exact"}
-        # By hand: taken in the tick of Message_Factor 1000 + 16; taken in the tick behind it, up to the long job 20 ticks later.
+        # By hand: taken in the tick of Message_Factor 1000 + 16; taken in the tick after it, up to the long job 20 ticks later.
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (1016, 20029)
-        # Ticks 0 to 19 behind Message_Factor: 20 in steps of one, each of which ends at 16 or, where it meets a message, at 29.
+        # Ticks 0 to 19 after Message_Factor: 20 in steps of one, each of which ends at 16 or, where it meets a message, at 29.
         assert values["mean_first_to_first"] == pytest.approx(sum(range(1, 21)) * 1000 / 20 + 16 + 13 / 20)
         assert (values["min_last_to_last"], values["max_reduced_data_age"]) == (1016, 39016)
 
     @pytest.mark.parametrize(
-        ("start", "end", "least", "most"),
+        ("start", "end", "minimum", "maximum"),
         [(START, END, 1016, 20029), (END, END, 991, 20004), (END, ACTIVATION, 975, 19975)],
     )
-    def test_other_end_points(self, start, end, least, most):
+    def test_other_end_points(self, start, end, minimum, maximum):
         system = describe(self.SAMPLE).system
         events = (at("Executor_Task", start), at("Message_Factor", END), at("Control_Function", end))
         segments = tuple(Segment(stimulus=a.name, response=b.name) for a, b in pairwise(events))
         chain = EventChain(name="c", stimulus=events[0].name, response=events[-1].name, items=Sequence(segments))
         system = replace(system, events=Events(events=events, chains=(chain,)))
         _, values, _, _ = evaluate(system, all_phases=True)
-        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (least, most)
+        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (minimum, maximum)
 
     def test_within_five_per_cent_of_what_was_measured(self):
         _, values, _, _ = evaluate(describe(self.SAMPLE).system, all_phases=True)
@@ -208,7 +208,7 @@ class TestTheThesis:
 
 
 def producer_and_consumer(*chain, unit=US, **more):
-    """A producer of 2 + 3 that writes behind its 2, each 10; a consumer of 4 + 1 each 20 that reads behind its 4."""
+    """A producer of 2 + 3 that writes after its 2, every 10; a consumer of 4 + 1 every 20 that reads after its 4."""
     runnables = [
         Runnable(name="make", activities=(ticks(2), write("L"))),
         Runnable(name="rest", activities=(ticks(3),)),
@@ -253,7 +253,7 @@ class TestCommunication:
             for runnable in built.software.runnables
         )
         _, values, _, _ = evaluate(replace(built, software=replace(built.software, runnables=runnables)))
-        # Written at 10 and 20, read at 20 and out at its end behind the producer, at 30.
+        # Written at 10 and 20, read at 20 and out at its end after the producer, at 30.
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (20, 30)
 
     def logical(self, activity):
@@ -281,7 +281,7 @@ class TestWhatCarries:
         [(RunnableChange.TERMINATE, "the same job", 4), (RunnableChange.START, "the next job", 8)],
     )
     def test_what_a_runnable_does_comes_before_its_end(self, change, kind, value):
-        # The write comes 2 us behind the start of the job, which takes 6 us.
+        # The write comes 2 us after the start of the job, which takes 6 us.
         runnables = [
             Runnable(name="outer", activities=(ticks(1), Call(runnable="inner"), ticks(1))),
             Runnable(name="inner", activities=(ticks(1), write("L"), ticks(3))),
@@ -362,7 +362,7 @@ class TestWhatCarries:
         chain, values, claims, _ = evaluate(replace(built, software=replace(built.software, tasks=tasks)))
         assert chain.routes == ("source start -[a trigger go]-> sink terminate",)
         assert claims == {"bound"}
-        # 2, and 3 behind another job of the source that may come in between.
+        # 2, and 3 after another job of the source that may come in between.
         assert values["max_reduced_reaction_time"] == 2 + 3 + 2
 
     @pytest.mark.parametrize(
@@ -388,7 +388,7 @@ class TestWhatCarries:
         assert values["max_reduced_reaction_time"] >= 3 + 3
 
     def test_a_frame_on_a_bus(self):
-        # A bus is a core whose frames are tasks that nothing interrupts: the frame waits for a longer one of lower priority.
+        # A bus is a core whose frames are non-preemptive tasks: the frame waits for a longer one of lower priority.
         tasks = [
             ("sensor", 10, [ticks(1), write("raw")], "one"),
             ("frame", 10, [read("raw"), ticks(2), write("received")], "bus"),
@@ -424,7 +424,7 @@ class TestWhatCarries:
         tasks = [("A", 10, [ticks(1)]), ("B", 10, [ticks(1)])]
         chain, values, claims, rules = evaluate(system(tasks, [at("A", START), at("B", END)]))
         assert rules == ["CHN002"]
-        assert chain.routes == ("A start -[nothing]-> B terminate",)
+        assert chain.routes == ("A start -[no link]-> B terminate",)
         assert claims == {"bound"}
         assert values["max_reduced_reaction_time"] == 2
 
@@ -571,7 +571,7 @@ class TestNoFiniteBound:
         built = system(tasks, [at("A", START), at("B", END)], stimuli=[sporadic])
         _, values, claims, _ = evaluate(built)
         assert claims == {"bound"}
-        # 50 from one to the next; it comes before B, which reads within 10 and takes 4 behind another job of A.
+        # 50 from one to the next; it comes before B, which reads within 10 and takes 4 after another job of A.
         assert values["max_reaction_time"] == 50 + 10 + 4 + 1
 
     def test_hyperperiods_that_are_too_long(self):

@@ -1,4 +1,4 @@
-"""Timing constraints on the producer and the consumer, all worked out by hand: 5 each 10, and 5 behind it each 20."""
+"""Timing constraints on the producer and the consumer, all computed by hand: 5 every 10, and 5 after it every 20."""
 
 from dataclasses import replace
 
@@ -69,7 +69,7 @@ def test_a_delay_whose_occurrences_belong_together_one_by_one():
 
 
 def test_repetition():
-    # The consumer starts at 5 behind each 20; by its response time of 10 and its 5 it might start 5 later.
+    # The consumer starts at 5 after every 20; by its response time of 10 and its 5 it might start 5 later.
     repetition = RepetitionConstraint(name="R", event=EVENTS[2].name, span=2, lower=35 * US, upper=44 * US, jitter=5 * US)
     assert evaluate(repetition) == [("repetition", 45, "missed"), ("repetition", 35, "met"), ("jitter", 5, "met")]
 
@@ -115,7 +115,7 @@ def test_chains_that_should_end_together():
     ],
 )
 def test_how_long_data_are_valid(limits, expected):
-    # The writer ends at 1 and 11 of each 20, the reader reads at 5.
+    # The writer ends at 1 and 11 of every 20, the reader reads at 5.
     built = system(
         [("writer", 10, [Call(runnable="make")]), ("reader", 20, [read("L"), ticks(1)], "core", 5)],
         [at("writer", END), at("reader", START)],

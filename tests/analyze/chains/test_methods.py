@@ -208,10 +208,10 @@ def drawn(rows):
             name=str(index),
             period=period,
             offset=offset,
-            demand=MultiframeDemand.constant(cost, max(1, cost - less)),
+            demand=MultiframeDemand.constant(wcet, max(1, wcet - less)),
             priority=-index,
         )
-        for index, (period, cost, less, offset) in enumerate(rows)
+        for index, (period, wcet, less, offset) in enumerate(rows)
     ]
     assume(sum(task.demand.mean_worst / task.period for task in tasks) <= 1)
     return tasks
@@ -219,10 +219,10 @@ def drawn(rows):
 
 def observe(tasks, chain, until, random):
     """The latencies of a chain in one run: reads and writes of all jobs, then each value followed on its way."""
-    costs = {}
+    drawn_demands = {}
 
-    def demand_of(cost, job):
-        return costs.setdefault((id(cost), job), random.randint(cost.best, cost.worst))
+    def demand_of(demand, job):
+        return drawn_demands.setdefault((id(demand), job), random.randint(demand.best, demand.worst))
 
     waiting, found = [], {task.name: [] for task in tasks}
     for now in range(until):
@@ -257,14 +257,14 @@ def forward(chain_times):
 def backward(chain_times):
     """(read, write, next write) of each job of the last task."""
     *others, last = chain_times
-    for (read, write), (_, behind) in pairwise(last):
+    for (read, write), (_, next_write) in pairwise(last):
         start = read
         for times in reversed(others):
             start = next((begin for begin, end in reversed(times) if end <= start), None)
             if start is None:
                 break
         if start is not None:
-            yield start if others else read, write, behind
+            yield start if others else read, write, next_write
 
 
 @settings(max_examples=150)
@@ -301,23 +301,23 @@ def test_no_run_is_worse_than_a_bound(rows, data):
             if before >= steady_state_start:
                 assert end - before <= min(reactions)
                 assert end - read <= found.first_to_first.max()
-        for read, write, behind in ageing:
+        for read, write, next_write in ageing:
             if read >= steady_state_start:
-                assert behind - read <= found.data_age
+                assert next_write - read <= found.data_age
                 assert write - read <= min(ages)
 
 
 @given(rows=ROWS, data=st.data())
 def test_constant_execution_times_are_exact(rows, data):
-    tasks = drawn([(period, cost, 0, offset) for period, cost, _, offset in rows])
+    tasks = drawn([(period, wcet, 0, offset) for period, wcet, _, offset in rows])
     names = [task.name for task in tasks]
     chain = data.draw(st.permutations(names).map(lambda order: order[: data.draw(st.integers(1, len(names)))]))
     found = build_job_chains(tasks, chain)
     reacting, ageing = observe(tasks, chain, 400, Random(0))
     reacting = [(before, read, end) for before, read, end in reacting if before >= 100]
-    ageing = [(read, write, behind) for read, write, behind in ageing if read >= 100]
+    ageing = [(read, write, next_write) for read, write, next_write in ageing if read >= 100]
     assert found.reaction_time == max(end - before for before, _, end in reacting)
-    assert found.data_age == max(behind - read for read, _, behind in ageing)
+    assert found.data_age == max(next_write - read for read, _, next_write in ageing)
     # Reaction time and data age are the same, whatever the schedule (Günzel and others 2023).
     assert found.reaction_time == found.data_age
     assert {*found.first_to_first.tolist()} == {end - read for _, read, end in reacting}
