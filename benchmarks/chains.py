@@ -14,7 +14,7 @@ from itertools import pairwise
 from random import Random
 
 from amalthea_uros.analyze.chains import job_chains
-from amalthea_uros.analyze.chains.job_times import ReadWriteTimes
+from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
 from amalthea_uros.analyze.response_times import kernel, schedule
 from amalthea_uros.analyze.response_times.schedule import Jobs, PeriodicTask
 from amalthea_uros.analyze.system import analyze_system
@@ -38,7 +38,7 @@ def task_set(random: Random) -> list[PeriodicTask]:
             name=f"T{index}",
             period=period * MILLISECOND,
             offset=0,
-            cost=MultiframeDemand.constant(max(1, int(period * MILLISECOND * 0.7 * share / sum(shares)))),
+            demand=MultiframeDemand.constant(max(1, int(period * MILLISECOND * 0.7 * share / sum(shares)))),
             priority=-index,
         )
         for index, (period, share) in enumerate(zip(PERIODS, shares, strict=True))
@@ -47,11 +47,11 @@ def task_set(random: Random) -> list[PeriodicTask]:
 
 def four_quantities(jobs: list[Jobs], chain: list[int], cycle: int) -> tuple[int, int, int, int]:
     """The maxima of a chain."""
-    tracks = [
+    chain_times = [
         ReadWriteTimes(releases=jobs[i].releases, reads=jobs[i].begins, writes=jobs[i].ends, cycle=cycle, until=2 * cycle)
         for i in chain
     ]
-    found = job_chains.build_job_chains(tracks, cycle)
+    found = job_chains.build_job_chains(chain_times, cycle)
     assert found is not None
     return found.reaction_time, found.data_age, int(found.first_to_first.max()), int(found.last_to_last.max())
 
@@ -65,7 +65,7 @@ def whole_system(tasks: list[PeriodicTask], chains: list[list[int]]) -> System:
             stimuli=(task.name,),
             activities=(
                 *labels,
-                software.Execute(demand=software.Demand(Constant(task.cost.worst // 1000))),
+                software.Execute(demand=software.Demand(Constant(task.demand.worst // 1000))),
                 software.LabelAccess(label=task.name, kind=software.AccessKind.WRITE),
             ),
         )
@@ -94,7 +94,7 @@ def whole_system(tasks: list[PeriodicTask], chains: list[list[int]]) -> System:
 
 
 def least_time(work: Callable[[], object], repeat: int) -> float:
-    """The least time of several runs, in milliseconds."""
+    """The minimum time of several runs, in milliseconds."""
     times = []
     for _ in range(repeat):
         start = time.perf_counter()

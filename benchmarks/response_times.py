@@ -14,8 +14,7 @@ from fractions import Fraction
 from importlib.util import find_spec
 from random import Random
 
-from amalthea_uros.analyze.response_times import kernel
-from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times import kernel, priority_levels
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import mapping, os, software, stimuli
@@ -36,8 +35,8 @@ def task_set(count: int, load: float, random: Random, jitter: bool) -> list[Task
     return [
         Task(
             name=f"T{index}",
-            arrivals=Periodic(period, random.randrange(period // 10) if jitter else 0),
-            cost=MultiframeDemand.constant(max(1, int(period * load * share / sum(shares)))),
+            events=Periodic(period, random.randrange(period // 10) if jitter else 0),
+            demand=MultiframeDemand.constant(max(1, int(period * load * share / sum(shares)))),
             priority=-index,
         )
         for index, (period, share) in enumerate(zip(periods, shares, strict=True))
@@ -78,7 +77,7 @@ def challenge_system(random: Random) -> System:
 
 
 def least_time(work: Callable[[], object], repeat: int) -> float:
-    """The least time of several runs, in milliseconds."""
+    """The minimum time of several runs, in milliseconds."""
     times = []
     for _ in range(repeat):
         start = time.perf_counter()
@@ -92,7 +91,7 @@ def measure(random: Random, repeat: int, how: str) -> None:
     for jitter in (False, True):
         for cores in (1, 4):
             sets = [task_set(1000, 0.7, random, jitter) for _ in range(cores)]
-            took = least_time(lambda sets=sets: [levels.response_times(s) for s in sets], repeat)
+            took = least_time(lambda sets=sets: [priority_levels.response_times(s) for s in sets], repeat)
             kind = "with jitter" if jitter else "without jitter"
             print(f"{how}: {cores} x 1,000 tasks at 70 % load, {kind}: {took:.1f} ms")
     system = challenge_system(random)
@@ -104,14 +103,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--repeat", type=int, default=5)
     options = parser.parse_args()
-    loops = (kernel.demand_in, kernel.fixed_point, kernel.least_response)
+    loops = (kernel.demand_in, kernel.least_fixed_point, kernel.greatest_fixed_point)
     for loop in loops:
         loop.keep_python()
     measure(Random(1), options.repeat, "Python")
     if find_spec("numba"):
         for loop in loops:
             loop.compile()
-        levels.response_times(task_set(10, 0.7, Random(1), True))
+        priority_levels.response_times(task_set(10, 0.7, Random(1), True))
         measure(Random(1), options.repeat, "compiled")
 
 

@@ -12,15 +12,15 @@ from pathlib import Path
 import numpy as np
 
 from amalthea_uros.analyze.chains import job_chains
-from amalthea_uros.analyze.chains.job_times import Track
+from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
 from amalthea_uros.analyze.response_times import schedule
-from amalthea_uros.analyze.response_times.schedule import Released
+from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.results import Quantity
-from amalthea_uros.timing.multiframe import Cost
+from amalthea_uros.timing.multiframe import MultiframeDemand
 
 TASKS = (
-    Released(name="Sensor", period=4, offset=0, cost=Cost.constant(1), priority=1),
-    Released(name="Actuator", period=6, offset=0, cost=Cost.constant(2), priority=0),
+    PeriodicTask(name="Sensor", period=4, offset=0, demand=MultiframeDemand.constant(1), priority=1),
+    PeriodicTask(name="Actuator", period=6, offset=0, demand=MultiframeDemand.constant(2), priority=0),
 )
 UNIT, LEFT, LANE, TOP = 26, 86, 46, 18
 INK, SOFT, JOB, USED, MEASURE = "#1f2328", "#8b949e", "#d0d7de", "#79c0ff", "#cf222e"
@@ -36,15 +36,18 @@ class Shown:
     actuators: tuple[int, ...]
 
 
-def tracks() -> list[Track]:
+def chain_times() -> list[ReadWriteTimes]:
     """The reads and writes of both tasks."""
     cycle = schedule.hyperperiod(TASKS)
-    jobs = schedule.schedule(TASKS, 2 * cycle, Cost.worst_of)
-    return [Track(releases=j.releases, reads=j.begins, writes=j.ends, cycle=cycle, until=2 * cycle).extended(100) for j in jobs]
+    jobs = schedule.schedule(TASKS, 2 * cycle, MultiframeDemand.worst_of)
+    return [
+        ReadWriteTimes(releases=j.releases, reads=j.begins, writes=j.ends, cycle=cycle, until=2 * cycle).extended(100)
+        for j in jobs
+    ]
 
 
-def shown(quantity: Quantity, sensor: Track, actuator: Track) -> Shown:
-    """Where the quantity is measured, in the second cycle or behind it."""
+def shown(quantity: Quantity, sensor: ReadWriteTimes, actuator: ReadWriteTimes) -> Shown:
+    """Where the quantity is measured, in the second cycle or after it."""
     cycle = sensor.cycle
     first = np.flatnonzero((sensor.reads >= cycle) & (sensor.reads < 2 * cycle))
     last = np.flatnonzero((actuator.reads >= cycle) & (actuator.reads < 2 * cycle))
@@ -79,26 +82,26 @@ def x(time: float, origin: int) -> float:
     return LEFT + (time - origin) * UNIT
 
 
-def jobs(name: str, row: int, track: Track, used: set[int], origin: int, end: int) -> list[str]:
+def jobs(name: str, row: int, times: ReadWriteTimes, used: set[int], origin: int, end: int) -> list[str]:
     """The jobs of a task as boxes."""
     bottom = TOP + row * LANE + 30
     parts = [
         f'<text x="{LEFT - 10}" y="{bottom - 8}" text-anchor="end">{name}</text>',
         f'<line x1="{LEFT}" y1="{bottom}" x2="{x(end, origin)}" y2="{bottom}" stroke="{INK}"/>',
     ]
-    for number, (read, write) in enumerate(zip(track.reads.tolist(), track.writes.tolist(), strict=True)):
+    for number, (read, write) in enumerate(zip(times.reads.tolist(), times.writes.tolist(), strict=True)):
         if origin <= read and write <= end:
             fill = USED if number in used else JOB
             size = f'width="{(write - read) * UNIT}" height="20"'
             parts.append(f'<rect x="{x(read, origin)}" y="{bottom - 20}" {size} fill="{fill}" stroke="{INK}"/>')
-    for release in track.releases.tolist():
+    for release in times.releases.tolist():
         if origin <= release <= end:
             at = x(release, origin)
             parts.append(f'<path d="M{at} {bottom} v-27 m-3 5 l3 -5 l3 5" fill="none" stroke="{SOFT}"/>')
     return parts
 
 
-def draw(quantity: Quantity, sensor: Track, actuator: Track) -> str:
+def draw(quantity: Quantity, sensor: ReadWriteTimes, actuator: ReadWriteTimes) -> str:
     """The picture of a quantity."""
     found = shown(quantity, sensor, actuator)
     origin, end = found.start - 3, found.end + 3
@@ -126,21 +129,21 @@ def draw(quantity: Quantity, sensor: Track, actuator: Track) -> str:
     return picture(parts, x(end, origin) + 20, level + 26)
 
 
-def draw_mean(sensor: Track, actuator: Track) -> str:
+def draw_mean(sensor: ReadWriteTimes, actuator: ReadWriteTimes) -> str:
     """The reaction time of events at any moment, and its mean."""
     cycle = sensor.cycle
     first = np.flatnonzero((sensor.reads >= cycle) & (sensor.reads < 2 * cycle))
     ends = actuator.writes[job_chains.forward([sensor, actuator], first)]
     scale, bottom = 7, TOP + 110
-    followed = job_chains.follow([sensor, actuator], cycle)
-    assert followed is not None
+    chains = job_chains.build_job_chains([sensor, actuator], cycle)
+    assert chains is not None
     points = []
     for k, end in zip(first.tolist(), ends.tolist(), strict=True):
         before, read = int(sensor.reads[k - 1]), int(sensor.reads[k])
         points += [(before, end - before), (read, end - read)]
     origin = points[0][0]
     line = " ".join(f"{x(time, origin)},{bottom - value * scale}" for time, value in points)
-    mean = followed.mean_reaction_time
+    mean = chains.mean_reaction_time
     right = x(points[-1][0], origin)
     parts = [
         f'<text x="{LEFT - 10}" y="{bottom - 50}" text-anchor="end">reaction</text>',
@@ -169,7 +172,7 @@ def picture(parts: list[str], width: float, height: float) -> str:
 
 def main() -> None:
     folder = Path(sys.argv[1])
-    sensor, actuator = tracks()
+    sensor, actuator = chain_times()
     for quantity in Quantity:
         if not quantity.is_mean:
             (folder / f"{quantity}.svg").write_text(draw(quantity, sensor, actuator))

@@ -1,4 +1,4 @@
-"""What can be computed of a system: demand, load, response times, verdicts; each number with its method and what it claims.
+"""Analysis of a system: load, response times, latencies of chains, verdicts; each number has a method and a claim.
 
-Times are whole picoseconds; what is rounded is rounded outwards. Each method stands in a file of its own, named by the field's terms.
+Times are integer picoseconds, rounded outwards. Each method is in its own file.
 """

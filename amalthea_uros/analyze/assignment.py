@@ -1,8 +1,8 @@
-"""Priorities under which all tasks of a processor meet their deadlines, if there are any.
+"""Priorities with which all tasks of a core meet their deadlines, if there are any.
 
-N. C. Audsley, "On priority assignment in fixed priority scheduling", Information Processing Letters 79, 2001: from the lowest priority
-up, any task that meets its deadline there gets it; if none does, there is no such assignment. It is optimal because a response time
-depends on which tasks have higher priorities, not on their order.
+N. C. Audsley, "On priority assignment in fixed priority scheduling", Information Processing Letters 79, 2001: starting with
+the lowest priority, any task that meets its deadline at it gets it; if there is no such task, there is no assignment. This is optimal
+because a response time depends on the set of tasks with higher priority, not on their order.
 """
 
 from __future__ import annotations
@@ -23,27 +23,29 @@ from amalthea_uros.units import Time
 
 
 def assign(tasks: Sequence[Task], deadlines: Sequence[Time], above: Sequence[Task] = ()) -> list[int] | None:
-    """The tasks by their indices, those of the lowest priority first; None if no assignment meets all deadlines.
+    """The indices of the tasks, lowest priority first; None if no assignment meets all deadlines.
 
     Parameters
     ----------
-    above : tasks that come before all of them, such as interrupts
+    above : tasks of higher priority than all of them, such as ISRs
     """
-    left = sorted(range(len(tasks)), key=lambda index: -deadlines[index])
+    remaining = sorted(range(len(tasks)), key=lambda index: -deadlines[index])
     order: list[int] = []
-    while left:
-        # Most often the one with the longest deadline fits, which is deadline-monotonic order.
-        fitting = next((index for index in left if _fits(index, left, tasks, deadlines, above)), None)
+    while remaining:
+        # The task with the longest deadline usually fits (deadline-monotonic order).
+        fitting = next((index for index in remaining if _fits(index, remaining, tasks, deadlines, above)), None)
         if fitting is None:
             return None
-        left.remove(fitting)
+        remaining.remove(fitting)
         order.append(fitting)
     return order
 
 
-def _fits(index: int, left: Sequence[int], tasks: Sequence[Task], deadlines: Sequence[Time], above: Sequence[Task]) -> bool:
-    """Whether a task meets its deadline below all others that are left."""
-    higher = [*above, *(tasks[other] for other in left if other != index)]
+def _fits(
+    index: int, remaining: Sequence[int], tasks: Sequence[Task], deadlines: Sequence[Time], above: Sequence[Task]
+) -> bool:
+    """Whether a task meets its deadline below all other remaining tasks."""
+    higher = [*above, *(tasks[other] for other in remaining if other != index)]
     worst = response_time(tasks[index], Interference.of(higher))[0].worst
     return worst is not None and worst <= deadlines[index]
 
@@ -54,7 +56,7 @@ class Proposal:
 
     Attributes
     ----------
-    priorities : by the names of tasks; None if there are none that meet all deadlines, or none can be proposed, as `reason` says
+    priorities : by the names of tasks; None if there is no proposal, for the `reason`
     """
 
     core: str
@@ -64,7 +66,7 @@ class Proposal:
 
 
 def propose_priorities(analysis: Analysis) -> list[Proposal]:
-    """Priorities for each core on which they decide."""
+    """A proposal for each core that executes tasks."""
     solution = analysis.solution
     cores = {core: solution.context.on_core(core) for core in solution.context.system.cores}
     return [_propose(core, here, solution) for core, here in cores.items() if any(not item.is_isr for item in here)]
@@ -90,21 +92,21 @@ def _propose(core: str, here: Sequence[ScheduledProcess], solution: Solution) ->
 
 
 def _obstacle(item: ScheduledProcess, solution: Solution) -> str:
-    """Why nothing can be proposed for the core of a process."""
+    """Why a process prevents a proposal for its core."""
     name = item.name
     if not solution.is_known(name):
-        return f"too little is known of {name!r}: {solution.reasons.get(name, '')}"
+        return f"{name!r} could not be analysed: {solution.reasons.get(name, '')}"
     if item.is_isr:
         return ""
     if item.deadline is None:
         return f"{name!r} has no deadline"
     if item.server is not None or item.equal_priority is not EqualPriority.FIFO or len(item.rank) != len((0, item.priority)):
-        return f"more than one priority decides about {name!r}"
+        return f"{name!r} is not scheduled by a single fixed priority"
     if not is_preemptive(item) or Blocking([item], solution.context.demand_model).ceilings:
-        return f"{name!r} may hold up others, which depends on the priorities"
+        return f"{name!r} can block other tasks, which depends on the priorities"
     return ""
 
 
 def _task(item: ScheduledProcess, solution: Solution) -> Task:
     events = rescaled(solution.event_models[item.name], solution.context.time_base(item.name))
-    return Task(name=item.name, arrivals=events, cost=solution.context.demands[item.name])
+    return Task(name=item.name, events=events, demand=solution.context.demands[item.name])

@@ -1,4 +1,4 @@
-"""Whose jobs make up the interference in a worst-case response time."""
+"""Which processes cause the interference in a worst-case response time."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from amalthea_uros.units import Time
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """The part of one process in the interference: number of its jobs, and their time in picoseconds."""
+    """The share of one process in the interference: number of jobs, and their time in picoseconds."""
 
     name: str
     jobs: int
@@ -26,7 +26,7 @@ class Share:
 
 
 def shares(analysis: Analysis, name: str) -> list[Share]:
-    """The parts of all processes, the largest first; none where they are not known one by one."""
+    """The shares of all processes, largest first; empty if the method does not give them."""
     solution = analysis.solution
     response, scheduled = solution.responses.get(name), solution.context.scheduled.get(name)
     if response is None or response.worst is None or scheduled is None:
@@ -37,7 +37,7 @@ def shares(analysis: Analysis, name: str) -> list[Share]:
 
 
 def _in_schedule(solution: Solution, scheduled: ScheduledProcess) -> list[Share]:
-    """What others execute between the release and the end of the worst job."""
+    """The execution of other tasks between the release and the end of the worst job."""
     tasks = periodic_tasks(scheduled.core, solution)
     until = schedule.steady_state_start(tasks) + 2 * schedule.hyperperiod(tasks)
     jobs = schedule.schedule(tasks, until, MultiframeDemand.worst_of, [True] * len(tasks))
@@ -56,7 +56,7 @@ def _in_schedule(solution: Solution, scheduled: ScheduledProcess) -> list[Share]
 
 
 def _in_window(solution: Solution, scheduled: ScheduledProcess, response: Response) -> list[Share]:
-    """What is activated of higher priorities in the busy window, if that is all of the interference."""
+    """The demand of higher priorities in the busy window, if that is all of the interference."""
     context = solution.context
     time_base = context.time_base(scheduled.name)
     here = context.on_core(scheduled.core)
@@ -72,5 +72,5 @@ def _in_window(solution: Solution, scheduled: ScheduledProcess, response: Respon
 
 
 def _adds_up(found: Sequence[Share], response: Response) -> bool:
-    """Whether the shares are the interference, apart from a rounded picosecond each."""
+    """Whether the shares add up to the interference, apart from one picosecond of rounding each."""
     return abs(sum(share.time for share in found) - response.terms.get("interference", 0)) <= len(found) + 1

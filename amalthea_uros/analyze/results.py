@@ -1,4 +1,4 @@
-"""What an analysis of a system tells."""
+"""The results of an analysis."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Results(tuple[N, ...]):
 
         Raises
         ------
-        KeyError : there is none with that name; the text lists near names.
+        KeyError : there is no such result; the text lists similar names.
         """
         if not isinstance(key, str):
             return super().__getitem__(key)
@@ -59,7 +59,7 @@ class Results(tuple[N, ...]):
 
 
 class Claim(StrEnum):
-    """What a number claims."""
+    """What is claimed about a value."""
 
     EXACT = "exact"
     BOUND = "bound"
@@ -68,16 +68,16 @@ class Claim(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Response:
-    """The response time of a task, from its arrival to its end.
+    """The response time of a task, from its activation to its end.
 
     Attributes
     ----------
-    worst : None if there is no finite bound, and then `reason` says why
-    best : least response time that is possible
-    jobs : how many jobs of the busy window were looked at
+    worst : None if there is no finite bound, for the `reason`
+    best : minimum response time
+    jobs : number of jobs of the busy window that were examined
     window : length of the busy window up to the end of the worst job
-    completions : when its jobs end at the latest, from its start; empty if that is not known
-    terms : what the worst case is made of: own, interference, blocking; it is their sum
+    completions : latest ends of the jobs of the busy window, from its start; empty if unknown
+    terms : the parts of the worst case: own, interference, blocking; they add up to it
     """
 
     worst: Time | None
@@ -93,7 +93,7 @@ class Response:
 
 
 class Verdict(StrEnum):
-    """Whether something that is demanded holds."""
+    """Whether a deadline, requirement or constraint is met."""
 
     MET = "met"
     MISSED = "missed"
@@ -103,7 +103,7 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProcessorResult:
-    """A core: its clock, and its load in the best, mean and worst case (1 is full); None if something in it is not known."""
+    """A core: its clock, and its load in the best, mean and worst case (1 is full); None if it is unknown."""
 
     name: str
     frequency: Frequency | None
@@ -118,7 +118,7 @@ class ProcessResult:
 
     Attributes
     ----------
-    response : None if it is not known, and then `reason` says why
+    response : None if it is unknown, for the `reason`
     min_interarrival, max_interarrival : time from one activation to the next; None if it is unknown
     """
 
@@ -139,7 +139,7 @@ class ProcessResult:
 
 
 class Quantity(StrEnum):
-    """A latency from the start of a chain to its end."""
+    """An end-to-end latency of a chain."""
 
     MAX_REACTION_TIME = "max_reaction_time"
     MAX_REDUCED_REACTION_TIME = "max_reduced_reaction_time"
@@ -156,18 +156,18 @@ class Quantity(StrEnum):
 
     @property
     def is_upper(self) -> bool:
-        """Whether a bound of it is one from above."""
+        """Whether it is a maximum, so that bounds are upper bounds."""
         return self.value.startswith("max")
 
     @property
     def is_mean(self) -> bool:
-        """Whether it is a mean value."""
+        """Whether it is a mean."""
         return self.value.startswith("mean")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Value:
-    """A quantity as one method tells it, in picoseconds; None: there is no finite value, or not known."""
+    """A quantity by one method, in picoseconds; None if there is no finite value or it is unknown."""
 
     quantity: Quantity
     value: Time | None
@@ -183,18 +183,18 @@ class ChainResult:
 
     Attributes
     ----------
-    routes : for people: events, and what carries the effect between them
-    values : the tightest of each quantity
-    everything : those of all methods
-    why : why they are exact, or bounds
-    reason : why there are no values, or some are missing
+    routes : readable texts: the events and the links between them
+    values : the tightest value of each quantity
+    all_values : the values of all methods
+    why : why the values are exact or only bounds
+    reason : why some or all values are missing
     """
 
     name: str
     communication: str
     routes: tuple[str, ...] = ()
     values: tuple[Value, ...] = ()
-    everything: tuple[Value, ...] = ()
+    all_values: tuple[Value, ...] = ()
     why: str = ""
     reason: str = ""
 
@@ -205,12 +205,12 @@ class ChainResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RequirementResult:
-    """A requirement or a constraint with what became of it; the margin is positive if it is met.
+    """The verdict on a requirement or a constraint; the margin is not negative if it is met.
 
     Attributes
     ----------
-    limit : None where something else than a time is demanded
-    reason : why it is unknown
+    limit : None if it is not a limit of a time
+    reason : why the verdict is unknown
     """
 
     name: str
@@ -224,7 +224,7 @@ class RequirementResult:
 
     @property
     def margin(self) -> Time | None:
-        """How much is left; negative: how much is too much."""
+        """Distance of the value from the limit; negative if the limit is missed."""
         if self.value is None or self.limit is None:
             return None
         return self.limit - self.value if self.is_upper else self.value - self.limit
@@ -232,13 +232,13 @@ class RequirementResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Analysis:
-    """Everything that was computed.
+    """The results for a system.
 
     Attributes
     ----------
-    solution : the response times with the context they were computed in, for explanations and proposals
-    assumptions : sentences on which the numbers rest
-    findings : what could not be taken into account
+    solution : the response times with their timing context, for explanations and proposals
+    assumptions : on which the numbers are based
+    findings : what the analysis does not take into account
     """
 
     solution: Solution = field(repr=False, compare=False)
@@ -255,12 +255,12 @@ class Analysis:
 
         Raises
         ------
-        KeyError : there is none; the text lists near names.
+        KeyError : there is no such process; the text lists similar names.
         """
         return self.processes[process]
 
     @property
     def misses(self) -> bool:
-        """Whether something that is demanded does not hold."""
+        """Whether a deadline, requirement or constraint is missed."""
         verdicts = (*(p.verdict for p in self.processes), *(r.verdict for r in self.requirements))
         return any(verdict in (Verdict.MISSED, Verdict.UNBOUNDED) for verdict in verdicts)

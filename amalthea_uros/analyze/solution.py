@@ -1,4 +1,4 @@
-"""The response times of a system together with the context they were computed in; chains and explanations build on it."""
+"""The response times of a system with their timing context; chains and explanations are based on it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from amalthea_uros.units import Time
 
 @dataclass(slots=True)
 class Solution:
-    """Response times and activations of all processes that fit each other.
+    """Consistent response times and activations of all processes.
 
     Attributes
     ----------

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from amalthea_uros.analyze.chains import phases
+from amalthea_uros.analyze.chains import counter_phases
 from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
-from amalthea_uros.analyze.chains.evaluate import Evaluation
+from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.propagation import solve
-from amalthea_uros.analyze.requirements import judge
+from amalthea_uros.analyze.requirements import evaluate_requirements
 from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessorResult, ProcessResult, Response, Results, Verdict
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.software import Preemption, Task
@@ -31,13 +31,13 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
         )
     context = TimingContext.of(system, settings)
     solution = solve(context)
-    _note_left_out(solution)
+    _note_ignored(solution)
     limits = response_time_limits(system)
     processes = Results(_process(name, solution, limits) for name in system.processes)
-    evaluation = Evaluation(solution)
+    evaluation = ChainEvaluator(solution)
     chains = Results(_chains(evaluation))
-    judged = judge(system, {process.name: process for process in processes}, context.notes)
-    requirements = Results((*judged, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
+    verdicts = evaluate_requirements(system, {process.name: process for process in processes}, context.notes)
+    requirements = Results((*verdicts, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
     return Analysis(
         solution=solution,
         processors=Results(_processors(solution)),
@@ -49,27 +49,27 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     )
 
 
-def _chains(evaluation: Evaluation) -> Iterator[ChainResult]:
-    """The chains, over all phases of the counters at which they start, if that is wanted."""
+def _chains(evaluation: ChainEvaluator) -> Iterator[ChainResult]:
+    """The chains; over all phases of the counters at which they start if the settings say so."""
     context = evaluation.context
     for chain in context.system.events.chains:
         found = evaluation.chain(chain)
-        if context.settings.any_phase and found.values:
-            variants = [TimingContext.of(system, context.settings) for system in phases.variants(chain, context)]
-            results = [Evaluation(solve(variant)).chain(chain) for variant in variants]
-            found = phases.merged(results) if results else found
+        if context.settings.all_phases and found.values:
+            variants = [TimingContext.of(system, context.settings) for system in counter_phases.variants(chain, context)]
+            results = [ChainEvaluator(solve(variant)).chain(chain) for variant in variants]
+            found = counter_phases.merged(results) if results else found
         yield found
 
 
-def _note_left_out(solution: Solution) -> None:
-    """Report what the system has and the analysis does not take into account."""
+def _note_ignored(solution: Solution) -> None:
+    """Report what the analysis does not take into account."""
     system, notes = solution.context.system, solution.context.notes
-    costs = {overhead.name: overhead for overhead in system.os.overheads}
+    overheads = {overhead.name: overhead for overhead in system.os.overheads}
     for operating_system in system.os.systems:
-        overhead = costs.get(operating_system.overhead or "")
+        overhead = overheads.get(operating_system.overhead or "")
         for service, _ in overhead.services if overhead else ():
             if service not in COUNTED:
-                message = f"the cost of {service!r} in {operating_system.name!r} is not taken into account"
+                message = f"the overhead of {service!r} in {operating_system.name!r} is ignored"
                 notes.warning("ANA006", message, overhead)
     for name, response in solution.responses.items():
         process = solution.context.scheduled[name].process
@@ -78,12 +78,14 @@ def _note_left_out(solution: Solution) -> None:
         jobs = solution.event_models[name].eta_plus(response.worst)
         if jobs > process.activation_limit:
             limit = process.activation_limit
-            message = f"{name!r} can be activated {jobs} times before it ends; more than {limit} at a time are lost"
+            message = (
+                f"{name!r} can have {jobs} pending activations, more than its activation limit {limit}; the others are lost"
+            )
             notes.warning("ANA007", message, process)
 
 
 def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> ProcessResult:
-    """The result of a process; its execution times in picoseconds."""
+    """The result of a process; execution times are in picoseconds."""
     context, response = solution.context, solution.responses.get(name)
     scheduled, demand, process = context.scheduled.get(name), context.demands.get(name), context.system.processes[name]
     deadline = scheduled.deadline if scheduled is not None and scheduled.deadline is not None else limits.get(name)
@@ -118,7 +120,7 @@ def _verdict(response: Response | None, deadline: Time | None) -> Verdict:
 
 
 def _processors(solution: Solution) -> Iterator[ProcessorResult]:
-    """The load of each core; unknown where something on it is unknown."""
+    """The load of each core; unknown if the demand or activation of a process on it is unknown."""
     context = solution.context
     demands = context.demands
     for core in context.system.cores:

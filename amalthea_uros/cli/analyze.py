@@ -76,26 +76,37 @@ def _clock(text: str) -> Frequency:
     type=click.Choice([str(memory) for memory in Memory]),
     default=str(Memory.NONE),
     show_default=True,
-    help="Cost of label accesses: none, the latency of each access (explicit), or one copy per job (implicit).",
+    help="Execution time of label accesses: none, latency of each access (explicit), or one copy per job (implicit).",
 )
-@click.option("--chain", metavar="CHAIN", help="Show all values of one event chain, and how its events are connected.")
+@click.option("--chain", metavar="CHAIN", help="Show all values of one event chain, and the links between its events.")
 @click.option(
     "--communication",
     type=click.Choice(["modelled", *_COMMUNICATION]),
     default="modelled",
     show_default=True,
-    help="When labels are read and written; modelled: as the model says, and implicit where it says nothing.",
+    help="When labels are read and written; modelled: as in the model, implicit by default.",
 )
 @click.option(
     "--method",
     type=click.Choice(["auto", "all"]),
     default="auto",
     show_default=True,
-    help="Show the tightest values of chains, or those of all methods.",
+    help="With --chain: show the tightest values (auto), or those of all methods.",
 )
-@click.option("--any-phase", is_flag=True, help="Analyze chains for all phases of the counters at which they start.")
+@click.option(
+    "--all-phases",
+    "--any-phase",
+    "all_phases",
+    is_flag=True,
+    help="Evaluate chains for all phases of the counters at which they start.",
+)
 @click.option("--explain", "process", metavar="PROCESS", help="Show the terms of the response time of a process.")
-@click.option("--sensitivity", "with_sensitivity", is_flag=True, help="Show by how much execution times may grow.")
+@click.option(
+    "--sensitivity",
+    "with_sensitivity",
+    is_flag=True,
+    help="Show by how much execution times can increase before a limit is missed.",
+)
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
 @output_option(AnalysisResult)
 def command(
@@ -107,16 +118,16 @@ def command(
     chain: str | None,
     communication: str,
     method: str,
-    any_phase: bool,
+    all_phases: bool,
     process: str | None,
     with_sensitivity: bool,
     with_priorities: bool,
     outputs: tuple[Output, ...],
 ) -> None:
-    """Compute response times, loads, chain latencies and verdicts.
+    """Compute response times, loads, end-to-end latencies of event chains, and verdicts.
 
-    MODEL_OR_YAML is an app.yaml, or one or several .amxmi files or a folder with some. Each number comes with its method and its
-    claim (exact, or a safe bound), and the assumptions are listed. Exit code 1 if a requirement or deadline is missed.
+    MODEL_OR_YAML is an app.yaml, one or more .amxmi files, or a folder of .amxmi files. Each number has a method and a claim
+    (exact, or a safe bound), and the assumptions are listed. Exit code 1 if a deadline or requirement is missed.
     """
     settings = Settings(
         dict(frequencies),
@@ -124,7 +135,7 @@ def command(
         modes=dict(modes),
         memory=Memory(memory),
         communication=_COMMUNICATION.get(communication),
-        any_phase=any_phase,
+        all_phases=all_phases,
     )
     result = analyze_files(
         paths, settings, with_sensitivity=with_sensitivity, with_priorities=with_priorities, all_methods=method == "all"

@@ -1,4 +1,4 @@
-"""`amuros chains`: the paths along which data and triggers go, as chains."""
+"""`amuros chains`: find paths along data and triggers, and add them as event chains."""
 
 from __future__ import annotations
 
@@ -13,16 +13,22 @@ from amalthea_uros.services.chains import add_path, chosen_path, find_paths
 
 @click.command("chains")
 @click.argument("model", type=click.Path(path_type=Path), metavar="MODEL_OR_YAML")
-@click.option("--from", "start", required=True, metavar="NAME", help="Process, runnable or label at which paths start.")
-@click.option("--to", "end", required=True, metavar="NAME", help="Process, runnable or label at which paths end.")
-@click.option("--add", "name", metavar="CHAIN", help="Add a path to the model, as a chain with this name.")
+@click.option("--from", "start", required=True, metavar="NAME", help="Process, runnable or label where paths start.")
+@click.option("--to", "end", required=True, metavar="NAME", help="Process, runnable or label where paths end.")
+@click.option("--add", "name", metavar="CHAIN", help="Add a path to the model as an event chain with this name.")
 @click.option("--path", "number", type=int, default=1, show_default=True, help="Number of the path to add.")
-@click.option("-o", "output", type=click.Path(path_type=Path), metavar="FILE", help="File for the model with the chain.")
+@click.option(
+    "-o",
+    "output",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="File to which the model with the event chain is written.",
+)
 def command(model: Path, start: str, end: str, name: str | None, number: int, output: Path | None) -> None:
-    """List the paths from one process, runnable or label to another, with their latencies.
+    """List the paths from one process, runnable or label to another, with their end-to-end latencies.
 
-    A path goes from process to process by the labels and channels that one writes and the next reads, and by triggers. With --add, one
-    of them becomes an event chain of the model, which is written to another file. Exit code 1 if there is no path.
+    Each process of a path writes a label or channel that the next one reads, or triggers it. With --add, one of the paths is added
+    to the model as an event chain, and the model is written to another file. Exit code 1 if there is no path.
     """
     if (name is None) != (output is None):
         raise click.UsageError("--add CHAIN and -o FILE must be given together")

@@ -1,4 +1,4 @@
-"""Latencies of event chains in tables."""
+"""End-to-end latencies of event chains in tables."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ _COLUMNS = {
     "min": Quantity.MIN_FIRST_TO_FIRST,
     "mean": Quantity.MEAN_FIRST_TO_FIRST,
     "max": Quantity.MAX_REDUCED_REACTION_TIME,
-    "reaction": Quantity.MAX_REACTION_TIME,
+    "reaction time": Quantity.MAX_REACTION_TIME,
     "data age": Quantity.MAX_DATA_AGE,
-    "reduced": Quantity.MAX_REDUCED_DATA_AGE,
+    "reduced data age": Quantity.MAX_REDUCED_DATA_AGE,
 }
 
 
 def write_chains(terminal: Terminal, chains: Sequence[ChainResult]) -> None:
-    """Write a line for each chain."""
+    """Write a row for each chain."""
     if not chains:
         return
-    terminal.heading("Event chains (min, mean, max: first to first)")
+    terminal.heading("Event chains (min, mean, max: first to first; others: max)")
     rows = [(chain.name, *cells(chain, _COLUMNS)) for chain in chains]
     terminal.table(("chain", *_COLUMNS, ""), rows, right=range(1, len(_COLUMNS) + 1))
 
 
 def cells(chain: ChainResult, columns: Iterable[str]) -> tuple[str, ...]:
-    """The cells of a chain: its values, and what they claim or why they are missing."""
+    """The cells of a chain: its values, and their claims or why they are missing."""
     values = [chain.value(_COLUMNS[column]) for column in columns]
     claims = dict.fromkeys(str(value.claim) for value in values if value is not None)
     return (*map(value_text, values), chain.reason or ", ".join(claims))

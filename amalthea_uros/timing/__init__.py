@@ -1,1 +1,1 @@
-"""What a system means in time: who runs where with which rank, demand, activations, data flow. No method of analysis is here."""
+"""The timing semantics of a system: scheduling, execution demand, activations and data flow; it contains no methods of analysis."""

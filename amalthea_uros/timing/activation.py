@@ -1,4 +1,4 @@
-"""What activates processes: stimuli from outside, and other processes by triggers and events."""
+"""The activations of processes: by external stimuli, and by triggers and events of other processes."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from amalthea_uros.timing.event_models.stimuli import event_model_of
 
 
 class UnknownActivationError(Exception):
-    """There is no bound on how often a process is activated; the text says why."""
+    """The activation pattern of a process is unknown or unbounded; the text says why."""
 
 
-#: The events at the completions of a process, given what computes the model of its activations.
+#: The event model of the completions of a process, given a function that computes that of its activations.
 Output: TypeAlias = Callable[[Process, Callable[[], EventModel]], EventModel]
 
 
 def as_activated(_process: Process, activations: Callable[[], EventModel]) -> EventModel:
-    """The output of processes that take no time; it has the right rate."""
+    """The output of processes without execution time; its rate is right."""
     return activations()
 
 
 class Cause(NamedTuple):
-    """A process that causes something, how often in a job, and whether only every n-th time."""
+    """A process that triggers a stimulus: number of times in a job, and a counter if only every n-th time counts."""
 
     process: Process
     times: int
@@ -45,7 +45,7 @@ class Activations:
     system: System
     dataflow: Dataflow
     _positions: list[ActivityPosition] = field(default_factory=list)
-    _unfollowed: str = ""
+    _incomplete: str = ""
     _triggers: dict[str, list[Cause]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -53,7 +53,7 @@ class Activations:
             try:
                 self._positions += [position for position in self.dataflow.events.positions(name) if position.times > 0]
             except UnresolvedError as error:
-                self._unfollowed = str(error)
+                self._incomplete = str(error)
         for position in self._positions:
             if isinstance(position.activity, Trigger):
                 causes = self._triggers.setdefault(position.activity.stimulus, [])
@@ -64,36 +64,36 @@ class Activations:
 
         Parameters
         ----------
-        output : the events that processes cause
+        output : gives the completions of processes
 
         Raises
         ------
-        UnknownActivationError : it is never activated, or there is no bound on how often.
+        UnknownActivationError : it is never activated, or its activations are unbounded.
         """
         return self._of_process(process, output, ())
 
     def _of_process(self, process: Process, output: Output, above: tuple[str, ...]) -> EventModel:
         if process.name in above:
-            raise UnknownActivationError(f"it is triggered in a circle: {' -> '.join((*above, process.name))}")
+            raise UnknownActivationError(f"it is triggered in a cycle: {' -> '.join((*above, process.name))}")
         found = tuple(self._of_stimulus(name, output, (*above, process.name)) for name in process.stimuli)
         if not found:
-            raise UnknownActivationError("it has no stimulus, so that nothing activates it")
+            raise UnknownActivationError("it has no stimulus")
         return aggregated(found)
 
     def _of_stimulus(self, name: str, output: Output, above: tuple[str, ...]) -> EventModel:
         stimulus = self.system.stimuli_by_name.get(name)
         if stimulus is None:
-            raise UnknownActivationError(f"the stimulus {name!r} is not part of the model")
+            raise UnknownActivationError(f"the stimulus {name!r} is not defined in the model")
         if not isinstance(stimulus, InterProcess | EventTriggered):
             found = event_model_of(stimulus, self.system)
             if found is None:
-                raise UnknownActivationError(f"nothing bounds how often {name!r} occurs")
+                raise UnknownActivationError(f"the rate of the stimulus {name!r} is unbounded")
             return found
-        if self._unfollowed:
-            raise UnknownActivationError(f"what triggers {name!r} is unknown: {self._unfollowed}")
+        if self._incomplete:
+            raise UnknownActivationError(f"the processes that trigger {name!r} are unknown: {self._incomplete}")
         causes = self._triggers.get(name, []) if isinstance(stimulus, InterProcess) else self._causes(stimulus)
         if not causes:
-            raise UnknownActivationError(f"nothing triggers {name!r}")
+            raise UnknownActivationError(f"no process triggers {name!r}")
         return _counted(aggregated(tuple(self._caused_by(cause, output, above) for cause in causes)), stimulus.counter)
 
     def _causes(self, stimulus: EventTriggered) -> list[Cause]:
@@ -102,25 +102,25 @@ class Activations:
         for name in stimulus.events:
             event = self.system.events_by_name.get(name)
             if event is None:
-                raise UnknownActivationError(f"the event {name!r} is not part of the model")
+                raise UnknownActivationError(f"the event {name!r} is not defined in the model")
             self._check(event)
             causes = [Cause(p.process, p.times, None) for p in self._positions if raises(p, event)]
             if not causes and isinstance(event, CustomEvent):
-                raise UnknownActivationError(f"nothing in the model raises the event {name!r}")
+                raise UnknownActivationError(f"no activity in the model raises the event {name!r}")
             found += causes
         return found
 
     def _check(self, event: Event) -> None:
-        """Refuse events that may occur otherwise than by what processes execute."""
+        """Refuse events that have other causes than activities of processes."""
         if isinstance(event, RunnableEvent) and event.change not in (RunnableChange.START, RunnableChange.TERMINATE):
-            raise UnknownActivationError(f"nothing bounds how often the event {event.name!r} occurs")
+            raise UnknownActivationError(f"the rate of the event {event.name!r} is unbounded")
         if isinstance(event, ModeLabelEvent):
             assigned = {mode.label for stimulus in self.system.stimuli.stimuli for mode in stimulus.assignments}
             if event.label is None or event.label in assigned:
-                raise UnknownActivationError(f"stimuli raise the event {event.name!r}, too")
+                raise UnknownActivationError(f"stimuli also raise the event {event.name!r}")
 
     def _caused_by(self, cause: Cause, output: Output, above: tuple[str, ...]) -> EventModel:
-        """The events that a process causes somewhere between its start and its end."""
+        """The events that a process causes between its start and its end."""
         found = output(cause.process, lambda: self._of_process(cause.process, output, above))
         return _counted(found if cause.times == 1 else Multiplied(found, cause.times), cause.counter)
 

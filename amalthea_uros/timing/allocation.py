@@ -1,4 +1,4 @@
-"""Where processes may run, and who decides for them; also of systems for which there is no analysis."""
+"""Possible cores, deciding schedulers and priorities of processes, also in systems that cannot be analysed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from amalthea_uros.perf.system import System
 
 
 def allocated_cores(system: System) -> Mapping[str, frozenset[str]]:
-    """The cores on which each process may run; only of processes that have any."""
+    """The cores on which each process can run; processes without a core are left out."""
     found: dict[str, set[str]] = {}
     for task in system.mapping.tasks:
         served = _cores(task.scheduler, system)
@@ -23,7 +23,7 @@ def allocated_cores(system: System) -> Mapping[str, frozenset[str]]:
 
 
 def _cores(scheduler: str, system: System) -> tuple[str, ...]:
-    """The cores of a scheduler: its own, or else those of the next scheduler above that has some."""
+    """The cores of a scheduler: its own, or those of the nearest scheduler above that has cores."""
     return next((each.cores for each in upwards(scheduler, system) if each.cores), ())
 
 
@@ -39,12 +39,12 @@ def upwards(scheduler: str, system: System) -> Iterator[Scheduler]:
 
 
 def deciding_scheduler(scheduler: str, system: System) -> Scheduler | None:
-    """The scheduler that decides for the tasks of another one: a grouping leaves that to its parent."""
+    """The scheduler that decides for the tasks of a scheduler: a grouping delegates to its parent."""
     return next((each for each in upwards(scheduler, system) if each.policy != Policy.GROUPING), None)
 
 
 def effective_priority(allocation: TaskAllocation, system: System) -> int | None:
-    """The priority of a task, or of the group that it is in; None if there is none."""
+    """The priority of a task, or of its group; None if there is none."""
     if allocation.priority is not None:
         return allocation.priority
     groups = takewhile(lambda each: each.policy == Policy.GROUPING, upwards(allocation.scheduler, system))

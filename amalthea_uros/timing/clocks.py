@@ -7,7 +7,7 @@ from amalthea_uros.perf.system import System
 
 
 def controller_of_core(system: System) -> dict[str, str]:
-    """The controller of each core: cores of different ones do not share a clock."""
+    """The controller of each core; cores of different controllers do not share a clock."""
     found: dict[str, str] = {}
     for structure in system.hardware.walk():
         if structure.kind is StructureKind.ECU:

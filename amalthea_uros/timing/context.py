@@ -1,4 +1,4 @@
-"""What is known of the processes of a system: where they run, what they demand, what activates them; and why something is unknown."""
+"""The timing context of a system: scheduling, demand and activation of its processes, and why something is unknown."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from amalthea_uros.timing.settings import Memory, Settings
 
 @dataclass
 class TimingContext:
-    """A system as every analysis, simulation and rule sees it; everything is by the names of processes.
+    """A system as analyses, simulation and rules see it; mappings are by the names of processes.
 
     Attributes
     ----------
-    scheduled : where each process runs and with which rank
-    demands : execution demand, in the time base of the core
-    decisions : what a scheduler takes to decide at the activation of a task, where that is stated; the same at its end is in `demands`
-    reasons : why nothing can be said about the response time of a process
-    unanalysable_cores : (core, whether by interrupts) -> a process that may run there in a way for which there is no analysis
+    scheduled : core, server and rank of each process
+    demands : execution demand, in the time base of the core, including scheduler decisions at the end of jobs
+    decisions : demand of scheduler decisions at activations, if the model specifies it
+    reasons : why the response time of a process is unknown
+    unanalysable_cores : (core, whether by an ISR) -> a process that can run there and cannot be analysed
     """
 
     system: System
@@ -45,7 +45,7 @@ class TimingContext:
 
     @classmethod
     def of(cls, system: System, settings: Settings | None = None) -> TimingContext:
-        """Read a system."""
+        """The timing context of a system."""
         context = cls(system, settings or Settings())
         context._note_settings()
         context._schedule()
@@ -60,16 +60,16 @@ class TimingContext:
 
     @cached_property
     def dataflow(self) -> Dataflow:
-        """Where jobs do what, and what links them."""
+        """The positions of activities, and the links between processes."""
         return Dataflow(self.system)
 
     @cached_property
     def activations(self) -> Activations:
-        """What activates processes."""
+        """The activations of processes."""
         return Activations(self.system, self.dataflow)
 
     def time_base(self, process: str) -> int:
-        """Parts of a picosecond in which the core of a process is counted."""
+        """Time units per picosecond on the core of a process."""
         return self.demand_model.time_base(self.scheduled[process].core)
 
     def on_core(self, core: str) -> list[ScheduledProcess]:
@@ -77,13 +77,13 @@ class TimingContext:
         return [scheduled for scheduled in self.scheduled.values() if scheduled.core == core]
 
     def served(self, core: str, server: str | None) -> list[ScheduledProcess | Server]:
-        """What runs on a core itself or within the budget of a server, highest rank first."""
+        """Processes and servers on a core itself or in the budget of a server, highest rank first."""
         everything: list[ScheduledProcess | Server] = [*self.scheduled.values(), *self.servers.values()]
         found = [item for item in everything if item.core == core and item.server == server]
         return sorted(found, key=lambda item: item.rank, reverse=True)
 
     def mark_unknown(self, name: str, reason: str) -> None:
-        """Record why nothing can be said about the response time of a process."""
+        """Record why the response time of a process is unknown."""
         self.reasons.setdefault(name, reason)
 
     def _note_settings(self) -> None:
@@ -95,7 +95,7 @@ class TimingContext:
         for label, value in settings.modes.items():
             notes.assume(f"the mode {label} is always {value}")
         if settings.memory is not Memory.NONE:
-            notes.assume("accesses to memory do not wait for those of other cores")
+            notes.assume("memory accesses do not wait for those of other cores")
 
     def _schedule(self) -> None:
         """Find core, rank and deadline of each process."""
@@ -136,33 +136,33 @@ class TimingContext:
                     self.decisions[name] = decision
                     demand = MultiframeDemand((*demand.frames, *decision.frames))
                 if demand.worst > MAX_INPUT:
-                    raise UnknownDemandError("it takes longer than can be counted")
+                    raise UnknownDemandError("its execution time exceeds the supported range of times")
                 self.demands[name] = demand
             except UnknownDemandError as error:
-                self.notes.warning("ANA004", f"the demand of {name!r} is not known: {error}", scheduled.process)
+                self.notes.warning("ANA004", f"the execution demand of {name!r} is unknown: {error}", scheduled.process)
                 self.mark_unknown(name, str(error))
 
     @cached_property
     def _scheduler_of(self) -> dict[str, str]:
-        """The scheduler of each task, the first one where it is allocated more than once."""
+        """The scheduler of each task; the first one if it is allocated more than once."""
         found: dict[str, str] = {}
         for allocation in self.system.mapping.tasks:
             found.setdefault(allocation.task, allocation.scheduler)
         return found
 
     def _deciding(self, task: str, core: str) -> Scheduler | None:
-        """The scheduler that decides on a core when a task is activated and when it ends, if that takes any time."""
+        """The scheduler that decides when a task is activated or ends, if its decisions take time on the core."""
         scheduler = self.system.schedulers.get(self._scheduler_of.get(task, ""))
         if scheduler is None or not scheduler.overhead:
             return None
         if scheduler.executing_core not in (None, core):
-            message = f"the cost of decisions of {scheduler.name!r} on another core is not taken into account"
+            message = f"the overhead of {scheduler.name!r}, which decides on another core, is ignored"
             self.notes.warning("ANA006", message, scheduler)
             return None
         return scheduler
 
     def _exclude_remote_semaphores(self) -> None:
-        """Processes that wait for other cores, or for other servers, have no bound."""
+        """Exclude processes that can wait for other cores or servers at a semaphore."""
         users: dict[str, list[ScheduledProcess]] = {}
         for scheduled in self.scheduled.values():
             for name in semaphores_of(scheduled.process, self.system):
@@ -170,9 +170,7 @@ class TimingContext:
         for name, here in users.items():
             if len({(scheduled.core, scheduled.server) for scheduled in here}) > 1:
                 for scheduled in here:
-                    message = (
-                        f"{scheduled.name!r} may wait for other cores or servers at {name!r}, for which there is no analysis"
-                    )
+                    message = f"{scheduled.name!r} shares {name!r} with other cores or servers, which cannot be analysed"
                     self.notes.warning("ANA003", message, scheduled.process)
-                    self.mark_unknown(scheduled.name, f"it may wait for other cores or servers at {name!r}")
+                    self.mark_unknown(scheduled.name, f"it shares the semaphore {name!r} with other cores or servers")
                     self.demands.pop(scheduled.name, None)

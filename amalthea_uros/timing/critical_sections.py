@@ -1,4 +1,4 @@
-"""Critical sections of processes: which semaphores they hold, and what they execute meanwhile."""
+"""Critical sections of processes: the semaphores, and the activities executed while they are held."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def semaphores_of(process: Process, system: System) -> set[str]:
 
 
 def _flat(activities: Sequence[Activity], system: System, above: tuple[str, ...] = ()) -> Iterator[Activity]:
-    """The activities of a process; calls of runnables that use semaphores are replaced by the activities of these."""
+    """The activities of a process; calls of runnables that use semaphores are replaced by their activities."""
     for activity in activities:
         runnable = system.runnables.get(activity.runnable) if isinstance(activity, Call) else None
         if runnable is not None and runnable.name not in above and _locks(runnable.activities):
@@ -47,9 +47,9 @@ def _locks(activities: Sequence[Activity]) -> bool:
 
 
 def exclusively_held(positions: Sequence[ActivityPosition], system: System) -> Iterator[frozenset[str]]:
-    """The semaphores that keep all others away, held at each position of a process.
+    """The semaphores that a process holds exclusively at each position.
 
-    Activities are read from the start to the end: what is requested is held until it is released, whatever the branches are.
+    Activities are read in order, regardless of branches: a semaphore is held from its request to its release.
     """
     users = {semaphore.name: semaphore.users for semaphore in system.os.semaphores}
     held: frozenset[str] = frozenset()
@@ -59,6 +59,6 @@ def exclusively_held(positions: Sequence[ActivityPosition], system: System) -> I
         if isinstance(access, SemaphoreAccess):
             if access.operation is SemaphoreOperation.RELEASE:
                 held -= {access.semaphore}
-            # With room for several users it keeps nobody away, unless it is requested exclusively.
+            # A semaphore for several users excludes nobody unless it is requested exclusively.
             elif access.operation is SemaphoreOperation.EXCLUSIVE or users.get(access.semaphore, 1) <= 1:
                 held |= {access.semaphore}

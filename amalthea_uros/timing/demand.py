@@ -2,8 +2,8 @@
 
 A tick is often not a whole number of picoseconds. To avoid rounding before the end, demand on a core is counted in its time base: the
 largest fraction of a picosecond of which a tick is a multiple (a third of a picosecond at 300 MHz). Of several branches, the longest
-counts in the worst case and the shortest in the best case; a call that is executed every n-th time only is a frame of its own, so that
-jobs without it do not pay for it.
+counts in the worst case and the shortest in the best case. A call that is executed only every n-th time is a separate frame, so that
+it does not increase the demand of jobs without it.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ from amalthea_uros.timing.overheads import Overheads
 from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.units import Frequency, time_of_ticks
 
-#: A finer time base would bring times near the limits of 64-bit integers.
+#: With a finer time base, times could exceed 64-bit integers.
 MAX_TIME_BASE = 1000
 
 
@@ -71,7 +71,7 @@ class DemandModel:
         self.overheads = Overheads(self.system)
 
     def time_base(self, core: str) -> int:
-        """Parts of a picosecond in which a core is counted; 1 where they would be too small, and then demand is rounded outwards."""
+        """Time units per picosecond on a core; 1 if they would be too small, and then demand is rounded outwards."""
         frequency = self.frequency(core)
         if frequency is None:
             return 1
@@ -79,7 +79,7 @@ class DemandModel:
         return fineness if fineness <= MAX_TIME_BASE else 1
 
     def frequency(self, core: str) -> Frequency | None:
-        """The clock of a core, None if it is not known."""
+        """The clock frequency of a core; None if it is unknown."""
         if core in self.settings.frequencies:
             return self.settings.frequencies[core]
         clock = self.system.clocks.get(self.system.cores[core].clock or "")
@@ -90,7 +90,7 @@ class DemandModel:
 
         Raises
         ------
-        UnknownDemandError : something in it has no bound, or the core no clock.
+        UnknownDemandError : some demand is unbounded, or the frequency of the core is unknown.
         """
         frames = self._frames(process.activities, core, ())
         if self.settings.memory is Memory.IMPLICIT:
@@ -100,7 +100,7 @@ class DemandModel:
         return MultiframeDemand(_scaled(_summed(frames), self.settings.factors.get(process.name)))
 
     def of_activities(self, process: Process, activities: Sequence[Activity], core: str) -> MultiframeDemand:
-        """Demand of some activities of a process, without what precedes and follows all of them; raises as `of_process`."""
+        """Demand of some activities of a process, without overheads of the process; raises as `of_process`."""
         return MultiframeDemand(_scaled(_summed(self._frames(activities, core, ())), self.settings.factors.get(process.name)))
 
     def of_decision(self, scheduler: Scheduler, core: str) -> MultiframeDemand:
@@ -108,7 +108,7 @@ class DemandModel:
         return MultiframeDemand(_summed(self._frames(scheduler.overhead, core, ())))
 
     def _copies(self, process: Process, core: str) -> list[Frame]:
-        """Copies of all labels that a process reads, before it starts, and of those that it writes, at its end."""
+        """Copies of the labels that a process reads, at its start, and of those that it writes, at its end."""
         try:
             here = [position.activity for position in positions(process, self.system)]
         except TooComplexError as error:
@@ -122,13 +122,13 @@ class DemandModel:
         return [frame for activity in activities for frame in self._with_services(activity, core, above)]
 
     def _with_services(self, activity: Activity, core: str, above: tuple[str, ...]) -> Iterator[Frame]:
-        """The frames of one activity, and of the services of the operating system that it calls."""
+        """The frames of one activity and of the OS services that it calls."""
         yield from self._of(activity, core, above)
         for demand in self.overheads.of_activity(activity, core):
             yield self._ticks(demand, core)
 
     def _of(self, activity: Activity, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
-        """The frames of one activity; what takes no time has none."""
+        """The frames of one activity; activities without execution time have none."""
         match activity:
             case Execute(demand=demand):
                 return [self._ticks(demand, core)]
@@ -150,18 +150,18 @@ class DemandModel:
             case Loop(condition=condition):
                 if holds(condition, self.settings.modes) is False:
                     return []
-                raise UnknownDemandError("there is a loop, and nothing says how often it is repeated at most")
+                raise UnknownDemandError("it contains a loop without an upper bound on the number of iterations")
             case ServerCall(runnable=name):
-                message = f"the time of the call of the server runnable {name!r} is not taken into account"
+                message = f"the execution time of the call of the server runnable {name!r} is ignored"
                 self.notes.warning("ANA006", message, self.system.runnables.get(name))
             case WaitEvent():
-                raise UnknownDemandError("it waits for events, and nothing says how long at most")
+                raise UnknownDemandError("it waits for events without a timeout, so there is no upper bound")
             case Migrate():
-                raise UnknownDemandError("it moves to another scheduler, for which there is no analysis")
+                raise UnknownDemandError("it migrates to another scheduler, which cannot be analysed")
         return []
 
     def _possible(self, switch: Switch) -> list[tuple[Activity, ...]]:
-        """The branches that may be taken, given the modes that are known."""
+        """The branches that can be taken, given the known modes."""
         found: list[tuple[Activity, ...]] = []
         for case in switch.cases:
             value = holds(case.condition, self.settings.modes)
@@ -174,13 +174,13 @@ class DemandModel:
     def _ticks(self, demand: Demand, core: str) -> Frame:
         ticks = dict(demand.by_core_type).get(self.system.cores[core].type or "", demand.ticks)
         if ticks is None:
-            raise UnknownDemandError(f"there are ticks without a value for {core}")
+            raise UnknownDemandError(f"ticks have no value for the core {core!r}")
         return self._time(ticks, self.settings.scale, core)
 
     def _call(self, call: Call, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
         runnable = self.system.runnables.get(call.runnable)
         if runnable is None:
-            raise UnknownDemandError(f"the runnable {call.runnable!r} is not part of the model")
+            raise UnknownDemandError(f"the runnable {call.runnable!r} is not defined in the model")
         if runnable.name in above:
             raise UnknownDemandError(f"the runnable {runnable.name!r} calls itself")
         if len(above) > MAX_CALL_DEPTH:
@@ -196,7 +196,7 @@ class DemandModel:
         return [_counted(frame, call.counter) for frame in frames] if call.counter else frames
 
     def _runnable(self, runnable: Runnable, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
-        """The frames of a runnable; counters within it are not known to fall on certain jobs."""
+        """The frames of a runnable; the jobs on which its inner counters fall are unknown."""
         key = (runnable.name, core)
         if key not in self._of_runnables:
             self._prepare(runnable, core)
@@ -206,7 +206,7 @@ class DemandModel:
         return self._of_runnables[key]
 
     def _prepare(self, runnable: Runnable, core: str) -> None:
-        """Look at what a runnable calls, the innermost first: nothing limits how deep calls are nested."""
+        """Find the frames of the called runnables first, innermost first, which avoids deep recursion."""
         if core in self._in_preparation:
             return
         self._in_preparation.add(core)
@@ -218,41 +218,41 @@ class DemandModel:
         self._in_preparation.remove(core)
 
     def _called(self, runnable: str) -> list[str]:
-        """The runnables of the model that a runnable calls itself."""
+        """The runnables that a runnable calls directly."""
         activities = walk(self.system.runnables[runnable].activities)
         called = (activity.runnable for activity in activities if isinstance(activity, Call))
         return [name for name in called if name in self.system.runnables]
 
     def _time(self, ticks: Distribution[int], factor: Fraction, core: str) -> Frame:
-        """The time_base that ticks take, or units of something that takes `factor` ticks each."""
+        """The demand of ticks, or of units that take `factor` ticks each, in the time base."""
         frequency = self.frequency(core)
         if frequency is None:
-            raise UnknownDemandError(f"the clock of the core {core!r} is not known")
+            raise UnknownDemandError(f"the clock frequency of the core {core!r} is unknown")
         worst, best = highest(ticks), lowest(ticks)
         if worst is None or best is None:
-            raise UnknownDemandError("there is a distribution of ticks without bounds")
+            raise UnknownDemandError("a distribution of ticks has no bounds")
         tick = time_of_ticks(1, frequency) * factor * self.time_base(core)
         if worst * tick > LIMIT:
-            raise UnknownDemandError("there is an execution time beyond 13 days")
-        # No time runs backwards, and none is longer than the longest, whatever a file says.
+            raise UnknownDemandError("an execution time exceeds 13 days")
+        # Invalid files can contain negative ticks, or a minimum above the maximum.
         longest = max(0, ceil(worst * tick))
         return Frame(worst=longest, best=min(max(0, floor(best * tick)), longest), average=max(Fraction(0), mean(ticks) * tick))
 
     def _ticks_per_unit(self, need: str, core: str) -> Fraction:
-        """What a unit of an execution need takes: the value of the feature, or its inverse for instructions per cycle."""
+        """Ticks per unit of an execution need: the value of the feature, or its inverse for instructions per cycle."""
         kind = next((t for t in self.system.hardware.core_types if t.name == self.system.cores[core].type), None)
         for feature in kind.features if kind else ():
             if feature.category == need and feature.value:
                 is_rate = feature.name.startswith("IPC")
                 return 1 / Fraction(feature.value) if is_rate else Fraction(feature.value)
         if need == "Instructions":
-            self.notes.assume("one instruction takes one tick where a core type does not say otherwise")
+            self.notes.assume("an instruction takes one tick unless the core type specifies it")
             return Fraction(1)
-        raise UnknownDemandError(f"the type of {core} does not say what a unit of {need!r} costs")
+        raise UnknownDemandError(f"the type of the core {core!r} does not define the ticks for {need!r}")
 
 
 def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:
-    """Parts of the same jobs taken together."""
+    """The frames of the same jobs added up."""
     found: dict[tuple[int, int], Frame] = {}
     for frame in frames:
         key = (frame.prescaler, frame.offset)
@@ -268,7 +268,7 @@ def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:
 
 
 def _scaled(frames: tuple[Frame, ...], factor: Fraction | None) -> tuple[Frame, ...]:
-    """Parts that take longer or shorter by a factor."""
+    """Frames multiplied by a factor."""
     if factor is None:
         return frames
     return tuple(
@@ -278,12 +278,12 @@ def _scaled(frames: tuple[Frame, ...], factor: Fraction | None) -> tuple[Frame, 
 
 
 def _counted(frame: Frame, counter: Counter) -> Frame:
-    """A frame that is executed whenever a counter lets it through."""
+    """A frame that is executed when its counter allows it."""
     return replace(frame, prescaler=counter.prescaler, offset=counter.offset)
 
 
 def _any_time(frame: Frame) -> Frame:
-    """A frame of which it is not known in which jobs it falls: it may in each, and may not in each."""
+    """A frame on unknown jobs: any job may execute it, and any job may not."""
     if frame.prescaler == 1 and frame.offset <= 1:
         return frame
     return Frame(worst=frame.worst, best=0, average=frame.average / frame.prescaler)
@@ -291,14 +291,14 @@ def _any_time(frame: Frame) -> Frame:
 
 def _repeated(frame: Frame, times: Count | float) -> Frame:
     """A frame that is executed several times."""
-    least, average, most = (times.least, times.mean, times.most) if isinstance(times, Count) else (times, times, times)
+    minimum, average, maximum = (times.least, times.mean, times.most) if isinstance(times, Count) else (times, times, times)
     return replace(
-        frame, worst=frame.worst * ceil(most), best=frame.best * floor(least), average=frame.average * Fraction(average)
+        frame, worst=frame.worst * ceil(maximum), best=frame.best * floor(minimum), average=frame.average * Fraction(average)
     )
 
 
 def _one_of(alternatives: Sequence[Sequence[Frame]], weights: Sequence[float]) -> Sequence[Frame]:
-    """The frame that stands for any of some alternatives."""
+    """One frame that bounds all alternatives."""
     plain = [[_any_time(frame) for frame in frames] for frames in alternatives]
     worst = [sum(frame.worst for frame in frames) for frames in plain]
     best = [sum(frame.best for frame in frames) for frames in plain]

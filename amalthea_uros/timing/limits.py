@@ -1,4 +1,4 @@
-"""How long times may be: sums of a few of them must fit into 64 bits."""
+"""Limits of times: sums of a few of them must fit into 64 bits."""
 
 from __future__ import annotations
 

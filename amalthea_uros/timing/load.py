@@ -1,4 +1,4 @@
-"""The load of cores in the worst case, as far as it is known."""
+"""Lower bounds of the worst-case load of cores."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from amalthea_uros.timing.notes import UnknownDemandError
 
 
 def activation_rates(system: System, activations: Activations) -> Mapping[str, Fraction]:
-    """Maximum number of activations per picosecond of each process, in the long run; only of processes that have a bound."""
+    """Maximum number of activations per picosecond of each process, in the long run; processes without a bound are left out."""
     found: dict[str, Fraction] = {}
     for process in system.processes.values():
         try:
@@ -25,14 +25,14 @@ def activation_rates(system: System, activations: Activations) -> Mapping[str, F
 def loads(
     cores: Mapping[str, frozenset[str]], rates: Mapping[str, Fraction], demand_model: DemandModel
 ) -> Mapping[str, Mapping[str, Fraction]]:
-    """The share of its core that each process demands, where it has only one; 1 is all of it.
+    """The worst-case utilisation of its core by each process with a single core.
 
-    Processes whose demand or rate of activations is unknown are left out, so that the load is at least the sum.
+    Processes with unknown demand or activation rate are left out, so that the load is at least the sum.
 
     Parameters
     ----------
-    cores : where each process may run
-    rates : of activations
+    cores : on which each process can run
+    rates : activations per picosecond
     """
     found: dict[str, dict[str, Fraction]] = {}
     for name, allowed in cores.items():

@@ -21,7 +21,7 @@ from amalthea_uros.perf.distributions import (
 
 
 def mean(distribution: Distribution[int]) -> Fraction:
-    """The mean value; for boundaries the middle, whatever lies between them, and where a parameter is no finite number."""
+    """The mean value; the middle of the bounds for `Boundaries`, or if a parameter is not finite."""
     try:
         return _mean(distribution)
     except (ValueError, OverflowError, ZeroDivisionError):

@@ -1,8 +1,8 @@
-"""What accesses to labels cost, by the memory of the label and the way there.
+"""The latency of label accesses, by the memory of the label and the access path.
 
-With a path, each of its elements takes cycles of its own clock, a connection those of the element before it; without one the access
-element tells the cycles of the core. The memory's own latency is added (help of APP4MC on the hardware model). Where there is no
-latency but a data rate, the size of the label is divided by the least rate. Accesses are not taken to wait for those of other cores.
+Each element of a path takes cycles of its own clock, and a connection those of the element before it; without a path, the access
+element gives the cycles of the core. The latency of the memory is added (help of APP4MC on the hardware model). If there is only a
+data rate, the size of the label is divided by the minimum rate. Accesses do not wait for those of other cores.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from amalthea_uros.timing.multiframe import Frame
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
 from amalthea_uros.units import SECOND, Frequency, down, time_of_ticks, up
 
-#: (least, mean, most), in picoseconds.
+#: (minimum, mean, maximum), in picoseconds.
 Times = tuple[Fraction, Fraction, Fraction]
-NOTHING: Times = (Fraction(0), Fraction(0), Fraction(0))
+ZERO: Times = (Fraction(0), Fraction(0), Fraction(0))
 
 
 @dataclass(slots=True)
 class MemoryAccess:
-    """The cost of accesses, each looked up once.
+    """The latencies of accesses, each computed once.
 
     Attributes
     ----------
@@ -37,49 +37,51 @@ class MemoryAccess:
     system: System
     notes: Notes
     frequency: Callable[[str], Frequency | None]
-    _known: dict[tuple[str, str, AccessKind], Times] = field(default_factory=dict)
+    _found: dict[tuple[str, str, AccessKind], Times] = field(default_factory=dict)
 
     def frame(self, core: str, label: str, kind: AccessKind, count: tuple[int, Fraction, int], time_base: Fraction) -> Frame:
-        """What some accesses cost, in parts of a picosecond.
+        """The demand of some accesses.
 
         Parameters
         ----------
-        count : least, mean and most number of accesses
+        count : minimum, mean and maximum number of accesses
+        time_base : time units per picosecond
         """
         key = (core, label, kind)
-        if key not in self._known:
-            self._known[key] = self._times(core, label, kind)
-        least, average, most = self._known[key]
+        if key not in self._found:
+            self._found[key] = self._times(core, label, kind)
+        minimum, average, maximum = self._found[key]
         return Frame(
-            worst=up(most * count[2] * time_base),
-            best=down(least * count[0] * time_base),
+            worst=up(maximum * count[2] * time_base),
+            best=down(minimum * count[0] * time_base),
             average=average * count[1] * time_base,
         )
 
     def _times(self, core: str, label: str, kind: AccessKind) -> Times:
-        placed = self.system.memory_of.get(label)
-        memory = self.system.memories.get(placed or "")
+        memory = self.system.memories.get(self.system.memory_of.get(label) or "")
         if memory is None:
             item = self.system.labels.get(label)
-            self.notes.warning("ANA008", f"the label {label!r} is in no memory; accesses to it are taken to cost nothing", item)
-            return NOTHING
+            self.notes.warning(
+                "ANA008", f"the label {label!r} is not mapped to a memory; assuming that accesses take no time", item
+            )
+            return ZERO
         accesses = [access for access in self.system.cores[core].accesses if access.memory == memory.name]
         if not accesses:
             message = (
-                f"there is no way from the core {core!r} to the memory {memory.name!r}; accesses are taken to cost nothing"
+                f"the core {core!r} has no access element for the memory {memory.name!r}; assuming that accesses take no time"
             )
             self.notes.warning("ANA008", message, memory)
-            return NOTHING
+            return ZERO
         size = self.system.labels[label].size or 0 if label in self.system.labels else 0
-        # Of several ways the slowest one.
-        way = max((self._way(core, access, kind, size) for access in accesses), key=lambda times: times[2])
-        return _sum(way, _cycles(memory.latency, self._clock(memory.clock)))
+        # The slowest of several paths.
+        path = max((self._path(core, access, kind, size) for access in accesses), key=lambda times: times[2])
+        return _sum(path, _cycles(memory.latency, self._clock(memory.clock)))
 
-    def _way(self, core: str, access: Access, kind: AccessKind, size: int) -> Times:
+    def _path(self, core: str, access: Access, kind: AccessKind, size: int) -> Times:
         frequency = self.frequency(core)
         if not access.path:
             return _latency(access.latency, kind, frequency, size)
-        total = NOTHING
+        total = ZERO
         before = frequency
         for name in access.path:
             match self.system.modules.get(name):
@@ -108,12 +110,12 @@ def _latency(latency: Latency, kind: AccessKind, frequency: Frequency | None, si
 
 def _cycles(cycles: Distribution[int] | None, frequency: Frequency | None) -> Times:
     if cycles is None or frequency is None:
-        return NOTHING
-    least, most = lowest(cycles), highest(cycles)
-    if least is None or most is None:
-        raise UnknownDemandError("there is a latency without bounds")
+        return ZERO
+    minimum, maximum = lowest(cycles), highest(cycles)
+    if minimum is None or maximum is None:
+        raise UnknownDemandError("a memory latency has no bounds")
     one = time_of_ticks(1, frequency)
-    return (least * one, mean(cycles) * one, most * one)
+    return (minimum * one, mean(cycles) * one, maximum * one)
 
 
 def _sum(first: Times, second: Times) -> Times:
@@ -121,7 +123,7 @@ def _sum(first: Times, second: Times) -> Times:
 
 
 def count_of(times: Count | float | None) -> tuple[int, Fraction, int]:
-    """Least, mean and most number of accesses that one of the model stands for."""
+    """Minimum, mean and maximum number of accesses that one access of the model represents."""
     if isinstance(times, Count):
         return (times.least, Fraction(times.mean), times.most)
     number = Fraction(1 if times is None else times)

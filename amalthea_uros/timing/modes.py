@@ -1,4 +1,4 @@
-"""Conditions on modes of which some are known."""
+"""Conditions on modes, only some of which are known."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _COMPARE: dict[Relation, Callable[[Any, Any], bool]] = {
 
 
 def holds(condition: Condition | None, modes: Mapping[str, str]) -> bool | None:
-    """Whether a condition is true; None if that depends on something unknown."""
+    """Whether a condition is true; None if that depends on an unknown mode."""
     if condition is None:
         return None
     found = [_all_of([_compared(comparison, modes) for comparison in every]) for every in condition.alternatives]
@@ -46,7 +46,7 @@ def _compared(comparison: Comparison, modes: Mapping[str, str]) -> bool | None:
 
 
 def _related(first: str | None, relation: Relation, second: str | None) -> bool | None:
-    """Numbers are compared as such; literals of an enumeration can only be equal or not."""
+    """Compares numbers by value; literals of an enumeration can only be equal or not."""
     if first is None or second is None:
         return None
     numbers = _number(first), _number(second)

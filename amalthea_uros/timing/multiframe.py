@@ -1,7 +1,7 @@
-"""Multiframe demand: jobs demand different amounts where something is executed every n-th time only.
+"""Multiframe demand: jobs have different demands if something is executed only every n-th time.
 
 After A. K. Mok and D. Chen, "A multiframe model for real-time tasks", IEEE Transactions on Software Engineering 23(10), 1997. Frames
-with different prescalers may meet in one job, as counters that start together do.
+with different prescalers can fall on the same job, because their counters start together.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ class MultiframeDemand:
 
     @classmethod
     def constant(cls, worst: Time, best: Time | None = None) -> MultiframeDemand:
-        """The same for all jobs."""
+        """The same demand for all jobs."""
         return cls((Frame(worst=worst, best=worst if best is None else best, average=Fraction(worst)),))
 
     def max_demand(self, count: int) -> Time:
-        """The most that so many consecutive jobs execute."""
+        """Maximum demand of that many consecutive jobs."""
         return sum(frame.worst * -(-count // frame.prescaler) for frame in self.frames)
 
     def min_demand(self, count: int) -> Time:
-        """The least that so many consecutive jobs execute."""
+        """Minimum demand of that many consecutive jobs."""
         return sum(frame.best * (count // frame.prescaler) for frame in self.frames)
 
     @property
@@ -63,11 +63,11 @@ class MultiframeDemand:
         return self.min_demand(1)
 
     def worst_of(self, job: int) -> Time:
-        """The most that a certain job executes, counted from 1."""
+        """Worst-case execution time of the n-th job, counted from 1."""
         return sum(frame.worst for frame in self.frames if frame.falls_on(job))
 
     def best_of(self, job: int) -> Time:
-        """The least that a certain job executes, counted from 1."""
+        """Best-case execution time of the n-th job, counted from 1."""
         return sum(frame.best for frame in self.frames if frame.falls_on(job))
 
     @property

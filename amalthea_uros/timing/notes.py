@@ -1,4 +1,4 @@
-"""What the reading of a system has to report: assumptions, and what is not taken into account."""
+"""Findings and assumptions of the timing context."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ class Notes:
     assumptions: dict[str, None] = field(default_factory=dict)
 
     def warning(self, rule: str, message: str, item: Named | None) -> None:
-        """Add a finding about something that cannot be taken into account as it is."""
+        """Add a finding about something that is not analysed as modelled."""
         name = item.name if item else ""
         self.found[Finding(rule, Severity.WARNING, message, item.origin if item else None, object=name)] = None
 
     def assume(self, sentence: str) -> None:
-        """Add an assumption on which the results rest."""
+        """Add an assumption on which the results are based."""
         self.assumptions[sentence] = None

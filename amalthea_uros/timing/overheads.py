@@ -1,4 +1,4 @@
-"""What the operating system costs: services are charged to who calls them, interrupt entry and exit to the interrupt."""
+"""Overheads of the operating system: services add to the demand of their callers, interrupt entry and exit to that of the ISR."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _OF_SEMAPHORES = {
     (False, True): Service.RELEASE_RESOURCE,
     (False, False): Service.REQUEST_RESOURCE,
 }
-#: Services of which it is known when they are called.
+#: Services whose calls are known.
 COUNTED = {*(service for services in _OF_ACTIVITIES.values() for service in services), *_OF_SEMAPHORES.values()} | {
     Service.SUSPEND_INTERRUPTS,
     Service.RESUME_INTERRUPTS,
@@ -47,7 +47,7 @@ COUNTED = {*(service for services in _OF_ACTIVITIES.values() for service in serv
 
 @dataclass(frozen=True)
 class Overheads:
-    """The costs of the operating systems of a system."""
+    """The overheads of the operating systems of a system."""
 
     system: System
 
@@ -67,10 +67,10 @@ class Overheads:
         return {semaphore.name: semaphore.kind for semaphore in self.system.os.semaphores}
 
     def of_activity(self, activity: Activity, core: str) -> Iterator[Demand]:
-        """What the services cost that an activity calls."""
+        """The demands of the services that an activity calls."""
         if core in self._by_core:
-            _, costs = self._by_core[core]
-            yield from (costs[service] for service in self._services(activity) if service in costs)
+            _, demands = self._by_core[core]
+            yield from (demands[service] for service in self._services(activity) if service in demands)
 
     def _services(self, activity: Activity) -> tuple[Service, ...]:
         match activity:
@@ -82,7 +82,7 @@ class Overheads:
         return _OF_ACTIVITIES.get(type(activity), ())
 
     def of_isr(self, isr: Isr, core: str) -> Iterator[Demand]:
-        """What comes before and after an interrupt service routine."""
+        """The demands of entry and exit of an interrupt service routine."""
         if core in self._by_core:
             overhead, _ = self._by_core[core]
             around = overhead.category_1 if isr.category is IsrCategory.CATEGORY_1 else overhead.category_2

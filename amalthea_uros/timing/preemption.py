@@ -1,4 +1,4 @@
-"""Where a process can be preempted: anywhere, between some of its activities, or nowhere."""
+"""Where a process can be preempted: anywhere, between activities, or nowhere."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from amalthea_uros.timing.scheduling import ScheduledProcess
 
 
 def preemption(item: ScheduledProcess) -> Preemption:
-    """Which tasks can preempt a process; only interrupts of higher priority preempt an interrupt service routine."""
+    """The preemption mode of a process; an ISR is preempted only by interrupts of higher priority."""
     return item.process.preemption if isinstance(item.process, Task) else Preemption.PREEMPTIVE
 
 
 def is_preemptive(item: ScheduledProcess) -> bool:
-    """Whether everything of higher rank can preempt a process at once."""
+    """Whether every process of higher rank can preempt a process immediately."""
     return preemption(item) is Preemption.PREEMPTIVE and item.group is None
 
 
 def regions(item: ScheduledProcess) -> list[tuple[Activity, ...]]:
-    """What a task executes between its preemption points: single activities, or for groups all between schedule points."""
+    """The activities between the preemption points of a task: each activity, or for groups all between schedule points."""
     activities = item.process.activities
     if preemption(item) is Preemption.COOPERATIVE and item.group is None:
         return [(activity,) for activity in activities]

@@ -1,4 +1,4 @@
-"""Processes whose releases are known, and the time limits that are their deadlines."""
+"""Known releases of processes, and response-time limits that are their deadlines."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from amalthea_uros.units import Time
 
 
 def known_releases(process: Process, system: System) -> Periodic | None:
-    """The stimulus of a process that is released at known times; None if it is not."""
+    """The stimulus of a process with known releases; None if they are unknown."""
     match [system.stimuli_by_name.get(name) for name in process.stimuli]:
         case [Periodic(jitter=None, condition=None, period=period, offset=offset) as stimulus] if (
             0 < period <= LIMIT and 0 <= offset <= LIMIT
@@ -21,7 +21,7 @@ def known_releases(process: Process, system: System) -> Periodic | None:
 
 
 def response_time_limits(system: System) -> dict[str, Time]:
-    """The shortest upper limit of the response time that requirements state for each process."""
+    """The strictest response-time limit of each process by its requirements."""
     found: dict[str, Time] = {}
     for requirement in system.constraints.requirements:
         match requirement.limit:

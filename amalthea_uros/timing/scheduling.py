@@ -1,8 +1,8 @@
-"""Which core or server executes a process, by which policy and with which rank.
+"""The core or server that executes a process, the policy, and the rank.
 
-Hierarchies of schedulers are read as in the help of APP4MC on hierarchical scheduling: the parent decides first, by the parameters of
-the association; its children decide only while they are served. The priorities of all levels form a rank that is compared from the
-left. Below a server, everything shares the server's budget.
+Hierarchies of schedulers follow the help of APP4MC on hierarchical scheduling: the parent decides first, by the parameters of the
+association; a child decides only while it is served. The priorities of all levels form a rank that is compared from left to right.
+Processes below a server share its budget.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SERVERS = {
     Policy.CONSTANT_BANDWIDTH_SERVER,
     Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH,
 }
-#: Other names of policies, in small letters; since AMALTHEA 2.0 a policy is known by nothing else than its name.
+#: Other names of policies, in lower case; since AMALTHEA 2.0 only the name identifies a policy.
 ALIASES = {
     "fpp": Policy.FIXED_PRIORITY_PREEMPTIVE,
     "fixed priority preemptive": Policy.FIXED_PRIORITY_PREEMPTIVE,
@@ -42,12 +42,12 @@ ALIASES = {
 CAPACITY = ("capacity", "maxBudget")
 PERIOD = ("period", "replenishment")
 
-#: Who is served first, compared from the left: interrupts before tasks, then the priorities of one scheduler after the other.
+#: Order of service, compared from left to right: interrupts before tasks, then the priorities from the outermost scheduler inwards.
 Rank = tuple[int, ...]
 
 
 class EqualPriority(StrEnum):
-    """Who of the same priority is served first."""
+    """Order of service among equal priorities."""
 
     FIFO = "first come, first served"
     EDF = "earliest deadline first"
@@ -60,7 +60,7 @@ class SchedulingContext:
 
     Attributes
     ----------
-    server : whose budget it uses; None: no server's
+    server : whose budget it uses; None: it runs on the core itself
     rank : higher is served first
     equal_priority, slice : how tasks of the same rank share the core
     group : its members do not preempt each other
@@ -76,7 +76,7 @@ class SchedulingContext:
 
     @property
     def urgency(self) -> Rank:
-        """The rank with the deadline, where that decides."""
+        """The rank, followed by the deadline under EDF."""
         return (*self.rank, -(self.deadline or 0)) if self.equal_priority is EqualPriority.EDF else self.rank
 
 
@@ -90,13 +90,13 @@ class ScheduledProcess(SchedulingContext):
 
     @property
     def name(self) -> str:
-        """That of the process."""
+        """The name of the process."""
         return self.process.name
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Server(SchedulingContext):
-    """A scheduler that gets a budget in each period, and serves others with it."""
+    """A scheduler with a budget in each period, in which it serves its tasks."""
 
     scheduler: Scheduler
     budget: Time
@@ -104,16 +104,16 @@ class Server(SchedulingContext):
 
     @property
     def name(self) -> str:
-        """That of the scheduler."""
+        """The name of the scheduler."""
         return self.scheduler.name
 
 
 class NotSchedulableError(Exception):
-    """It is not known how a process is served; the text says why."""
+    """The scheduling of a process is unknown or cannot be analysed; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
-class _Given:
+class _Parameters:
     """The parameters of a process or scheduler for the scheduler above it."""
 
     priority: int | None
@@ -122,18 +122,18 @@ class _Given:
     parameters: Sequence[Parameter]
 
     def of(self, scheduler: Scheduler, *names: str) -> ParameterValue | None:
-        """The value of the first parameter of some names that is stated, here or for all of the scheduler."""
-        stated = {p.name: p.values[0] for p in (*scheduler.parameters, *self.parameters) if len(p.values) == 1}
-        return next((stated[name] for name in names if name in stated), None)
+        """The first of the named parameters that is set, here or for the whole scheduler."""
+        values = {p.name: p.values[0] for p in (*scheduler.parameters, *self.parameters) if len(p.values) == 1}
+        return next((values[name] for name in names if name in values), None)
 
 
 @dataclass(slots=True)
 class Scheduling:
-    """Finds out how processes are scheduled.
+    """Finds the scheduling of processes.
 
     Attributes
     ----------
-    limits : of response times by requirements, which are deadlines where no others are stated
+    limits : response-time limits of requirements, which replace missing deadlines
     """
 
     system: System
@@ -142,19 +142,19 @@ class Scheduling:
     servers: dict[str, Server] = field(default_factory=dict)
 
     def task(self, allocation: TaskAllocation) -> ScheduledProcess:
-        """The place of a task.
+        """The scheduling of a task.
 
         Raises
         ------
-        NotSchedulableError : there is no analysis for how it is scheduled.
+        NotSchedulableError : its scheduling cannot be analysed.
         """
         process = self.system.processes.get(allocation.task)
         scheduler = self.system.schedulers.get(allocation.scheduler)
         if process is None or scheduler is None:
-            raise NotSchedulableError("its task or scheduler is not part of the model")
+            raise NotSchedulableError("its task or scheduler is not defined in the model")
         deadline = self.limits.get(process.name) if allocation.deadline is None else allocation.deadline
-        given = _Given(allocation.priority, deadline, self._period(process), allocation.parameters)
-        found = self._under(scheduler, given, ())
+        parameters = _Parameters(allocation.priority, deadline, self._period(process), allocation.parameters)
+        found = self._under(scheduler, parameters, ())
         return ScheduledProcess(
             process=process,
             core=self._core(scheduler, allocation.cores),
@@ -172,75 +172,76 @@ class Scheduling:
         stimuli = [self.system.stimuli_by_name.get(name) for name in process.stimuli]
         return min((stimulus.period for stimulus in stimuli if isinstance(stimulus, Periodic)), default=None)
 
-    def _under(self, scheduler: Scheduler, given: _Given, above: tuple[str, ...]) -> SchedulingContext:
-        """The place of what is given to a scheduler."""
+    def _under(self, scheduler: Scheduler, parameters: _Parameters, above: tuple[str, ...]) -> SchedulingContext:
+        """The scheduling of a task or child scheduler of a scheduler."""
         if scheduler.name in above:
-            raise NotSchedulableError("its schedulers are below each other in a circle")
+            raise NotSchedulableError("its schedulers are nested in a cycle")
         above = (*above, scheduler.name)
         policy = self._policy(scheduler)
         if policy == Policy.GROUPING:
-            return self._in_group(scheduler, given, above)
+            return self._in_group(scheduler, parameters, above)
         if policy in SERVERS:
             server = self._server(scheduler, above)
-            return SchedulingContext(server=server.name, rank=() if given.priority is None else (given.priority,))
+            return SchedulingContext(server=server.name, rank=() if parameters.priority is None else (parameters.priority,))
         base = self._of_scheduler(scheduler, above)
         if base.equal_priority is not EqualPriority.FIFO:
-            self.notes.warning("ANA002", f"there is no analysis for {scheduler.name!r} below {base.equal_priority}", scheduler)
-            raise NotSchedulableError(f"there is no analysis for schedulers below {base.equal_priority}")
+            message = f"{scheduler.name!r} cannot be analysed: its parent schedules by {base.equal_priority}"
+            self.notes.warning("ANA002", message, scheduler)
+            raise NotSchedulableError(f"schedulers below {base.equal_priority} cannot be analysed")
         if policy is None:
-            message = f"the scheduler {scheduler.name!r} names no policy, fixed priorities with preemption are taken"
+            message = f"the scheduler {scheduler.name!r} has no policy; assuming fixed-priority preemptive scheduling"
             self.notes.warning("ANA001", message, scheduler)
         by_policy = _BY_POLICY.get(policy)
         if by_policy is None:
-            message = f"there is no analysis for the policy {policy!r} of the scheduler {scheduler.name!r}"
+            message = f"the policy {policy!r} of the scheduler {scheduler.name!r} cannot be analysed"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError(f"there is no analysis for the policy {policy}")
-        return by_policy(scheduler, given, base)
+            raise NotSchedulableError(f"its scheduling policy {policy} cannot be analysed")
+        return by_policy(scheduler, parameters, base)
 
     def _policy(self, scheduler: Scheduler) -> str | None:
-        """The policy of a scheduler by its standard name."""
-        meant = ALIASES.get((scheduler.policy or "").lower())
-        if meant is None:
+        """The standard name of the policy of a scheduler."""
+        standard = ALIASES.get((scheduler.policy or "").lower())
+        if standard is None:
             return scheduler.policy
-        self.notes.assume(f"the policy {scheduler.policy!r} is taken for {meant}")
-        return meant
+        self.notes.assume(f"the policy {scheduler.policy!r} is interpreted as {standard}")
+        return standard
 
-    def _in_group(self, scheduler: Scheduler, given: _Given, above: tuple[str, ...]) -> SchedulingContext:
-        """A grouping decides nothing: its parent does, by what is stated for the process, or else for the whole group."""
+    def _in_group(self, scheduler: Scheduler, parameters: _Parameters, above: tuple[str, ...]) -> SchedulingContext:
+        """The scheduling in a grouping: its parent decides, by the parameters of the process, or else of the group."""
         if scheduler.parent is None:
-            raise NotSchedulableError(f"the grouping {scheduler.name!r} has no scheduler above it")
-        parent, whole = self._parent(scheduler)
-        merged = _Given(
-            priority=whole.priority if given.priority is None else given.priority,
-            deadline=whole.deadline if given.deadline is None else given.deadline,
-            period=given.period,
-            parameters=(*whole.parameters, *given.parameters),
+            raise NotSchedulableError(f"the grouping {scheduler.name!r} has no parent scheduler")
+        parent, of_group = self._parent(scheduler)
+        merged = _Parameters(
+            priority=of_group.priority if parameters.priority is None else parameters.priority,
+            deadline=of_group.deadline if parameters.deadline is None else parameters.deadline,
+            period=parameters.period,
+            parameters=(*of_group.parameters, *parameters.parameters),
         )
         return self._under(parent, merged, above)
 
     def _of_scheduler(self, scheduler: Scheduler, above: tuple[str, ...]) -> SchedulingContext:
-        """The place of a scheduler itself, in front of which those of what it serves come."""
+        """The scheduling of a scheduler itself; its rank precedes those of its tasks."""
         if scheduler.parent is None:
             return SchedulingContext()
-        parent, given = self._parent(scheduler)
-        if scheduler.policy not in SERVERS and self._is_shared(parent, given.priority):
-            message = f"the priority of {scheduler.name!r} in {parent.name!r} is that of others, too"
+        parent, parameters = self._parent(scheduler)
+        if scheduler.policy not in SERVERS and self._is_shared(parent, parameters.priority):
+            message = f"{scheduler.name!r} shares its priority in {parent.name!r} with others"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError("there is no analysis for schedulers that share a priority")
-        return self._under(parent, given, above)
+            raise NotSchedulableError("schedulers that share a priority cannot be analysed")
+        return self._under(parent, parameters, above)
 
-    def _parent(self, scheduler: Scheduler) -> tuple[Scheduler, _Given]:
+    def _parent(self, scheduler: Scheduler) -> tuple[Scheduler, _Parameters]:
         assert scheduler.parent is not None
         parent = self.system.schedulers.get(scheduler.parent.scheduler)
         if parent is None:
-            raise NotSchedulableError(f"the scheduler above {scheduler.name!r} is not part of the model")
-        stated = scheduler.parent
-        period = _time(_Given(None, None, None, stated.parameters).of(scheduler, *PERIOD))
-        deadline = period if stated.deadline is None else stated.deadline
-        return parent, _Given(stated.priority, deadline, period, stated.parameters)
+            raise NotSchedulableError(f"the parent scheduler of {scheduler.name!r} is not defined in the model")
+        association = scheduler.parent
+        period = _time(_Parameters(None, None, None, association.parameters).of(scheduler, *PERIOD))
+        deadline = period if association.deadline is None else association.deadline
+        return parent, _Parameters(association.priority, deadline, period, association.parameters)
 
     def _is_shared(self, parent: Scheduler, priority: int | None) -> bool:
-        """Whether more than one scheduler or task has a priority, where the priority decides."""
+        """Whether several schedulers or tasks have a priority, under a policy that uses it."""
         if parent.policy not in BY_PRIORITY | SERVERS:
             return False
         children = [s for s in self.system.schedulers.values() if s.parent is not None and s.parent.scheduler == parent.name]
@@ -251,11 +252,11 @@ class Scheduling:
     def _server(self, scheduler: Scheduler, above: tuple[str, ...]) -> Server:
         if scheduler.name not in self.servers:
             found = self._of_scheduler(scheduler, above)
-            stated = _Given(None, None, None, scheduler.parent.parameters if scheduler.parent else ())
+            parameters = _Parameters(None, None, None, scheduler.parent.parameters if scheduler.parent else ())
             self.servers[scheduler.name] = Server(
                 scheduler=scheduler,
-                budget=_needed(_time(stated.of(scheduler, *CAPACITY)), "capacity"),
-                period=_needed(_time(stated.of(scheduler, *PERIOD)), "period"),
+                budget=_required(_time(parameters.of(scheduler, *CAPACITY)), "capacity"),
+                period=_required(_time(parameters.of(scheduler, *PERIOD)), "period"),
                 core=self._core(scheduler, ()),
                 server=found.server,
                 rank=found.rank,
@@ -272,26 +273,26 @@ class Scheduling:
             served = served or root.cores
         cores = [core for core in served if core in wanted] if wanted else list(served)
         if len(cores) != 1:
-            why = "several cores serve it" if cores else "no core serves it"
-            message = f"the scheduler {scheduler.name!r} decides for {len(served)} cores; only one per task is analysed"
+            reason = "several cores can execute it" if cores else "no core executes it"
+            message = f"the scheduler {scheduler.name!r} has {len(served)} cores; only tasks on a single core are analysed"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError(why)
+            raise NotSchedulableError(reason)
         roots = [s.name for s in self.system.schedulers.values() if s.parent is None and cores[0] in s.cores]
         others = [name for name in roots if name != root.name]
         if others:
-            message = f"the core {cores[0]!r} is served by {root.name!r} and by {others[0]!r}"
+            message = f"the core {cores[0]!r} is shared by the schedulers {root.name!r} and {others[0]!r}"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError("two schedulers share its core")
+            raise NotSchedulableError("its core is shared by two schedulers")
         return cores[0]
 
     def isr(self, name: str, controller_name: str, priority: int | None) -> ScheduledProcess:
-        """The place of an interrupt service routine; raises as `task`."""
+        """The scheduling of an interrupt service routine; raises as `task`."""
         process = self.system.processes.get(name)
         controller = self.system.interrupt_controllers.get(controller_name)
         if process is None or controller is None:
-            raise NotSchedulableError("its controller is not part of the model")
+            raise NotSchedulableError("its interrupt controller is not defined in the model")
         if len(controller.cores) != 1:
-            raise NotSchedulableError("several cores serve it" if controller.cores else "no core serves it")
+            raise NotSchedulableError("several cores can execute it" if controller.cores else "no core executes it")
         rank = (1, priority or 0)
         return ScheduledProcess(process=process, core=controller.cores[0], is_isr=True, priority=priority, rank=rank)
 
@@ -300,8 +301,8 @@ def _time(value: ParameterValue | None) -> Time | None:
     return value.time if isinstance(value, Duration) else None
 
 
-def _needed(value: int | None, what: str) -> int:
-    """A value that may not be missing, and no time that may not be 0."""
+def _required(value: int | None, what: str) -> int:
+    """A value that must be set; times must be greater than 0."""
     if value is None or (what != "priority" and value <= 0):
         raise NotSchedulableError(f"it has no {what}")
     return value
@@ -310,36 +311,36 @@ def _needed(value: int | None, what: str) -> int:
 # Policies
 
 
-def _fixed_priority(_scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
-    return replace(base, rank=(*base.rank, _needed(given.priority, "priority")))
+def _fixed_priority(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    return replace(base, rank=(*base.rank, _required(parameters.priority, "priority")))
 
 
-def _osek(scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
-    found, group = _fixed_priority(scheduler, given, base), given.of(scheduler, "taskGroup")
+def _osek(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    found, group = _fixed_priority(scheduler, parameters, base), parameters.of(scheduler, "taskGroup")
     return found if group is None else replace(found, group=f"{scheduler.name}/{group}")
 
 
-def _round_robin(scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
-    found = _fixed_priority(scheduler, given, base)
-    length = _needed(_time(given.of(scheduler, "timeSliceLength")), "timeSliceLength")
+def _round_robin(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    found = _fixed_priority(scheduler, parameters, base)
+    length = _required(_time(parameters.of(scheduler, "timeSliceLength")), "timeSliceLength")
     return replace(found, equal_priority=EqualPriority.ROUND_ROBIN, slice=length)
 
 
-def _deadline_monotonic(_scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
-    return replace(base, rank=(*base.rank, -_needed(given.deadline, "deadline")))
+def _deadline_monotonic(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    return replace(base, rank=(*base.rank, -_required(parameters.deadline, "deadline")))
 
 
-def _rate_monotonic(scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
-    stated = _time(given.of(scheduler, "period")) or given.period
-    return replace(base, rank=(*base.rank, -_needed(stated, "period")))
+def _rate_monotonic(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    period = _time(parameters.of(scheduler, "period")) or parameters.period
+    return replace(base, rank=(*base.rank, -_required(period, "period")))
 
 
-def _earliest_deadline_first(_scheduler: Scheduler, given: _Given, base: SchedulingContext) -> SchedulingContext:
-    return replace(base, equal_priority=EqualPriority.EDF, deadline=_needed(given.deadline, "deadline"))
+def _earliest_deadline_first(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    return replace(base, equal_priority=EqualPriority.EDF, deadline=_required(parameters.deadline, "deadline"))
 
 
-#: How a scheduler of each policy treats what is below it; without a policy, fixed priorities are assumed.
-_BY_POLICY: Mapping[str | None, Callable[[Scheduler, _Given, SchedulingContext], SchedulingContext]] = {
+#: The scheduling by each policy; without a policy, fixed priorities are assumed.
+_BY_POLICY: Mapping[str | None, Callable[[Scheduler, _Parameters, SchedulingContext], SchedulingContext]] = {
     None: _fixed_priority,
     Policy.FIXED_PRIORITY_PREEMPTIVE: _fixed_priority,
     Policy.OSEK: _osek,

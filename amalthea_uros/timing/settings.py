@@ -1,4 +1,4 @@
-"""What is analysed instead of, or beyond, what the system says."""
+"""Settings of an analysis that replace or add to the values of the system."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from amalthea_uros.units import Frequency
 
 
 class Memory(StrEnum):
-    """What accesses to labels cost: nothing, each one its latency, or a copy of each label at the start and the end of a job."""
+    """Demand of label accesses: none, the latency of each access, or a copy of each label at the start and end of a job."""
 
     NONE = "none"
     EXPLICIT = "explicit"
@@ -21,16 +21,16 @@ class Memory(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Of an analysis.
+    """Settings of an analysis.
 
     Attributes
     ----------
-    frequencies : of cores, instead of what the system says
-    scale : factor on all execution times, as if clocks were slower by it
-    factors : the same for single processes
+    frequencies : of cores, instead of those of the system
+    scale : factor on all execution times, like slower clocks
+    factors : on the execution times of single processes
     modes : values of mode labels that do not change
-    communication : how all labels are read and written; None: as the model says, and implicit where it says nothing
-    any_phase : whether counters at which chains start may start at any of their occurrences
+    communication : of all label accesses; None: as modelled, implicit by default
+    all_phases : evaluate chains for all phases of the counters at which they start
     """
 
     frequencies: Mapping[str, Frequency] = field(default_factory=dict)
@@ -39,7 +39,7 @@ class Settings:
     modes: Mapping[str, str] = field(default_factory=dict)
     memory: Memory = Memory.NONE
     communication: Communication | None = None
-    any_phase: bool = False
+    all_phases: bool = False
 
     def __post_init__(self) -> None:
         for name, kind in (("memory", Memory), ("communication", Communication)):

@@ -11,14 +11,14 @@ from test_system import system, ticks
 
 from amalthea_uros import describe
 from amalthea_uros.analyze.assignment import assign, propose_priorities
-from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.task import Task as AnalysedTask
-from amalthea_uros.analyze.sensitivity import greatest_scale, sensitivity
+from amalthea_uros.analyze.sensitivity import max_scale, sensitivity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import Periodic
-from amalthea_uros.timing.event_models import Periodic as PeriodicArrivals
+from amalthea_uros.timing.event_models import Periodic as PeriodicEvents
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
@@ -28,16 +28,16 @@ ROWS = st.lists(st.tuples(st.integers(4, 14), st.integers(0, 8), st.integers(1, 
 
 def meets(order, tasks, deadlines):
     """Whether an order of indices, lowest priority first, meets all deadlines."""
-    ranked = [AnalysedTask(name=t.name, arrivals=t.arrivals, cost=t.cost, priority=order.index(i)) for i, t in enumerate(tasks)]
-    responses = levels.response_times(ranked)
+    ranked = [AnalysedTask(name=t.name, events=t.events, demand=t.demand, priority=order.index(i)) for i, t in enumerate(tasks)]
+    responses = priority_levels.response_times(ranked)
     return all(r.worst is not None and r.worst <= d for r, d in zip(responses, deadlines, strict=True))
 
 
 @given(ROWS)
 def test_there_is_an_assignment_if_and_only_if_one_of_all_orders_is_one(rows):
     tasks = [
-        AnalysedTask(name=str(index), arrivals=PeriodicArrivals(period, jitter), cost=MultiframeDemand.constant(cost))
-        for index, (period, jitter, cost, _) in enumerate(rows)
+        AnalysedTask(name=str(index), events=PeriodicEvents(period, jitter), demand=MultiframeDemand.constant(wcet))
+        for index, (period, jitter, wcet, _) in enumerate(rows)
     ]
     deadlines = [deadline for *_, deadline in rows]
     found = assign(tasks, deadlines)
@@ -50,8 +50,8 @@ def test_there_is_an_assignment_if_and_only_if_one_of_all_orders_is_one(rows):
 def test_deadline_monotonic_order_is_not_best_with_jitter():
     # The task with the shorter deadline arrives regularly; only below the jittering one both fit.
     tasks = [
-        AnalysedTask(name="regular", arrivals=PeriodicArrivals(20), cost=MultiframeDemand.constant(4)),
-        AnalysedTask(name="jittering", arrivals=PeriodicArrivals(20, 16), cost=MultiframeDemand.constant(3)),
+        AnalysedTask(name="regular", events=PeriodicEvents(20), demand=MultiframeDemand.constant(4)),
+        AnalysedTask(name="jittering", events=PeriodicEvents(20, 16), demand=MultiframeDemand.constant(3)),
     ]
     assert assign(tasks, [10, 10]) is not None
 
@@ -59,7 +59,7 @@ def test_deadline_monotonic_order_is_not_best_with_jitter():
 @pytest.mark.parametrize("sample", ["bodas-test-advanced", "drive-and-lift"])
 def test_the_greatest_scale_is_where_a_verdict_changes(sample):
     described = describe(ROOT / "samples" / f"{sample}.yaml").system
-    scale = greatest_scale(analyze_system(described))
+    scale = max_scale(analyze_system(described))
     assert not analyze_system(described, Settings(scale=scale)).misses
     assert analyze_system(described, Settings(scale=scale * Fraction(1001, 1000) + Fraction(1, 1000))).misses
 
@@ -67,7 +67,7 @@ def test_the_greatest_scale_is_where_a_verdict_changes(sample):
 def test_the_control_function_of_the_thesis_has_room_for_its_deadline():
     # 29 us may become 1 ms; then the executor and the control function take 25 and 4 of every 29 parts.
     described = describe(ROOT / "samples" / "bodas-test-advanced.yaml").system
-    assert float(greatest_scale(analyze_system(described))) == pytest.approx(1000 / 29, rel=1e-3)
+    assert float(max_scale(analyze_system(described))) == pytest.approx(1000 / 29, rel=1e-3)
 
 
 def tasks_on_a_core(*rows, **more):
@@ -78,7 +78,7 @@ def tasks_on_a_core(*rows, **more):
             Periodic(name=f"every {name}", period=period * US, offset=index * US)
             for index, (name, period, _, _) in enumerate(rows)
         ],
-        [Task(name=name, stimuli=(f"every {name}",), activities=(ticks(cost),)) for name, _, cost, _ in rows],
+        [Task(name=name, stimuli=(f"every {name}",), activities=(ticks(wcet),)) for name, _, wcet, _ in rows],
         [
             TaskAllocation(task=name, scheduler="core", priority=index, deadline=deadline * US if deadline else None)
             for index, (name, _, _, deadline) in enumerate(rows)

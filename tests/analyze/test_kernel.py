@@ -25,22 +25,22 @@ def as_machine_code(function):
     return found
 
 
-LOOPS = (kernel.demand_in, kernel.fixed_point, kernel.least_response, kernel.dispatch)
-DEMAND_IN, FIXED_POINT, LEAST_RESPONSE, DISPATCH = map(as_machine_code, LOOPS)
+LOOPS = (kernel.demand_in, kernel.least_fixed_point, kernel.greatest_fixed_point, kernel.dispatch)
+DEMAND_IN, LEAST_FIXED_POINT, GREATEST_FIXED_POINT, DISPATCH = map(as_machine_code, LOOPS)
 
 
 @given(rows=ROWS, window=st.integers(1, 10**13), fixed=st.integers(1, 10**10), data=st.data())
 def test_the_same_numbers(rows, window, fixed, data):
     columns = np.array(rows, dtype=np.int64).reshape(-1, 4)
-    periods, jitters, distances, costs = (np.ascontiguousarray(columns[:, index]) for index in range(4))
+    periods, jitters, distances, demands = (np.ascontiguousarray(columns[:, index]) for index in range(4))
     count, limited = data.draw(st.integers(0, len(rows))), bool(distances.any())
-    demand = (window, periods, jitters, distances, costs, count, limited)
+    demand = (window, periods, jitters, distances, demands, count, limited)
     assert DEMAND_IN(*demand) == kernel.demand_in.__wrapped__(*demand)
-    point = (fixed, fixed, periods, jitters, distances, costs, count, limited)
-    if (costs / periods).sum() < 0.9:
-        assert FIXED_POINT(*point) == kernel.fixed_point.__wrapped__(*point)
-        least = (fixed, 10 * fixed, periods, costs, count)
-        assert LEAST_RESPONSE(*least) == kernel.least_response.__wrapped__(*least)
+    point = (fixed, fixed, periods, jitters, distances, demands, count, limited)
+    if (demands / periods).sum() < 0.9:
+        assert LEAST_FIXED_POINT(*point) == kernel.least_fixed_point.__wrapped__(*point)
+        least = (fixed, 10 * fixed, periods, demands, count)
+        assert GREATEST_FIXED_POINT(*least) == kernel.greatest_fixed_point.__wrapped__(*least)
 
 
 @given(
@@ -56,25 +56,25 @@ def test_the_same_schedule(rows):
             name=str(index),
             period=period,
             offset=offset,
-            cost=MultiframeDemand((Frame(worst=cost, best=cost), Frame(worst=1, best=0, prescaler=prescaler, offset=start))),
+            demand=MultiframeDemand((Frame(worst=wcet, best=wcet), Frame(worst=1, best=0, prescaler=prescaler, offset=start))),
             priority=-index // 2,
         )
-        for index, (period, offset, cost, prescaler, start) in enumerate(rows)
+        for index, (period, offset, wcet, prescaler, start) in enumerate(rows)
     ]
-    assume(sum(task.cost.mean_worst / task.period for task in tasks) <= 1)
-    watched = [index % 2 == 0 for index in range(len(tasks))]
+    assume(sum(task.demand.mean_worst / task.period for task in tasks) <= 1)
+    recorded = [index % 2 == 0 for index in range(len(tasks))]
     found = []
     for function in (Compiled(kernel.dispatch.__wrapped__, 0), DISPATCH):
         schedule.dispatch = function
-        found.append(schedule.schedule(tasks, 100, MultiframeDemand.worst_of, watched))
+        found.append(schedule.schedule(tasks, 100, MultiframeDemand.worst_of, recorded))
     schedule.dispatch = kernel.dispatch
-    for python, machine, task, is_watched in zip(*found, tasks, watched, strict=True):
+    for python, machine, task, is_recorded in zip(*found, tasks, recorded, strict=True):
         assert [column.tolist() for column in dataclasses.astuple(python)] == [c.tolist() for c in dataclasses.astuple(machine)]
-        if is_watched:
+        if is_recorded:
             executed = [0] * len(python.releases)
             for job, begin, end in python.execution_slices.tolist():
                 executed[job] += end - begin
-            assert executed == [task.cost.worst_of(job + 1) for job in range(len(executed))]
+            assert executed == [task.demand.worst_of(job + 1) for job in range(len(executed))]
 
 
 def test_only_what_is_used_much_is_compiled(monkeypatch):

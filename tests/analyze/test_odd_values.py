@@ -1,4 +1,4 @@
-"""Values that mean nothing, or that nothing can count: the analysis says what it does not know, and never fails."""
+"""Invalid and extreme values: the analysis reports unknown results and never fails."""
 
 import pytest
 from support import MODEL

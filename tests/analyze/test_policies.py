@@ -1,4 +1,4 @@
-"""Schedulers of many kinds, what the operating system and memory cost, and what is known of modes: all values worked out by hand."""
+"""Scheduling policies, overheads of the operating system and memory, and modes; all values are computed by hand."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -48,7 +48,7 @@ def ticks(number):
 
 
 def system(schedulers, tasks, stimuli=(), events=(), isrs=(), labels=(), runnables=(), **os_parts):
-    """A core of 1 MHz, and tasks of (name, least distance in us, activities, allocation)."""
+    """A core of 1 MHz, and tasks of (name, minimum distance in us, activities, allocation)."""
     sporadic = [
         RelativePeriodic(name=f"every {name}", distance=Boundaries(lower=distance * US, upper=2 * distance * US))
         for name, distance, _, _ in tasks
@@ -70,7 +70,7 @@ def system(schedulers, tasks, stimuli=(), events=(), isrs=(), labels=(), runnabl
             labels=tuple(labels),
             runnables=tuple(runnables),
         ),
-        mapping=Mapping(tasks=tuple(TaskAllocation(task=name, **placed) for name, _, _, placed in tasks)),
+        mapping=Mapping(tasks=tuple(TaskAllocation(task=name, **allocation) for name, _, _, allocation in tasks)),
         events=Events(events=tuple(events)),
     )
 
@@ -98,7 +98,7 @@ class TestPolicies:
             ("short", 4, [ticks(1)], {"scheduler": "root", "deadline": 4 * US}),
             ("long", 6, [ticks(3)], {"scheduler": "root", "deadline": 5 * US}),
         ]
-        # Spuri 1996: the short one, one behind the long one, has the same deadline.
+        # Spuri 1996: the short one, activated one after the long one, has the same deadline.
         assert worst(system([root(Policy.EARLIEST_DEADLINE_FIRST)], tasks)) == {"short": 3, "long": 4}
 
     def test_a_task_without_a_deadline_makes_all_others_unknown(self):
@@ -127,7 +127,7 @@ class TestPolicies:
     def test_equal_priorities_are_served_in_the_order_of_arrival(self):
         tasks = [(name, 100, [ticks(5)], {"scheduler": "root", "priority": 1}) for name in ("A", "B")]
         tasks.append(("often", 8, [ticks(2)], {"scheduler": "root", "priority": 1}))
-        # What comes later than a job waits for it: each of the others is in its way once only.
+        # Jobs that are activated later wait: each of the other tasks interferes only once.
         assert worst(system([root()], tasks)) == {"A": 12, "B": 12, "often": 12}
 
     def test_a_group_is_not_interrupted_from_within(self):
@@ -179,11 +179,11 @@ class TestSchedulersBelowEachOther:
     @pytest.mark.parametrize(
         ("policy", "inside", "below"),
         [
-            # The job comes when the budget has just been used up: 8 of waiting, 2, 8 of waiting, 1. What was kept of the budget may be
+            # The job is activated when the budget has just been used up: 8 of waiting, 2, 8 of waiting, 1. A deferred budget can be
             # used just before the next one, so that the task below waits for two of them.
             (Policy.DEFERRABLE_SERVER, 8 + 2 + 8 + 1, 5 + 2 + 2),
             (Policy.SPORADIC_SERVER, 8 + 2 + 8 + 1, 5 + 2),
-            # The job comes just behind the polling: it waits for the whole period.
+            # The job is activated just after the polling: it waits for the whole period.
             (Policy.POLLING_SERVER, 10 + 2 + 8 + 1, 5 + 2),
         ],
     )
@@ -202,7 +202,7 @@ class TestSchedulersBelowEachOther:
             ("above", 10, [ticks(9)], {"scheduler": "root", "priority": 9}),
         ]
         built = system([root(), under("server", Policy.POLLING_SERVER, 5, capacity=2, period=10)], tasks)
-        assert worst(built) == {"inside": "the server 'server' is not sure to get its budget in each period", "above": 9}
+        assert worst(built) == {"inside": "the server 'server' is not guaranteed its budget in each period", "above": 9}
 
 
 class TestCosts:
@@ -254,7 +254,7 @@ class TestCosts:
         assert worst(built, Settings(memory=memory)) == {"T": expected}
 
     def with_memory(self, *body):
-        """A memory at 2 cycles to write, and one behind a bus of half the clock: 1 on the way, 2 * 3 there, 2 of its own."""
+        """A memory at 2 cycles to write, and one after a bus of half the clock: 1 on the way, 2 * 3 there, 2 of its own."""
         built = system(
             [root()],
             [("T", 1000, body, {"scheduler": "root", "priority": 1})],
@@ -333,7 +333,7 @@ class TestEventsThatActivate:
     def test_accesses_to_labels(self):
         write = LabelAccess(label="L", kind=AccessKind.WRITE)
         assert self.respond(LabelEvent(name="event", label="L", change=LabelChange.WRITE), write) == 9
-        assert "nothing triggers" in self.respond(LabelEvent(name="event", label="L", change=LabelChange.READ), write)
+        assert "no process triggers" in self.respond(LabelEvent(name="event", label="L", change=LabelChange.READ), write)
 
     def test_twice_in_a_job(self):
         twice = (RaiseEvent(event="event"), RaiseEvent(event="event"))
@@ -341,10 +341,10 @@ class TestEventsThatActivate:
         assert self.respond(CustomEvent(name="event"), *twice) == 13
 
     def test_events_from_outside(self):
-        assert "nothing in the model raises" in self.respond(CustomEvent(name="event"))
+        assert "no activity in the model raises" in self.respond(CustomEvent(name="event"))
 
     def test_who_is_triggered_by_something_unknown_is_unknown_too(self):
-        assert "too little is known" in self.respond(
+        assert "could not be analysed" in self.respond(
             CustomEvent(name="event"), RaiseEvent(event="event"), WaitEvent(events=("e",))
         )
 

@@ -9,8 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import SHARED
 
-from amalthea_uros.analyze.response_times import non_preemptive, schedule
-from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times import non_preemptive, priority_levels, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.timing.event_models import Periodic
@@ -28,8 +27,8 @@ def tasks_of(case):
     return [
         Task(
             name=task["name"],
-            arrivals=Periodic(task["period"], task.get("jitter", 0)),
-            cost=MultiframeDemand.constant(task["wcet"]),
+            events=Periodic(task["period"], task.get("jitter", 0)),
+            demand=MultiframeDemand.constant(task["wcet"]),
             priority=-task["priority"],
         )
         for task in case["tasks"]
@@ -42,7 +41,7 @@ def test_published_and_independent_figures(case):
     if "non_preemptive" in case["scheduling"]:
         found = non_preemptive.response_times(tasks, case["bit_time"])
     else:
-        found = levels.response_times(tasks, [task.get("blocking", 0) for task in case["tasks"]])
+        found = priority_levels.response_times(tasks, [task.get("blocking", 0) for task in case["tasks"]])
     worst = [response.worst for response in found]
     if case.get("wcrt_measured_from") == "arrival_before_jitter":
         worst = [response + task["jitter"] for response, task in zip(worst, case["tasks"], strict=True)]
@@ -54,22 +53,22 @@ def test_published_and_independent_figures(case):
 def test_liu_and_layland_1973(case):
     """Up to the bound of theorem 5 any tasks end within their periods, also those that just reach it."""
     count, bound = case["n"], case["expected"]
-    # The worst case of the proof: periods in the ratio of 2 ** (1 / n), each cost the distance to the next period.
+    # The worst case of the proof: periods in the ratio of 2 ** (1 / n), each wcet the distance to the next period.
     periods = [round(10**9 * 2 ** (index / count)) for index in range(count)]
-    costs = [(then - first) for first, then in pairwise([*periods, 2 * periods[0]])]
-    assert sum(cost / period for cost, period in zip(costs, periods, strict=True)) == pytest.approx(bound, rel=1e-8)
+    wcets = [(then - first) for first, then in pairwise([*periods, 2 * periods[0]])]
+    assert sum(wcet / period for wcet, period in zip(wcets, periods, strict=True)) == pytest.approx(bound, rel=1e-8)
     tasks = [
-        Task(name=f"t{index}", arrivals=Periodic(period), cost=MultiframeDemand.constant(cost), priority=-index)
-        for index, (period, cost) in enumerate(zip(periods, costs, strict=True))
+        Task(name=f"t{index}", events=Periodic(period), demand=MultiframeDemand.constant(wcet), priority=-index)
+        for index, (period, wcet) in enumerate(zip(periods, wcets, strict=True))
     ]
-    responses = levels.response_times(tasks)
+    responses = priority_levels.response_times(tasks)
     assert all(response.worst <= period for response, period in zip(responses, periods, strict=True))
 
 
 def test_lehoczky_1990_has_its_worst_response_at_the_fifth_job():
-    t1 = Task(name="t1", arrivals=Periodic(70), cost=MultiframeDemand.constant(26), priority=2)
-    t2 = Task(name="t2", arrivals=Periodic(100), cost=MultiframeDemand.constant(62), priority=1)
-    _, response = levels.response_times([t1, t2])
+    t1 = Task(name="t1", events=Periodic(70), demand=MultiframeDemand.constant(26), priority=2)
+    t2 = Task(name="t2", events=Periodic(100), demand=MultiframeDemand.constant(62), priority=1)
+    _, response = priority_levels.response_times([t1, t2])
     assert (response.worst, response.jobs) == (118, 7)
     assert response.terms["earlier arrival"] == -4 * 100
 
@@ -77,7 +76,7 @@ def test_lehoczky_1990_has_its_worst_response_at_the_fifth_job():
 def test_davis_2007_a_later_frame_waits_longest():
     # The example by which the older analysis is refuted, in bits of 1/125 of a millisecond: 1, 1, 1 ms every 2.5, 3.5, 3.5 ms.
     frames = [
-        Task(name=name, arrivals=Periodic(period), cost=MultiframeDemand.constant(1000), priority=priority)
+        Task(name=name, events=Periodic(period), demand=MultiframeDemand.constant(1000), priority=priority)
         for name, period, priority in (("A", 2500, 3), ("B", 3500, 2), ("C", 3500, 1))
     ]
     assert [response.worst for response in non_preemptive.response_times(frames)] == [2000, 3000, 3500]
@@ -90,7 +89,7 @@ def test_schedules_job_by_job(case):
             name=t["name"],
             period=t["period"],
             offset=t["offset"],
-            cost=MultiframeDemand.constant(t["wcet"]),
+            demand=MultiframeDemand.constant(t["wcet"]),
             priority=-t["priority"],
         )
         for t in case["tasks"]
@@ -101,19 +100,19 @@ def test_schedules_job_by_job(case):
 
 
 def test_overload_is_a_result_with_a_reason():
-    high = Task(name="high", arrivals=Periodic(10), cost=MultiframeDemand.constant(6), priority=2)
-    low = Task(name="low", arrivals=Periodic(10), cost=MultiframeDemand.constant(5), priority=1)
-    first, second = levels.response_times([high, low])
+    high = Task(name="high", events=Periodic(10), demand=MultiframeDemand.constant(6), priority=2)
+    low = Task(name="low", events=Periodic(10), demand=MultiframeDemand.constant(5), priority=1)
+    first, second = priority_levels.response_times([high, low])
     assert first.worst == 6
     assert second.worst is None
-    assert "110.0%" in second.reason
+    assert "110.0 %" in second.reason
     assert all(response.worst is None for response in non_preemptive.response_times([high, low])[1:])
 
 
 def test_a_processor_that_is_exactly_full():
-    high = Task(name="high", arrivals=Periodic(4), cost=MultiframeDemand.constant(2), priority=2)
-    low = Task(name="low", arrivals=Periodic(8), cost=MultiframeDemand.constant(4), priority=1)
-    assert [response.worst for response in levels.response_times([high, low])] == [2, 8]
+    high = Task(name="high", events=Periodic(4), demand=MultiframeDemand.constant(2), priority=2)
+    low = Task(name="low", events=Periodic(8), demand=MultiframeDemand.constant(4), priority=1)
+    assert [response.worst for response in priority_levels.response_times([high, low])] == [2, 8]
 
 
 TASKS = st.lists(st.tuples(st.sampled_from([4, 5, 6, 8, 10, 12]), st.integers(1, 4), st.integers(0, 3)), min_size=1, max_size=4)
@@ -123,25 +122,27 @@ def drawn(rows, jitter=False):
     return [
         Task(
             name=str(index),
-            arrivals=Periodic(period, jittered if jitter else 0),
-            cost=MultiframeDemand.constant(cost, max(1, cost - 1)),
+            events=Periodic(period, jittered if jitter else 0),
+            demand=MultiframeDemand.constant(wcet, max(1, wcet - 1)),
             priority=-index,
         )
-        for index, (period, cost, jittered) in enumerate(rows)
+        for index, (period, wcet, jittered) in enumerate(rows)
     ]
 
 
 def load(tasks):
-    return sum((task.cost.mean_worst * task.arrivals.rate for task in tasks), Fraction(0))
+    return sum((task.demand.mean_worst * task.events.rate for task in tasks), Fraction(0))
 
 
 @given(TASKS)
 def test_the_busy_window_is_the_schedule_of_the_critical_instant(rows):
     tasks = drawn(rows)
     assume(load(tasks) <= 1)
-    released = [PeriodicTask(name=t.name, period=t.arrivals.period, offset=0, cost=t.cost, priority=t.priority) for t in tasks]
+    released = [
+        PeriodicTask(name=t.name, period=t.events.period, offset=0, demand=t.demand, priority=t.priority) for t in tasks
+    ]
     exact = schedule.response_times(released)
-    bounds = levels.response_times(tasks)
+    bounds = priority_levels.response_times(tasks)
     # PeriodicTask together, the worst moment is the first one (Liu and Layland 1973).
     assert [response.worst for response in bounds] == [response.worst for response in exact]
 
@@ -151,13 +152,13 @@ def test_offsets_never_make_it_worse_than_the_bound(rows, offsets):
     tasks = drawn(rows)
     assume(load(tasks) <= 1)
     released = [
-        PeriodicTask(name=t.name, period=t.arrivals.period, offset=offset, cost=t.cost, priority=t.priority)
+        PeriodicTask(name=t.name, period=t.events.period, offset=offset, demand=t.demand, priority=t.priority)
         for t, offset in zip(tasks, offsets, strict=False)
     ]
     exact = schedule.response_times(released)
     until = max(offsets) + 2 * schedule.hyperperiod(released)
     jobs = schedule.schedule(released, until, MultiframeDemand.best_of)
-    for one, bound, best in zip(exact, levels.response_times(tasks), jobs, strict=True):
+    for one, bound, best in zip(exact, priority_levels.response_times(tasks), jobs, strict=True):
         assert one.worst <= bound.worst
         # Once all tasks have started, and what was released before has ended.
         assert bound.best <= (best.ends - best.releases)[best.releases >= until / 2].min()
@@ -167,12 +168,12 @@ def test_offsets_never_make_it_worse_than_the_bound(rows, offsets):
 def test_more_load_never_shortens_a_response_time(rows):
     tasks = drawn(rows, jitter=True)
     more = [
-        Task(name=t.name, arrivals=t.arrivals, cost=MultiframeDemand.constant(t.cost.worst + 1), priority=t.priority)
+        Task(name=t.name, events=t.events, demand=MultiframeDemand.constant(t.demand.worst + 1), priority=t.priority)
         for t in tasks
     ]
     for less, greater in zip(
-        levels.response_times(tasks),
-        levels.response_times(more),
+        priority_levels.response_times(tasks),
+        priority_levels.response_times(more),
         strict=True,
     ):
         assert greater.worst is None or (less.worst is not None and less.worst <= greater.worst)
@@ -182,25 +183,25 @@ def test_more_load_never_shortens_a_response_time(rows):
 def test_the_order_of_tasks_does_not_matter(rows, random):
     tasks = drawn(rows, jitter=True)
     shuffled = random.sample(tasks, len(tasks))
-    for analysis in (levels.response_times, non_preemptive.response_times):
+    for analysis in (priority_levels.response_times, non_preemptive.response_times):
         by_name = {task.name: response for task, response in zip(tasks, analysis(tasks), strict=True)}
         assert {task.name: response for task, response in zip(shuffled, analysis(shuffled), strict=True)} == by_name
 
 
 def interrupted_never(tasks, until):
     """Brute force: jobs served whole, highest priority first, whichever arrived; integer time."""
-    arrivals = sorted(
-        (k * t.arrivals.period, -t.priority, i) for i, t in enumerate(tasks) for k in range(until // t.arrivals.period + 1)
+    activations = sorted(
+        (k * t.events.period, -t.priority, i) for i, t in enumerate(tasks) for k in range(until // t.events.period + 1)
     )
     now, waiting, worst = 0, [], [0] * len(tasks)
-    while arrivals or waiting:
+    while activations or waiting:
         if not waiting:
-            now = max(now, arrivals[0][0])
-        while arrivals and arrivals[0][0] <= now:
-            waiting.append(arrivals.pop(0))
+            now = max(now, activations[0][0])
+        while activations and activations[0][0] <= now:
+            waiting.append(activations.pop(0))
         job = min(waiting, key=lambda job: (job[1], job[0]))
         waiting.remove(job)
-        now += tasks[job[2]].cost.worst
+        now += tasks[job[2]].demand.worst
         worst[job[2]] = max(worst[job[2]], now - job[0])
     return worst
 
@@ -227,8 +228,8 @@ class TestDemandThatIsNotTheSameInEachJob:
         # Figures 6.5 and 6.6: 16 us with the simple model; 16 to 29 us with the advanced one.
         def respond(executor):
             tasks = [
-                PeriodicTask(name="executor", period=1000, offset=0, cost=executor, priority=2),
-                PeriodicTask(name="control", period=1000, offset=0, cost=MultiframeDemand.constant(4), priority=1),
+                PeriodicTask(name="executor", period=1000, offset=0, demand=executor, priority=2),
+                PeriodicTask(name="control", period=1000, offset=0, demand=MultiframeDemand.constant(4), priority=1),
             ]
             return schedule.response_times(tasks)[1]
 
@@ -237,15 +238,15 @@ class TestDemandThatIsNotTheSameInEachJob:
         assert (advanced.best, advanced.worst) == (16, 29)
 
     def test_it_is_not_a_25_us_task(self):
-        low = Task(name="low", arrivals=Periodic(10_000), cost=MultiframeDemand.constant(1000), priority=1)
-        executor = Task(name="executor", arrivals=Periodic(1000), cost=self.EXECUTOR, priority=2)
-        _, response = levels.response_times([executor, low])
+        low = Task(name="low", events=Periodic(10_000), demand=MultiframeDemand.constant(1000), priority=1)
+        executor = Task(name="executor", events=Periodic(1000), demand=self.EXECUTOR, priority=2)
+        _, response = priority_levels.response_times([executor, low])
         # Two activations in the window of 1,037 us, of which one takes a message.
         assert response.worst == 1000 + 2 * 12 + 13
 
     @given(st.integers(1, 6), st.integers(1, 5), st.integers(1, 60))
     def test_no_sequence_of_jobs_costs_more(self, prescaler, extra, count):
-        cost = MultiframeDemand((Frame(worst=3, best=2), Frame(worst=extra, best=extra, prescaler=prescaler)))
+        demand = MultiframeDemand((Frame(worst=3, best=2), Frame(worst=extra, best=extra, prescaler=prescaler)))
         windows = [range(first, first + count) for first in range(1, 2 * prescaler + 1)]
-        assert max(sum(map(cost.worst_of, jobs)) for jobs in windows) == cost.max_demand(count)
-        assert min(sum(map(cost.best_of, jobs)) for jobs in windows) == cost.min_demand(count)
+        assert max(sum(map(demand.worst_of, jobs)) for jobs in windows) == demand.max_demand(count)
+        assert min(sum(map(demand.best_of, jobs)) for jobs in windows) == demand.min_demand(count)

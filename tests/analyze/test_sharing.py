@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.supply import Budget
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.timing.event_models import Periodic
@@ -16,21 +16,21 @@ from amalthea_uros.timing.scheduling import EqualPriority
 
 
 def shared(equal_priority, rows, above=()):
-    """Tasks of (period, cost, deadline or slice) that share a priority, below others of (period, cost)."""
+    """Tasks of (period, wcet, deadline or slice) that share a priority, below others of (period, wcet)."""
     higher = [
-        Task(name=f"H{index}", arrivals=Periodic(period), cost=MultiframeDemand.constant(cost), priority=1 + index)
-        for index, (period, cost) in enumerate(above)
+        Task(name=f"H{index}", events=Periodic(period), demand=MultiframeDemand.constant(wcet), priority=1 + index)
+        for index, (period, wcet) in enumerate(above)
     ]
     lower = [
         Task(
             name=f"T{index}",
-            arrivals=Periodic(period),
-            cost=MultiframeDemand.constant(cost),
+            events=Periodic(period),
+            demand=MultiframeDemand.constant(wcet),
             equal_priority=equal_priority,
             deadline=last if equal_priority is EqualPriority.EDF else 0,
             slice=last,
         )
-        for index, (period, cost, last) in enumerate(rows)
+        for index, (period, wcet, last) in enumerate(rows)
     ]
     return [*higher, *lower]
 
@@ -40,8 +40,8 @@ def play(tasks, offsets, until, serves=lambda _: True, tie=1):
     waiting, worst, turn, used = [], [0] * len(tasks), [], 0
     for now in range(until):
         for index, task in enumerate(tasks):
-            if now >= offsets[index] and (now - offsets[index]) % task.arrivals.period == 0:
-                waiting.append([now, index, task.cost.worst])
+            if now >= offsets[index] and (now - offsets[index]) % task.events.period == 0:
+                waiting.append([now, index, task.demand.worst])
                 if index not in turn:
                     turn.append(index)
         if not waiting or not serves(now):
@@ -72,7 +72,7 @@ def play(tasks, offsets, until, serves=lambda _: True, tie=1):
 
 
 def load(tasks):
-    return sum((task.cost.mean_worst * task.arrivals.rate for task in tasks), Fraction(0))
+    return sum((task.demand.mean_worst * task.events.rate for task in tasks), Fraction(0))
 
 
 ROWS = st.lists(st.tuples(st.sampled_from([4, 6, 8, 12]), st.integers(1, 4), st.integers(1, 14)), min_size=1, max_size=3)
@@ -85,7 +85,7 @@ OFFSETS = st.lists(st.integers(0, 11), min_size=4, max_size=4)
 def test_no_schedule_is_worse_than_the_bound(equal_priority, rows, above, offsets):
     tasks = shared(equal_priority, rows, above)
     assume(load(tasks) <= 1)
-    for seen, response in zip(play(tasks, offsets, 96), levels.response_times(tasks), strict=True):
+    for seen, response in zip(play(tasks, offsets, 96), priority_levels.response_times(tasks), strict=True):
         assert seen <= response.worst
         assert sum(response.terms.values()) == response.worst
 
@@ -95,17 +95,17 @@ def test_no_schedule_is_worse_than_the_bound(equal_priority, rows, above, offset
 def test_some_offsets_reach_the_bound(equal_priority, rows):
     tasks = shared(equal_priority, rows)
     assume(load(tasks) <= 1)
-    periods = [range(task.arrivals.period) for task in tasks]
+    periods = [range(task.events.period) for task in tasks]
     seen = [play(tasks, offsets, 60, tie=tie) for offsets in product(*periods) for tie in (1, -1)]
-    assert [max(of_task) for of_task in zip(*seen, strict=True)] == [r.worst for r in levels.response_times(tasks)]
+    assert [max(of_task) for of_task in zip(*seen, strict=True)] == [r.worst for r in priority_levels.response_times(tasks)]
 
 
 @given(rows=ROWS, offsets=OFFSETS, budget=st.integers(1, 4), idle=st.integers(0, 4), phase=st.integers(0, 7))
 def test_no_schedule_of_a_server_is_worse_than_the_bound(rows, offsets, budget, idle, phase):
     period = budget + idle
     tasks = [
-        Task(name=f"T{index}", arrivals=Periodic(period * 3), cost=MultiframeDemand.constant(cost), priority=-index)
-        for index, (period, cost, _) in enumerate(rows)
+        Task(name=f"T{index}", events=Periodic(period * 3), demand=MultiframeDemand.constant(wcet), priority=-index)
+        for index, (period, wcet, _) in enumerate(rows)
     ]
     assume(load(tasks) < Fraction(budget, period))
     supply = Budget(budget=budget, period=period, wait=2 * idle)
@@ -116,25 +116,27 @@ def test_no_schedule_of_a_server_is_worse_than_the_bound(rows, offsets, budget, 
         number, at = divmod(now - start, period)
         return at < budget if number <= 0 else at >= idle
 
-    for seen, response in zip(play(tasks, offsets, 400, serves), levels.response_times(tasks, supply=supply), strict=True):
+    for seen, response in zip(
+        play(tasks, offsets, 400, serves), priority_levels.response_times(tasks, supply=supply), strict=True
+    ):
         assert seen <= response.worst
 
 
 def test_a_server_by_hand():
     # 2 in each 5: in the worst case nothing for 6, then 2, nothing for 3, 1 more: 6 + 2 + 3 + 1.
-    task = Task(name="T", arrivals=Periodic(100), cost=MultiframeDemand.constant(3))
-    (response,) = levels.response_times([task], supply=Budget(budget=2, period=5, wait=6))
+    task = Task(name="T", events=Periodic(100), demand=MultiframeDemand.constant(3))
+    (response,) = priority_levels.response_times([task], supply=Budget(budget=2, period=5, wait=6))
     assert response.worst == 12
 
 
 def test_spuri_1996_deadlines_decide_and_not_periods():
     # 1 every 4 by 4, 3 every 6 by 5: the first waits for the second one where its deadline is later.
     tasks = shared(EqualPriority.EDF, [(4, 1, 4), (6, 3, 5)])
-    assert [response.worst for response in levels.response_times(tasks)] == [3, 4]
+    assert [response.worst for response in priority_levels.response_times(tasks)] == [3, 4]
 
 
 def test_slices_keep_one_that_demands_too_much_from_the_others():
-    greedy, modest = levels.response_times(shared(EqualPriority.ROUND_ROBIN, [(10, 11, 2), (100, 10, 2)]))
+    greedy, modest = priority_levels.response_times(shared(EqualPriority.ROUND_ROBIN, [(10, 11, 2), (100, 10, 2)]))
     assert greedy.worst is None
     # Five slices of its own, and one of the other before each.
     assert modest.worst == 20
@@ -142,6 +144,6 @@ def test_slices_keep_one_that_demands_too_much_from_the_others():
 
 @pytest.mark.parametrize("equal_priority", EqualPriority)
 def test_overload_has_a_reason(equal_priority):
-    first, _ = levels.response_times(shared(equal_priority, [(10, 6, 5), (10, 5, 5)]))
+    first, _ = priority_levels.response_times(shared(equal_priority, [(10, 6, 5), (10, 5, 5)]))
     assert first.worst is None
-    assert "110.0%" in first.reason
+    assert "110.0 %" in first.reason

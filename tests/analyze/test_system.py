@@ -185,7 +185,7 @@ def one_core(*tasks, stimuli=None, **more):
     )
 
 
-def cost_of(*activities, runnables=()):
+def demand_of(*activities, runnables=()):
     process = by_name(analyze_system(one_core(("T", 1000, activities), runnables=runnables)))["T"]
     return (
         None if process.bcet is None else process.bcet // US,
@@ -197,7 +197,7 @@ def cost_of(*activities, runnables=()):
 class TestDemand:
     def test_calls_and_what_they_contain(self):
         runnable = Runnable(name="R", activities=(ticks(5, 3), ticks(2)))
-        assert cost_of(ticks(1), Call(runnable="R"), Call(runnable="R"), runnables=[runnable]) == (11, 15, "")
+        assert demand_of(ticks(1), Call(runnable="R"), Call(runnable="R"), runnables=[runnable]) == (11, 15, "")
 
     def test_branches(self):
         branches = ProbabilitySwitch(
@@ -207,15 +207,15 @@ class TestDemand:
                 Chance(weight=0, activities=()),
             )
         )
-        assert cost_of(branches) == (0, 10, "")
-        assert cost_of(Switch(cases=(Case(activities=(ticks(7),)), Case(activities=(ticks(4),))))) == (0, 7, "")
-        assert cost_of(Switch(cases=(Case(activities=(ticks(7),)),), default=(ticks(4),))) == (4, 7, "")
+        assert demand_of(branches) == (0, 10, "")
+        assert demand_of(Switch(cases=(Case(activities=(ticks(7),)), Case(activities=(ticks(4),))))) == (0, 7, "")
+        assert demand_of(Switch(cases=(Case(activities=(ticks(7),)),), default=(ticks(4),))) == (4, 7, "")
 
     def test_what_has_no_bound(self):
-        assert cost_of(Loop(activities=(ticks(1),)))[2].startswith("there is a loop")
+        assert demand_of(Loop(activities=(ticks(1),)))[2].startswith("it contains a loop")
         circle = [Runnable(name="A", activities=(Call(runnable="B"),)), Runnable(name="B", activities=(Call(runnable="A"),))]
-        assert cost_of(Call(runnable="A"), runnables=circle) == (None, None, "the runnable 'A' calls itself")
-        assert cost_of(Call(runnable="nothing"))[2] == "the runnable 'nothing' is not part of the model"
+        assert demand_of(Call(runnable="A"), runnables=circle) == (None, None, "the runnable 'A' calls itself")
+        assert demand_of(Call(runnable="nothing"))[2] == "the runnable 'nothing' is not defined in the model"
 
 
 class TestTasksThatCannotAlwaysBeInterrupted:
@@ -239,12 +239,12 @@ class TestTasksThatCannotAlwaysBeInterrupted:
         assert self.respond(Preemption.PREEMPTIVE) == [2, 12, 25]
 
     def test_cooperative(self):
-        # A interrupts at once. B waits for c1 (8), starts b2 behind b1 (5) and A (2) at 15, ends at 20.
-        # C starts c2 behind c1 (8), B (10) and two jobs of A (4) at 22, ends at 25.
+        # A interrupts at once. B waits for c1 (8), starts b2 after b1 (5) and A (2) at 15, ends at 20.
+        # C starts c2 after c1 (8), B (10) and two jobs of A (4) at 22, ends at 25.
         assert self.respond(Preemption.COOPERATIVE) == [2, 20, 25]
 
     def test_non_preemptive(self):
-        # A waits for all of C (11). B starts behind C (11) and A (2) at 13, ends at 23. C starts behind B and A at 12, ends at 23.
+        # A waits for all of C (11). B starts after C (11) and A (2) at 13, ends at 23. C starts after B and A at 12, ends at 23.
         assert self.respond(Preemption.NON_PREEMPTIVE) == [13, 23, 23]
 
 
@@ -301,10 +301,10 @@ class TestWhatIsNotKnown:
     @pytest.mark.parametrize(
         ("change", "reason"),
         [
-            ({"stimuli": Stimuli()}, "the stimulus 'every low' is not part of the model"),
+            ({"stimuli": Stimuli()}, "the stimulus 'every low' is not defined in the model"),
             (
                 {"stimuli": Stimuli(stimuli=(perf_stimuli.Custom(name="every low"),))},
-                "nothing bounds how often 'every low' occurs",
+                "the rate of the stimulus 'every low' is unbounded",
             ),
             ({"mapping": Mapping()}, "it is not allocated to a scheduler"),
         ],
@@ -314,10 +314,10 @@ class TestWhatIsNotKnown:
         assert analyze_system(replace(built, **change)).processes[0].reason == reason
 
     def test_who_comes_behind_something_unknown_is_unknown_too(self):
-        built = one_core(("loop", 1000, [Loop(activities=())]), ("behind", 1000, [ticks(1)]))
+        built = one_core(("loop", 1000, [Loop(activities=())]), ("lower", 1000, [ticks(1)]))
         found = by_name(analyze_system(built))
-        assert found["behind"].response is None
-        assert "too little is known of 'loop'" in found["behind"].reason
+        assert found["lower"].response is None
+        assert "depends on 'loop', which could not be analysed" in found["lower"].reason
 
     def test_a_task_that_may_run_on_several_cores_makes_the_others_there_unknown(self):
         tasks = [Task(name=name, stimuli=("s",), activities=(ticks(1),)) for name in ("fixed", "free", "elsewhere")]
@@ -337,8 +337,8 @@ class TestWhatIsNotKnown:
         )
         analysis = analyze_system(replace(built, os=Os(systems=(OperatingSystem(name="OS", schedulers=schedulers),))))
         found = by_name(analysis)
-        assert found["free"].reason == "several cores serve it"
-        assert found["fixed"].reason == "too little is known of 'free', which may come before it"
+        assert found["free"].reason == "several cores can execute it"
+        assert found["fixed"].reason == "depends on 'free', which could not be analysed"
         assert found["elsewhere"].response.worst is not None
         assert [processor.worst is None for processor in analysis.processors] == [True, True, False]
 
@@ -375,11 +375,11 @@ class TestVerdicts:
 
 
 class TestRequirements:
-    """A task of 20 us behind one of 30, which comes every 100 with a jitter of 10, all at 1 MHz."""
+    """A task of 20 us below one of 30 with a period of 100 and a jitter of 10, all at 1 MHz."""
 
     JITTER = (Periodic(name="every high", period=100 * US, jitter=Uniform(lower=0, upper=10 * US)),)
 
-    def judged(self, metric, bound=Bound.UPPER, process="low"):
+    def value_of(self, metric, bound=Bound.UPPER, process="low"):
         limit = TimeLimit(metric=metric, value=0, bound=bound)
         requirement = Requirement(name="R", process=process, limit=limit)
         built = one_core(
@@ -393,7 +393,7 @@ class TestRequirements:
         return None if result.value is None else result.value // US
 
     @pytest.mark.parametrize(
-        ("metric", "least", "most"),
+        ("metric", "minimum", "maximum"),
         [
             (TimeMetric.RESPONSE_TIME, 15, 50),
             (TimeMetric.NET_EXECUTION_TIME, 15, 20),
@@ -412,12 +412,12 @@ class TestRequirements:
             (TimeMetric.OS_OVERHEAD, None, None),
         ],
     )
-    def test_metrics(self, metric, least, most):
-        assert (self.judged(metric, Bound.LOWER), self.judged(metric)) == (least, most)
+    def test_metrics(self, metric, minimum, maximum):
+        assert (self.value_of(metric, Bound.LOWER), self.value_of(metric)) == (minimum, maximum)
 
     def test_jitter_moves_activations(self):
-        assert self.judged(TimeMetric.ACTIVATE_TO_ACTIVATE, Bound.LOWER, "high") == 90
-        assert self.judged(TimeMetric.ACTIVATE_TO_ACTIVATE, process="high") == 110
+        assert self.value_of(TimeMetric.ACTIVATE_TO_ACTIVATE, Bound.LOWER, "high") == 90
+        assert self.value_of(TimeMetric.ACTIVATE_TO_ACTIVATE, process="high") == 110
 
     def test_limits_of_something_else_are_told(self):
         limit = CountLimit(metric=CountMetric.PREEMPTIONS, value=3)
@@ -449,6 +449,6 @@ def test_tasks_that_make_each_other_grow_leave_the_others_alone():
         mapping=Mapping(tasks=(*built.mapping.tasks, *other.mapping.tasks)),
     )
     found = by_name(analyze_system(both))
-    assert "grow without an end" in found["source"].reason
+    assert "increase each other without limit" in found["source"].reason
     assert found["sink"].response is None
     assert found["free"].response is not None

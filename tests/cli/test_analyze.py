@@ -69,7 +69,7 @@ def test_overload(tmp_path):
     run = amuros("analyze", path, "--scale", "80")
     assert run.returncode == 1
     assert "unbounded" in run.stdout
-    assert "of the processor" in run.stdout
+    assert "overload: tasks at this priority or higher need" in run.stdout
     assert "####################!" in run.stdout
 
 
@@ -137,7 +137,7 @@ def test_proposed_priorities(tmp_path):
 
 
 def test_a_chain():
-    run = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--any-phase")
+    run = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--all-phases")
     assert run.returncode == 0
     assert "Executor_Task_start -[data memory_1]-> Message_Factor_finish -[data memory_2]->" in run.stdout
     assert "max reduced reaction time    20.029 ms  exact" in run.stdout
@@ -145,6 +145,12 @@ def test_a_chain():
     every = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--method", "all")
     assert "sum of periods and response times (Davare and others 2007)" in every.stdout
     assert "unknown chain 'x'" in amuros("analyze", ADVANCED, "--chain", "x").stderr
+
+
+def test_any_phase_is_an_alias_of_all_phases():
+    runs = [amuros("analyze", ADVANCED, "--chain", "factor-to-output", option) for option in ("--all-phases", "--any-phase")]
+    assert runs[0].stdout == runs[1].stdout
+    assert "over all 20 phases" in runs[1].stdout
 
 
 def test_a_chain_that_is_too_slow(tmp_path):

@@ -1,10 +1,10 @@
 """Rules that users make."""
 
 import pytest
+from amalthea_uros.checking import check
 from support import MODEL, ROOT
 from test_cli import amuros
 
-from amalthea_uros.checking import check
 from amalthea_uros.errors import ReadError
 from amalthea_uros.validate import registry, user_rules
 from amalthea_uros.validate.rule import Profile

@@ -5,11 +5,11 @@ import re
 from collections import defaultdict
 
 import pytest
+from amalthea_uros.cli.configuration import configuration_of
 from support import MODEL, ROOT
 
 from amalthea_uros import build, load
 from amalthea_uros.bridge.extract import extract
-from amalthea_uros.cli.configuration import configuration_of
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings import catalogue
 from amalthea_uros.validate import registry

@@ -58,7 +58,7 @@ def total(model):
 
 
 def assert_same_load(model, system):
-    """The analysis adds what the operating system costs, which none of the models here state."""
+    """The analysis adds the overheads of the operating system, which none of these models specify."""
     found = total(model)
     for processor in analyze_system(system).processors:
         if processor.worst is not None:
@@ -73,7 +73,7 @@ SAMPLES = [pytest.param(path, id=path.name) for path in sorted((ROOT / "samples"
 @pytest.mark.parametrize("path", [*SAMPLES, *corpus(), *hand_written()])
 def test_the_load_is_that_of_the_analysis(path):
     if path.stem == "40_sched_computation":
-        pytest.skip("decisions of the scheduler cost something")
+        pytest.skip("scheduler decisions take time")
     try:
         model = load(path)
     except ReadError:
@@ -100,13 +100,16 @@ def test_the_load_of_a_model_in_several_files():
 
 
 TICKS = st.integers(0, 30).flatmap(
-    lambda least: st.sampled_from(
+    lambda minimum: st.sampled_from(
         [
-            Constant(least),
-            Boundaries(lower=least, upper=least + 7),
-            Gauss(mean=least + 1.0, deviation=1.0, lower=least, upper=least + 3),
+            Constant(minimum),
+            Boundaries(lower=minimum, upper=minimum + 7),
+            Gauss(mean=minimum + 1.0, deviation=1.0, lower=minimum, upper=minimum + 3),
             Histogram(
-                (Bucket(lower=least, upper=least + 9, occurrences=1), Bucket(lower=least + 2, upper=least + 4, occurrences=2))
+                (
+                    Bucket(lower=minimum, upper=minimum + 9, occurrences=1),
+                    Bucket(lower=minimum + 2, upper=minimum + 4, occurrences=2),
+                )
             ),
         ]
     )
@@ -156,7 +159,9 @@ def stimulus(name):
     return st.one_of(
         st.builds(Periodic, name=st.just(name), period=periods, jitter=st.none() | st.just(Boundaries(lower=0, upper=MS))),
         st.builds(
-            RelativePeriodic, name=st.just(name), distance=periods.map(lambda least: Boundaries(lower=least, upper=2 * least))
+            RelativePeriodic,
+            name=st.just(name),
+            distance=periods.map(lambda minimum: Boundaries(lower=minimum, upper=2 * minimum)),
         ),
         st.builds(Synthetic, name=st.just(name), period=periods, times=st.sampled_from([(0,), (0, MS), (MS, MS, 60 * MS)])),
         st.builds(
@@ -277,10 +282,10 @@ def test_activations_at_once_are_those_of_the_analysis(stimulus, limit):
         stimuli=Stimuli(stimuli=(stimulus,)),
         software=Software(tasks=(Task(name="T", stimuli=("S0",), activation_limit=limit),)),
     )
-    arrivals = event_model_of(stimulus, system)
-    assume(arrivals is not None)
-    told = check(build_model(system), ["TIM-ACTIVATION-LIMIT"])
-    assert bool(told) is (arrivals.eta_plus(1) > limit)
+    activations = event_model_of(stimulus, system)
+    assume(activations is not None)
+    found = check(build_model(system), ["TIM-ACTIVATION-LIMIT"])
+    assert bool(found) is (activations.eta_plus(1) > limit)
 
 
 # What is not known
@@ -369,7 +374,7 @@ def test_a_process_of_which_the_demand_is_not_known_is_left_out(task, others, tm
     ids=["wait", "migration", "no ticks", "no bound", "no runnable", "unresolved"],
 )
 def test_incomplete_activities_add_nothing(incomplete, tmp_path):
-    """They have no meaning, so that the load is at least that of the others."""
+    """They have no meaning, so that the load is at minimum that of the others."""
     assert total(model(tmp_path, TICK + incomplete)) == {"core": Fraction(1, 10)}
 
 

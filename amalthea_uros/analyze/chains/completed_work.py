@@ -1,4 +1,4 @@
-"""When a job has come how far."""
+"""The times at which jobs have executed a given part of their demand."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
 
 
-def behind(jobs: Jobs, executed: Numbers) -> Numbers:
-    """When each job has executed so much."""
+def times_of_completion(jobs: Jobs, executed: Numbers) -> Numbers:
+    """When each job has executed the given demand."""
     ends, target = _targets(jobs, executed)
     at = np.searchsorted(ends, target, side="left")
     found: Numbers = jobs.execution_slices[at, 2] - (ends[at] - target)
     return np.where(executed > 0, found, jobs.begins)
 
 
-def before(jobs: Jobs, executed: Numbers) -> Numbers:
-    """When each job goes on behind having executed so much; its end, where nothing comes behind."""
+def times_of_continuation(jobs: Jobs, executed: Numbers) -> Numbers:
+    """When each job continues after the given demand; its end if it executes no more than that."""
     ends, target = _targets(jobs, executed)
     at = np.minimum(np.searchsorted(ends, target, side="right"), len(ends) - 1)
     found: Numbers = jobs.execution_slices[at, 2] - (ends[at] - target)
@@ -29,8 +29,8 @@ def before(jobs: Jobs, executed: Numbers) -> Numbers:
 
 
 def _targets(jobs: Jobs, executed: Numbers) -> tuple[Numbers, Numbers]:
-    """How much the task has executed at the ends of its pieces, and when each job has executed so much."""
+    """The work that the task has completed at the end of each slice, and when each job has executed the given demand."""
     ends: Numbers = np.cumsum(jobs.execution_slices[:, 2] - jobs.execution_slices[:, 1])
-    last_pieces = np.searchsorted(jobs.execution_slices[:, 0], np.arange(len(executed)), side="right") - 1
-    done = np.concatenate(([0], ends[last_pieces[:-1]]))
+    last_slices = np.searchsorted(jobs.execution_slices[:, 0], np.arange(len(executed)), side="right") - 1
+    done = np.concatenate(([0], ends[last_slices[:-1]]))
     return ends, done + executed

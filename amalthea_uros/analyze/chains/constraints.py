@@ -1,7 +1,8 @@
-"""Timing constraints on chains and events, judged by what was computed.
+"""Verdicts on timing constraints of chains and events.
 
-Their meaning is that of TADL2 (TIMMO-2-USE, deliverable D11), which AMALTHEA took over: a reaction constraint looks from each stimulus
-forward to the first response that it has caused, an age constraint from each response back to the last stimulus that has caused it.
+The constraints have the semantics of TADL2 (TIMMO-2-USE, deliverable D11), from which AMALTHEA adopted them: a reaction constraint
+looks from each stimulus forward to the first response caused by it, an age constraint from each response back to the last stimulus
+that caused it.
 """
 
 from __future__ import annotations
@@ -9,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from amalthea_uros.analyze.chains.evaluate import Evaluation
-from amalthea_uros.analyze.chains.order import in_order
-from amalthea_uros.analyze.chains.read_write_times import UnboundedStageError
-from amalthea_uros.analyze.chains.windows import UnknownError, Windows
+from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
+from amalthea_uros.analyze.chains.runnable_order import satisfies_order
+from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.results import ChainResult, Quantity, RequirementResult, Value, Verdict
 from amalthea_uros.perf.constraints import (
     ChainEnd,
@@ -43,17 +44,17 @@ _AGE = (Quantity.MIN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE)
 
 @dataclass(slots=True)
 class ConstraintEvaluator:
-    """Judges the constraints of a system."""
+    """Evaluates the constraints of a system."""
 
-    evaluation: Evaluation
+    evaluation: ChainEvaluator
     chains: Mapping[str, ChainResult]
-    windows: Windows = field(init=False)
+    windows: EventWindows = field(init=False)
 
     def __post_init__(self) -> None:
-        self.windows = Windows(self.evaluation)
+        self.windows = EventWindows(self.evaluation)
 
     def all(self) -> Iterator[RequirementResult]:
-        """All constraints, those with two limits as two."""
+        """The verdict on each limit of each constraint."""
         constraints = self.evaluation.context.system.constraints
         for constraint in (*constraints.constraints, *constraints.data_ages, *constraints.orders):
             try:
@@ -92,14 +93,14 @@ class ConstraintEvaluator:
     def _latency(self, constraint: LatencyConstraint) -> Iterator[RequirementResult]:
         chain = self.chains.get(constraint.chain)
         if chain is None:
-            raise UnknownError(f"the chain {constraint.chain!r} is not part of the model")
-        least, most = _AGE if constraint.kind is LatencyKind.AGE else _REACTION
+            raise UnknownError(f"the chain {constraint.chain!r} is not defined in the model")
+        minimum, maximum = _AGE if constraint.kind is LatencyKind.AGE else _REACTION
         kind = str(constraint.kind)
         if constraint.maximum is not None:
-            value = _time(chain.value(most))
+            value = _time(chain.value(maximum))
             yield _result(constraint, chain.name, kind, constraint.maximum, value, chain.reason)
         if constraint.minimum is not None:
-            value = _time(chain.value(least))
+            value = _time(chain.value(minimum))
             yield _result(constraint, chain.name, kind, constraint.minimum, value, chain.reason, is_upper=False)
 
     def _delay(self, constraint: DelayConstraint) -> Iterator[RequirementResult]:
@@ -108,27 +109,27 @@ class ConstraintEvaluator:
             links = {link.kind for route in routes([source, target], self.evaluation.context.dataflow) for link in route.links}
             if not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
                 raise UnknownError(
-                    "where data are overwritten or read again, occurrences do not belong to each other one by one"
+                    "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
                 )
         values = {value.quantity: value for value in self.evaluation.pair(source, target)}
-        least, most = _REACTION
+        minimum, maximum = _REACTION
         what = f"{constraint.source} to {constraint.target}"
         if constraint.upper is not None:
-            yield _result(constraint, what, "delay", constraint.upper, _time(values.get(most)))
+            yield _result(constraint, what, "delay", constraint.upper, _time(values.get(maximum)))
         if constraint.lower is not None:
-            yield _result(constraint, what, "delay", constraint.lower, _time(values.get(least)), is_upper=False)
+            yield _result(constraint, what, "delay", constraint.lower, _time(values.get(minimum)), is_upper=False)
 
     def _chain_synchronization(self, constraint: ChainSynchronization) -> RequirementResult:
         found = [self.chains.get(name) for name in constraint.chains]
         system = self.evaluation.context.system
         chains = [system.chains[name] for name in constraint.chains if name in system.chains]
         if None in found or len(chains) < 2:
-            raise UnknownError("it needs two chains of the model")
+            raise UnknownError("it needs at least two chains that are defined in the model")
         is_start = constraint.end is ChainEnd.STIMULUS
         ends = [chain.stimulus if is_start else chain.response for chain in chains]
         value: Time | None
         if not is_start and len({chain.stimulus for chain in chains}) == 1:
-            # From the same stimulus: as much as one may be late and the other one early.
+            # From the same stimulus: the latest response of one chain minus the earliest of another.
             latest = [_time(each.value(_REACTION[1])) for each in found if each is not None]
             earliest = [_time(each.value(_REACTION[0])) for each in found if each is not None]
             value = _difference(latest, earliest)
@@ -137,7 +138,7 @@ class ConstraintEvaluator:
         return _result(constraint, ", ".join(constraint.chains), f"spread at the {constraint.end}", constraint.tolerance, value)
 
     def _data_age(self, constraint: DataAgeConstraint) -> Iterator[RequirementResult]:
-        """From each write of the runnable to the reads that still see it."""
+        """The age of the data written by the runnable at each read of them."""
         written = LabelEvent(name="write", label=constraint.label, change=LabelChange.WRITE, runnable=constraint.runnable)
         (occurrence, *_) = self.evaluation.context.dataflow.events.of(written)
         readers = {
@@ -163,20 +164,20 @@ class ConstraintEvaluator:
 
     def _repetition(self, constraint: RepetitionConstraint) -> Iterator[RequirementResult]:
         occurrence = self.windows.occurrence(constraint.event)
-        arrivals = self.evaluation.solution.event_models.get(occurrence.process.name)
-        if arrivals is None:
-            raise UnknownError(f"the arrivals of {occurrence.process.name!r} are not known")
+        activations = self.evaluation.solution.event_models.get(occurrence.process.name)
+        if activations is None:
+            raise UnknownError(f"the activation pattern of {occurrence.process.name!r} is unknown")
         early, late = self.windows.of(occurrence)
         span = max(1, constraint.span)
         if constraint.upper is not None:
-            longest = _longest(arrivals, span)
+            longest = _longest(activations, span)
             value = None if longest is None else longest + late - early
             yield _result(constraint, constraint.event, "repetition", constraint.upper, value)
         if constraint.lower is not None:
-            value = max(0, arrivals.delta_min(span + 1) - (late - early))
+            value = max(0, activations.delta_min(span + 1) - (late - early))
             yield _result(constraint, constraint.event, "repetition", constraint.lower, value, is_upper=False)
         if constraint.jitter is not None:
-            own = arrivals.jitter if isinstance(arrivals, Periodic) and is_strictly_periodic(arrivals) else None
+            own = activations.jitter if isinstance(activations, Periodic) and is_strictly_periodic(activations) else None
             value = None if own is None else own + late - early
             yield _result(constraint, constraint.event, "jitter", constraint.jitter, value)
 
@@ -192,7 +193,7 @@ class ConstraintEvaluator:
             ]
             if not any(name in called for name in wanted):
                 continue
-            holds = in_order(called, constraint)
+            holds = satisfies_order(called, constraint)
             yield RequirementResult(
                 name=constraint.name,
                 object=process,
@@ -208,8 +209,8 @@ def _result(
     constraint: Named, what: str, quantity: str, limit: Time, value: Time | None, reason: str = "", is_upper: bool = True
 ) -> RequirementResult:
     if not is_upper and value is None and not reason:
-        value = 0  # nothing is faster than at once
-    keeps = value is not None and (value <= limit if is_upper else value >= limit)
+        value = 0  # no latency is negative
+    holds = value is not None and (value <= limit if is_upper else value >= limit)
     return RequirementResult(
         name=constraint.name,
         object=what,
@@ -217,7 +218,7 @@ def _result(
         is_upper=is_upper,
         limit=limit,
         value=value,
-        verdict=Verdict.UNKNOWN if value is None else Verdict.MET if keeps else Verdict.MISSED,
+        verdict=Verdict.UNKNOWN if value is None else Verdict.MET if holds else Verdict.MISSED,
         reason=reason if value is None else "",
     )
 
@@ -236,15 +237,15 @@ def _cycles(time: Time | None, cycles: int | None, period: Time | None) -> Time 
     if time is not None or cycles is None:
         return time
     if period is None:
-        raise UnknownError("activations are no time where the period of the writer is not known")
+        raise UnknownError("a limit in cycles needs a writer with a known period")
     return cycles * period
 
 
-def _longest(arrivals: EventModel, count: int) -> Time | None:
-    """The longest time that so many steps from one arrival to the next can take."""
-    if isinstance(arrivals, Periodic) and is_strictly_periodic(arrivals):
-        return count * arrivals.period + arrivals.jitter
-    return None if arrivals.max_interarrival is None else count * arrivals.max_interarrival
+def _longest(events: EventModel, count: int) -> Time | None:
+    """The maximum time from an event to the one `count` after it."""
+    if isinstance(events, Periodic) and is_strictly_periodic(events):
+        return count * events.period + events.jitter
+    return None if events.max_interarrival is None else count * events.max_interarrival
 
 
 def _reads(position: ActivityPosition, label: str) -> bool:

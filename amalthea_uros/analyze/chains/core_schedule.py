@@ -1,4 +1,4 @@
-"""The schedules of the cores of a system, each constructed once."""
+"""The schedules of the cores of a system, each computed once."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class CoreSchedule:
 
     Attributes
     ----------
-    is_constant : whether both are the same, so that it is what happens
+    is_constant : whether execution times are constant, so that both schedules are the same
     """
 
     tasks: Mapping[str, PeriodicTask]
@@ -31,7 +31,7 @@ class CoreSchedule:
 
     @property
     def until(self) -> Time:
-        """The end of the time that is covered; its last cycle repeats."""
+        """The end of the covered time; its last cycle repeats."""
         return self.steady_state_start + self.cycle
 
 
@@ -42,29 +42,29 @@ class CoreSchedules:
     solution: Solution
     _found: dict[tuple[str, bool], CoreSchedule | None] = field(default_factory=dict)
 
-    def of(self, core: str, with_pieces: bool) -> CoreSchedule | None:
-        """That of a core; None if it is not known, or too long.
+    def of(self, core: str, with_slices: bool) -> CoreSchedule | None:
+        """The schedule of a core; None if it is unknown or too long.
 
         Parameters
         ----------
-        with_pieces : whether the pieces of jobs are needed
+        with_slices : whether the execution slices of jobs are needed
         """
-        key = (core, with_pieces)
+        key = (core, with_slices)
         if key not in self._found:
-            self._found[key] = self._new(core, with_pieces)
+            self._found[key] = self._new(core, with_slices)
         return self._found[key]
 
-    def _new(self, core: str, with_pieces: bool) -> CoreSchedule | None:
+    def _new(self, core: str, with_slices: bool) -> CoreSchedule | None:
         tasks = periodic_tasks(core, self.solution)
         if not tasks:
             return None
         cycle, start = schedule.hyperperiod(tasks), schedule.steady_state_start(tasks)
         if not schedule.fits(tasks, start + 2 * cycle):
             return None
-        watched = [with_pieces] * len(tasks)
-        worst = schedule.schedule(tasks, start + 2 * cycle, MultiframeDemand.worst_of, watched)
-        is_constant = all(part.worst == part.best for task in tasks for part in task.cost.frames)
-        best = worst if is_constant else schedule.schedule(tasks, start + 2 * cycle, MultiframeDemand.best_of, watched)
+        recorded = [with_slices] * len(tasks)
+        worst = schedule.schedule(tasks, start + 2 * cycle, MultiframeDemand.worst_of, recorded)
+        is_constant = all(frame.worst == frame.best for task in tasks for frame in task.demand.frames)
+        best = worst if is_constant else schedule.schedule(tasks, start + 2 * cycle, MultiframeDemand.best_of, recorded)
         names = [task.name for task in tasks]
         return CoreSchedule(
             tasks=dict(zip(names, tasks, strict=True)),

@@ -1,8 +1,8 @@
-"""Latencies by following each job: immediate forward and backward job chains.
+"""End-to-end latencies by immediate forward and backward job chains.
 
 M. Günzel, K.-H. Chen, N. Ueter, G. von der Brüggen, M. Dürr and J.-J. Chen, "Timing analysis of asynchronized distributed cause-effect
-chains", RTAS 2021 (augmented job chains); with execution times that vary, the same with the earliest reads and the latest writes, and
-the rule that a job which comes before its reader on the same core is not interrupted by it: M. Günzel and others, "Compositional timing
+chains", RTAS 2021 (augmented job chains). Where execution times vary, the earliest reads and the latest writes give bounds; a writer
+that preempts its reader on the same core is not interrupted by it: M. Günzel and others, "Compositional timing
 analysis of asynchronized distributed cause-effect chains", ACM Transactions on Embedded Computing Systems 22(4), 2023.
 """
 
@@ -16,29 +16,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.chains.job_times import ReadWriteTimes, reach
+from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, reach
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
 
 SOURCE = "Günzel and others 2021, 2023"
-#: Chains with more jobs are bounded otherwise.
+#: Job chains are not built for more jobs; other methods give bounds.
 MAX_JOBS = 10_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inputs:
-    """The jobs of the first step whose data are not overwritten on the way, after N. Feiertag and others 2008.
+    """The jobs of the first task whose data reach the end without being overwritten, after N. Feiertag and others 2008.
 
     Attributes
     ----------
-    reads, reads_before : of these jobs, and of those of them before each
-    first_writes, last_writes : of the first and the last output that is based on each
+    reads, previous_reads : of each of these jobs, and of the one of them before it
+    first_writes, last_writes : of the first and the last output that is based on it
     """
 
     reads: Numbers
-    reads_before: Numbers
+    previous_reads: Numbers
     first_writes: Numbers
     last_writes: Numbers
 
@@ -49,126 +49,126 @@ class Inputs:
 
     @property
     def first_to_last(self) -> Numbers:
-        """From just behind the input before to the last output based on this one."""
-        return self.last_writes - self.reads_before
+        """From just after the previous input to the last output based on this one."""
+        return self.last_writes - self.previous_reads
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JobChains:
-    """The job chains that start at the jobs of the first step, and those that end at the jobs of the last one, in one cycle.
+    """The job chains that start at the jobs of the first task, and those that end at the jobs of the last one, in one cycle.
 
     Attributes
     ----------
     reads : of the jobs at which forward chains start
-    reads_before : of the jobs before those
+    previous_reads : of the jobs before those
     ends : of the forward chains
     starts : reads at which backward chains start
     writes : of the jobs at which they end
-    writes_behind : of the jobs behind those
+    next_writes : of the jobs after those
     inputs : reads of which the data reach the end
     """
 
     reads: Numbers
-    reads_before: Numbers
+    previous_reads: Numbers
     ends: Numbers
     starts: Numbers
     writes: Numbers
-    writes_behind: Numbers
+    next_writes: Numbers
     inputs: Inputs
 
     @property
     def reaction_time(self) -> Time:
-        """Maximum reaction time: an event just behind the read before, to the first output that it has caused."""
-        return int((self.ends - self.reads_before).max())
+        """Maximum reaction time: from an event just after the previous read to the first output caused by it."""
+        return int((self.ends - self.previous_reads).max())
 
     @property
     def mean_reaction_time(self) -> float:
-        """The mean over events that come at any moment alike."""
-        waits = (self.reads - self.reads_before).astype(np.float64)
+        """The mean over events that are uniformly distributed in time."""
+        waits = (self.reads - self.previous_reads).astype(np.float64)
         return float(((self.ends - self.reads + waits / 2) * waits).sum() / waits.sum())
 
     @property
     def first_to_first(self) -> Numbers:
-        """From each read to the first output that it has caused; the greatest is the maximum reduced reaction time."""
+        """From each read to the first output caused by it; the maximum is the maximum reduced reaction time."""
         return self.ends - self.reads
 
     @property
     def data_age(self) -> Time:
-        """Maximum data age: from the read to the moment at which the output is overwritten."""
-        return int((self.writes_behind - self.starts).max())
+        """Maximum data age: from a read until the output based on it is overwritten."""
+        return int((self.next_writes - self.starts).max())
 
     @property
     def last_to_last(self) -> Numbers:
-        """From the read to each output that is based on it; the greatest is the maximum reduced data age."""
+        """From the read to each output that is based on it; the maximum is the maximum reduced data age."""
         return self.writes - self.starts
 
 
-def build_job_chains(tracks: Sequence[ReadWriteTimes], steady_state_start: Time) -> JobChains | None:
-    """Follow all jobs of one cycle; None if that is too much work.
+def build_job_chains(chain: Sequence[ReadWriteTimes], steady_state_start: Time) -> JobChains | None:
+    """The job chains of one cycle; None if there are too many jobs.
 
     Parameters
     ----------
-    tracks : of the steps of the chain, in order
-    steady_state_start : the time behind which all steps repeat
+    chain : the tasks of the chain, in order
+    steady_state_start : time from which the jobs of all tasks repeat
     """
-    cycle, length = lcm(*(track.cycle for track in tracks)), reach(tracks)
-    # A cycle so far after the start of the steady state that chains which end in it, or a little before it, start after that.
+    cycle, length = lcm(*(task.cycle for task in chain)), reach(chain)
+    # The cycle starts late enough that chains which end in it, or shortly before it, start in the steady state.
     start = steady_state_start + 2 * length
     until = start + cycle + 2 * length
-    if sum(len(track.releases) * (until // track.until) for track in tracks) > MAX_JOBS:
+    if sum(len(task.releases) * (until // task.until) for task in chain) > MAX_JOBS:
         return None
-    whole = [track.extended(until) for track in tracks]
+    whole = [task.extended(until) for task in chain]
     first, last = whole[0], whole[-1]
     begin = _jobs_in(first, start, start + cycle)
     end = _jobs_in(last, start, start + cycle)
     return JobChains(
         reads=first.reads[begin],
-        reads_before=first.reads[begin - 1],
+        previous_reads=first.reads[begin - 1],
         ends=last.writes[forward(whole, begin)],
         starts=first.reads[backward(whole, end)],
         writes=last.writes[end],
-        writes_behind=last.writes[end + 1],
+        next_writes=last.writes[end + 1],
         inputs=_inputs(whole, start, cycle, length),
     )
 
 
-def _inputs(tracks: Sequence[ReadWriteTimes], start: Time, cycle: Time, length: Time) -> Inputs:
-    first, last = tracks[0], tracks[-1]
+def _inputs(chain: Sequence[ReadWriteTimes], start: Time, cycle: Time, length: Time) -> Inputs:
+    first, last = chain[0], chain[-1]
     outputs = _jobs_in(last, start - length, start + cycle + length)
-    jobs, first_of = np.unique(backward(tracks, outputs), return_index=True)
+    jobs, first_of = np.unique(backward(chain, outputs), return_index=True)
     first_outputs = outputs[first_of]
     reads = first.reads[jobs]
-    # Without the ones at both ends, of which not all outputs are there.
+    # Without the inputs at both ends, for which some outputs are outside.
     here = np.flatnonzero((reads[1:-1] >= start) & (reads[1:-1] < start + cycle)) + 1
     return Inputs(
         reads=reads[here],
-        reads_before=reads[here - 1],
+        previous_reads=reads[here - 1],
         first_writes=last.writes[first_outputs[here]],
         last_writes=last.writes[first_outputs[here + 1] - 1],
     )
 
 
-def _jobs_in(track: ReadWriteTimes, begin: Time, end: Time) -> Numbers:
-    first, last = np.searchsorted(track.releases, (begin, end))
+def _jobs_in(task: ReadWriteTimes, begin: Time, end: Time) -> Numbers:
+    first, last = np.searchsorted(task.releases, (begin, end))
     return np.arange(first, last, dtype=np.int64)
 
 
-def forward(tracks: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
-    """The jobs of the last step that are the first to use what jobs of the first step wrote."""
-    for track, reader in pairwise(tracks):
-        # A read sees what has been written at that moment.
-        found = np.searchsorted(reader.reads, track.writes[jobs], side="left")
-        if track.preempts_reader:
-            found = np.minimum(found, np.searchsorted(reader.reads, track.releases[jobs], side="left"))
+def forward(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
+    """The first jobs of the last task that use the outputs of jobs of the first task."""
+    for task, reader in pairwise(chain):
+        # A read sees the data written up to that time.
+        found = np.searchsorted(reader.reads, task.writes[jobs], side="left")
+        if task.preempts_reader:
+            found = np.minimum(found, np.searchsorted(reader.reads, task.releases[jobs], side="left"))
         jobs = found
     return jobs
 
 
-def backward(tracks: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
-    """The jobs of the first step that wrote what jobs of the last one use."""
-    for writer, track in zip(tracks[-2::-1], tracks[:0:-1], strict=True):
-        found = np.searchsorted(writer.writes, track.reads[jobs], side="right")
+def backward(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
+    """The jobs of the first task whose outputs jobs of the last task use."""
+    for writer, task in zip(chain[-2::-1], chain[:0:-1], strict=True):
+        found = np.searchsorted(writer.writes, task.reads[jobs], side="right")
         if writer.preempts_reader:
-            found = np.maximum(found, np.searchsorted(writer.releases, track.reads[jobs], side="right"))
+            found = np.maximum(found, np.searchsorted(writer.releases, task.reads[jobs], side="right"))
         jobs = found - 1
     return jobs

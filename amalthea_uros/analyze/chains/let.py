@@ -1,7 +1,7 @@
-"""Logical execution times: a job reads at its release, and what it writes can be read at the end of its period.
+"""Logical execution time (LET): a job reads at its release, and its output becomes visible at the end of its period.
 
-No schedule changes that, so that following the jobs is exact (J. Martinez, I. Sañudo and M. Bertogna, "Analytical characterization
-of end-to-end communication delays with logical execution time", IEEE Transactions on CAD 37(11), 2018; the formula is that of
+This does not depend on the schedule, so that job chains are exact (J. Martinez, I. Sañudo and M. Bertogna, "Analytical characterization
+of end-to-end communication delays with logical execution time", IEEE Transactions on CAD 37(11), 2018; computed as in
 `job_chains`).
 """
 
@@ -11,18 +11,18 @@ from math import lcm
 
 import numpy as np
 
-from amalthea_uros.analyze.chains.job_times import ReadWriteTimes
+from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
 from amalthea_uros.units import Time
 
 SOURCE = "Martinez, Sañudo, Bertogna 2018"
 
 
-def track(period: Time, offset: Time, cycle: Time) -> ReadWriteTimes:
+def read_write_times(period: Time, offset: Time, cycle: Time) -> ReadWriteTimes:
     """The jobs of a periodic task.
 
     Parameters
     ----------
-    cycle : time after which everything repeats, a multiple of the period
+    cycle : time after which the whole chain repeats, a multiple of the period
     """
     cycle = lcm(cycle, period)
     until = offset + cycle

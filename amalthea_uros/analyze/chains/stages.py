@@ -1,4 +1,4 @@
-"""A route through a chain as stages: what each job contributes, from the moment at which it reads to the one at which it writes."""
+"""A route through a chain as stages: the part that each job contributes, from its read to its write."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Read:
 
 @dataclass(frozen=True, slots=True)
 class Write:
-    """Where what a job writes can be read: from its end on, from the position itself, or from the end of its period."""
+    """Where the data written by a job become visible: at its end, at the position itself, or at the end of its period."""
 
     communication: Communication
     position: ActivityPosition | None
@@ -38,14 +38,14 @@ class Fire:
 
 @dataclass(frozen=True, slots=True)
 class At:
-    """An event at which the chain starts or ends; under logical execution times its job's release, and the end of its period."""
+    """An event at which the chain starts or ends; under LET, the release of its job or the end of the period."""
 
     occurrence: EventOccurrence
     communication: Communication
     is_end: bool
 
 
-Moment = Read | Write | Fire | At
+Boundary = Read | Write | Fire | At
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,25 +54,27 @@ class Stage:
 
     Attributes
     ----------
-    is_triggered : whether the stage before activates it
+    enter, leave : the boundaries of that part
+    is_triggered : whether the previous stage activates it
     """
 
     process: Process
-    enter: Moment
-    leave: Moment
+    enter: Boundary
+    leave: Boundary
     is_triggered: bool = False
 
     @property
     def positions(self) -> list[ActivityPosition]:
-        """Where the jobs have to come."""
+        """The positions that a job must reach to take part."""
         found = [
-            moment.occurrence.position if isinstance(moment, At) else moment.position for moment in (self.enter, self.leave)
+            boundary.occurrence.position if isinstance(boundary, At) else boundary.position
+            for boundary in (self.enter, self.leave)
         ]
         return [position for position in found if position is not None]
 
     @property
     def counters(self) -> set[Counter]:
-        """What lets only some jobs take part."""
+        """The counters that let only some jobs take part."""
         return {counter for position in self.positions for counter in position.counters}
 
 
@@ -81,39 +83,41 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
 
     Parameters
     ----------
-    communication : instead of what the accesses say; None: as they say, and implicit where they say nothing
+    communication : overrides that of the accesses; None: as modelled, implicit by default
     """
     how = communication or Communication.IMPLICIT
     found: list[Stage] = []
-    enter: Moment = At(route.occurrences[0], how, is_end=False)
+    enter: Boundary = At(route.occurrences[0], how, is_end=False)
     is_triggered = False
     for link, before in zip(route.links, route.occurrences, strict=False):
         if link.kind is LinkKind.JOB:
             continue
-        leave = Fire(link.write) if link.kind is LinkKind.TRIGGER else Write(_stated(link.write, communication), link.write)
+        leave = (
+            Fire(link.write) if link.kind is LinkKind.TRIGGER else Write(_communication(link.write, communication), link.write)
+        )
         found.append(Stage(before.process, enter, leave, is_triggered))
         is_triggered = link.kind is LinkKind.TRIGGER
-        enter = Read(_stated(link.read, communication), link.read)
+        enter = Read(_communication(link.read, communication), link.read)
     last = route.occurrences[-1]
     found.append(Stage(last.process, enter, At(last, how, is_end=True), is_triggered))
     return found
 
 
-def _stated(position: ActivityPosition | None, communication: Communication | None) -> Communication:
+def _communication(position: ActivityPosition | None, communication: Communication | None) -> Communication:
     access = position.activity if position is not None else None
     stated = access.communication if isinstance(access, LabelAccess) else None
     return communication or stated or Communication.IMPLICIT
 
 
 def communication_of(found: Iterable[Stage]) -> str:
-    """How stages communicate, in a word."""
-    moments = [moment for stage in found for moment in (stage.enter, stage.leave)]
-    stated = {moment.communication for moment in moments if isinstance(moment, Read | Write)}
-    ends = {moment.communication for moment in moments if isinstance(moment, At)}
+    """How stages communicate, in one word."""
+    boundaries = [boundary for stage in found for boundary in (stage.enter, stage.leave)]
+    stated = {boundary.communication for boundary in boundaries if isinstance(boundary, Read | Write)}
+    ends = {boundary.communication for boundary in boundaries if isinstance(boundary, At)}
     kinds = stated or ends
     return str(next(iter(kinds))).lower() if len(kinds) == 1 else "mixed"
 
 
-def hop_text(link: Link) -> str:
-    """How a link is told."""
+def link_text(link: Link) -> str:
+    """A link in words."""
     return f"{link.kind} {', '.join(link.names)}".strip()

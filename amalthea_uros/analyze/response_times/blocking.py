@@ -3,7 +3,7 @@
 Under the immediate ceiling protocol at most one region or one critical section blocks (L. Sha, R. Rajkumar and J. Lehoczky, "Priority
 inheritance protocols: an approach to real-time synchronization", IEEE Transactions on Computers 39(9), 1990; for deadlines T. P. Baker,
 "Stack-based scheduling of realtime processes", Real-Time Systems 3, 1991). A task of a group runs at the ceiling of its group, which is
-the same as a critical section around all that it does (internal resources, OSEK OS 2.2.3, section 8.6).
+equivalent to a critical section around its whole job (internal resources, OSEK OS 2.2.3, section 8.6).
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Blocking:
         return found
 
     def preempts(self, other: ScheduledProcess, item: ScheduledProcess) -> bool:
-        """Whether one process can preempt another one at once, anywhere."""
+        """Whether one process can preempt another one immediately at any point."""
         if other.is_isr != item.is_isr:
             return other.is_isr
         if other.rank <= item.rank or preemption(item) is Preemption.NON_PREEMPTIVE:
@@ -61,7 +61,7 @@ class Blocking:
         return not (preemption(item) is preemption(other) is Preemption.COOPERATIVE)
 
     def last_region(self, item: ScheduledProcess) -> Time:
-        """The shortest region with which a job can end: those after the last one that is always executed may be missing."""
+        """The shortest possible last region of a job: regions after the last one that is always executed may be skipped."""
         if preemption(item) is Preemption.NON_PREEMPTIVE:
             return self._demand(item.process.activities, item)
         found: list[Time] = []
@@ -74,7 +74,7 @@ class Blocking:
         return min(found, default=0)
 
     def _regions(self, item: ScheduledProcess) -> list[Time]:
-        """The regions of a task that cooperative tasks cannot preempt: all of it, or its activities one by one."""
+        """The demands of the regions in which cooperative tasks cannot preempt a task: the whole task, or each activity."""
         match preemption(item):
             case Preemption.NON_PREEMPTIVE:
                 return [self._demand(item.process.activities, item)]
@@ -83,7 +83,7 @@ class Blocking:
         return []
 
     def _sections(self, item: ScheduledProcess) -> Iterator[tuple[str, Time]]:
-        """The critical sections of a process: semaphore, and how long it is held at most."""
+        """The critical sections of a process: semaphore and maximum execution time while it is held."""
         if item.group is not None:
             yield item.group, max(self._demand(region, item) for region in regions(item))
         for semaphore, activities in critical_sections(item.process, self.demand_model.system):
@@ -95,7 +95,7 @@ class Blocking:
         return self.demand_model.of_activities(item.process, activities, item.core).worst
 
     def note_protocols(self, notes: Notes) -> None:
-        """Report the semaphores that are analysed as if they had a ceiling."""
+        """Report semaphores without a priority ceiling."""
         semaphores: Mapping[str, Semaphore] = {s.name: s for s in self.demand_model.system.os.semaphores}
         for name in self.ceilings:
             semaphore = semaphores.get(name)
@@ -105,13 +105,13 @@ class Blocking:
 
 
 def _is_below(other: ScheduledProcess, item: ScheduledProcess) -> bool:
-    """Whether one process has lower priority than another one; under round robin, all of equal priority do."""
-    in_turn = other is not item and other.rank == item.rank and item.equal_priority is EqualPriority.ROUND_ROBIN
-    return in_turn or other.urgency < item.urgency
+    """Whether a process has lower priority than another one; under round robin, also those of equal priority can block."""
+    takes_turns = other is not item and other.rank == item.rank and item.equal_priority is EqualPriority.ROUND_ROBIN
+    return takes_turns or other.urgency < item.urgency
 
 
 def _waits_for(item: ScheduledProcess, other: ScheduledProcess) -> bool:
-    """Whether a task waits for the region of a lower one; preemptive tasks preempt cooperative ones at once."""
+    """Whether a task waits for a region of a lower one; preemptive tasks preempt cooperative ones immediately."""
     if item.is_isr:
         return False
     return preemption(other) is Preemption.NON_PREEMPTIVE or preemption(item) is not Preemption.PREEMPTIVE

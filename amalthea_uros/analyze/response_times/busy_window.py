@@ -1,7 +1,7 @@
-"""The busy window: the least fixed point of the demand that arrives in it.
+"""The busy window: the least fixed point of the demand that is activated in it.
 
-Periodic interference is held as arrays of whole numbers, one row for each frame of a task: a frame of every n-th job is one with
-n times the period and the distance, because ceil(ceil(x / p) / n) = ceil(x / (p n)). The loops over rows are numpy's.
+Periodic interference is stored as integer arrays, with one row for each frame of a task: a frame of every n-th job has n times the
+period and the minimum distance, because ceil(ceil(x / p) / n) = ceil(x / (p n)). Loops over rows are vectorised.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.response_times.kernel import MAX_STEPS, demand_in, fixed_point
+from amalthea_uros.analyze.response_times.kernel import MAX_STEPS, demand_in, least_fixed_point
 from amalthea_uros.analyze.response_times.supply import FULL, Supply
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.timing.event_models import Periodic, is_strictly_periodic
@@ -26,54 +26,56 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Rows:
-    """Tasks with the same arrivals are one row with the sum of their costs; what is added later may not change earlier ones.
+    """Periodic frames; those with the same activations are one row with the sum of their demands.
+
+    Interferences share rows, so that an added demand makes a copy.
 
     Attributes
     ----------
-    best : least costs, 0 where arrivals may stay away or jitter
-    limited : whether any of the least distances matters
+    best : best-case demands, 0 for tasks with jitter or without a maximum time between activations
+    limited : whether there is any minimum distance
     """
 
     periods: Numbers
     jitters: Numbers
     distances: Numbers
-    costs: Numbers
+    demands: Numbers
     best: Numbers
     limited: bool
 
     @classmethod
     def of(cls, keys: Iterable[tuple[int, int, int]]) -> Rows:
-        """Rows of periods, jitters and distances, without costs so far."""
+        """Rows of periods, jitters and distances, with zero demand."""
         columns = np.array(list(keys), dtype=np.int64).reshape(-1, 3)
         periods, jitters, distances = (np.ascontiguousarray(columns[:, index]) for index in range(3))
         return cls(periods, jitters, distances, np.zeros_like(periods), np.zeros_like(periods), bool(distances.any()))
 
     def with_more(self, row: int, worst: int, best: int) -> Rows:
-        """Rows of which one costs more."""
-        more = Rows(self.periods, self.jitters, self.distances, self.costs.copy(), self.best.copy(), self.limited)
-        more.costs[row] += worst
+        """The rows with more demand in one of them."""
+        more = Rows(self.periods, self.jitters, self.distances, self.demands.copy(), self.best.copy(), self.limited)
+        more.demands[row] += worst
         more.best[row] += best
         return more
 
 
 def _rows(task: Task) -> list[tuple[tuple[int, int, int], int, int]]:
-    """Period, jitter and distance, worst and best cost of each frame of a periodic task."""
-    arrivals = task.arrivals
-    if not isinstance(arrivals, Periodic):
+    """((period, jitter, distance), worst-case demand, best-case demand) of each frame of a periodic task."""
+    events = task.events
+    if not isinstance(events, Periodic):
         return []
-    is_certain = not arrivals.jitter and is_strictly_periodic(arrivals)
+    is_certain = not events.jitter and is_strictly_periodic(events)
     return [
         (
-            # Beyond the limit there are no windows; to take arrivals for closer than they are is safe.
+            # No window exceeds the limit; assuming shorter distances is safe.
             (
-                min(arrivals.period * frame.prescaler, LIMIT),
-                arrivals.jitter,
-                min(arrivals.min_interarrival * frame.prescaler, LIMIT),
+                min(events.period * frame.prescaler, LIMIT),
+                events.jitter,
+                min(events.min_interarrival * frame.prescaler, LIMIT),
             ),
             frame.worst,
             frame.best if is_certain else 0,
         )
-        for frame in task.cost.frames
+        for frame in task.demand.frames
     ]
 
 
@@ -83,17 +85,17 @@ class Interference:
 
     Attributes
     ----------
-    known, number : only the first ones of the tasks count
-    rows, count : the periodic ones, of which only the first rows count
-    others : tasks whose arrivals are not periodic
-    rate, best_rate : about the demand per time in the long run, and the least that cannot be avoided
-    supply : what serves them
+    all_tasks, task_count : only the first `task_count` tasks are included
+    rows, row_count : the periodic ones, of which only the first `row_count` rows are included
+    others : tasks with other event models
+    rate, best_rate : approximate long-run demand per time, and the unavoidable part of it
+    supply : of the core or server
     """
 
-    known: Sequence[Task]
-    number: int
+    all_tasks: Sequence[Task]
+    task_count: int
     rows: Rows
-    count: int
+    row_count: int
     others: tuple[Task, ...]
     rate: float
     best_rate: float
@@ -101,18 +103,18 @@ class Interference:
 
     @property
     def tasks(self) -> Sequence[Task]:
-        """Those that demand."""
-        return self.known[: self.number]
+        """The interfering tasks."""
+        return self.all_tasks[: self.task_count]
 
     @classmethod
     def of(cls, tasks: Sequence[Task], supply: Supply = FULL) -> Interference:
-        """That of tasks."""
+        """The interference of tasks."""
         *_, last = cls.of_first(tasks, supply)
         return last
 
     @classmethod
     def of_first(cls, tasks: Sequence[Task], supply: Supply = FULL) -> list[Interference]:
-        """That of no task, of the first one, of the first two, and so on; they share what they have in common."""
+        """The interference of no task, of the first one, of the first two, and so on; they share their rows."""
         parts = [_rows(task) for task in tasks]
         numbers: dict[tuple[int, int, int], int] = {}
         for rows_of_task in parts:
@@ -127,26 +129,26 @@ class Interference:
                 if row < count:
                     rows = rows.with_more(row, worst, best)
                 else:
-                    rows.costs[row], rows.best[row], count = worst, best, row + 1
+                    rows.demands[row], rows.best[row], count = worst, best, row + 1
                 best_rate += best / key[0]
             others = others if part else (*others, task)
-            rate += about_rate(task)
+            rate += approximate_demand_rate(task)
             found.append(cls(tasks, number, rows, count, others, rate, best_rate, supply))
         return found
 
     def in_window(self, window: Time) -> Time:
-        """The most demand that arrives in a window."""
+        """Maximum demand that is activated in a window."""
         if window <= 0:
             return 0
         rows = self.rows
-        periodic = demand_in(window, rows.periods, rows.jitters, rows.distances, rows.costs, self.count, rows.limited)
+        periodic = demand_in(window, rows.periods, rows.jitters, rows.distances, rows.demands, self.row_count, rows.limited)
         return periodic + self._of_others(window)
 
     def _of_others(self, window: Time) -> Time:
-        return sum(task.cost.max_demand(task.arrivals.eta_plus(window)) for task in self.others)
+        return sum(task.demand.max_demand(task.events.eta_plus(window)) for task in self.others)
 
     def window(self, fixed: Time, start: Time) -> Time | None:
-        """The least window that holds a fixed demand and the interference in it; None if it never ends.
+        """The shortest window that serves a fixed demand and the interference in it; None if it never ends.
 
         Parameters
         ----------
@@ -158,8 +160,8 @@ class Interference:
         window = max(1, fixed, start)
         for _ in range(MAX_STEPS):
             others = self._of_others(window)
-            window = fixed_point(
-                window, fixed + others, rows.periods, rows.jitters, rows.distances, rows.costs, self.count, rows.limited
+            window = least_fixed_point(
+                window, fixed + others, rows.periods, rows.jitters, rows.distances, rows.demands, self.row_count, rows.limited
             )
             if window > LIMIT:
                 return None
@@ -179,20 +181,20 @@ class Interference:
         return None
 
     def overloads_with(self, task: Task) -> bool:
-        """Whether these tasks and another one demand more than there is, exactly."""
-        excess = self.rate + about_rate(task) - float(self.supply.rate)
+        """Whether these tasks and another one demand more than the supply, exactly."""
+        excess = self.rate + approximate_demand_rate(task) - float(self.supply.rate)
         if abs(excess) > 1e-6:
             return excess > 0
         return sum((demand_rate(other) for other in self.tasks), demand_rate(task)) > self.supply.rate
 
 
 def demand_rate(task: Task) -> Fraction:
-    """The demand of a task per time in the long run, at worst."""
-    return task.cost.mean_worst * task.arrivals.rate
+    """Maximum demand of a task per time in the long run."""
+    return task.demand.mean_worst * task.events.rate
 
 
-def about_rate(task: Task) -> float:
-    """The same, fast and not quite exact."""
-    if isinstance(task.arrivals, Periodic):
-        return sum([frame.worst / frame.prescaler for frame in task.cost.frames]) / task.arrivals.period
+def approximate_demand_rate(task: Task) -> float:
+    """The demand rate as a float, which is faster."""
+    if isinstance(task.events, Periodic):
+        return sum([frame.worst / frame.prescaler for frame in task.demand.frames]) / task.events.period
     return float(demand_rate(task))

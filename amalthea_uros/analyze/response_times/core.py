@@ -1,4 +1,4 @@
-"""The response times of the processes of one core, by the method that fits."""
+"""The response times of the processes of one core, by the method that applies."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from amalthea_uros.units import Time
 
 
 def responses_on(core: str, solution: Solution) -> dict[str, Response]:
-    """The response times on a core, in picoseconds, as far as they can be known."""
-    found = _Core(solution, core).responses(None, FULL)
+    """The response times on a core, in picoseconds; without processes that could not be analysed."""
+    found = _CoreAnalysis(solution, core).responses(None, FULL)
     return {name: in_picoseconds(response, solution.context.demand_model.time_base(core)) for name, response in found.items()}
 
 
 @dataclass(frozen=True, slots=True)
-class _Core:
+class _CoreAnalysis:
     solution: Solution
     core: str
 
@@ -40,16 +40,16 @@ class _Core:
 
     @property
     def time_base(self) -> int:
-        """Parts of a picosecond in which everything here is counted."""
+        """Time units per picosecond on this core."""
         return self.context.demand_model.time_base(self.core)
 
     def responses(self, server: str | None, supply: Supply) -> dict[str, Response]:
-        """Of those on the core itself, or on the budget of a server, and of all below them."""
+        """The response times of processes on the core itself, or in the budget of a server, including those of nested servers."""
         here = self.context.served(self.core, server)
         usable = self._analysable(here)
-        placed = [item for item in usable if isinstance(item, ScheduledProcess)]
-        is_all = len(placed) == len(here) and supply is FULL
-        found = self.exact(placed) if is_all else None
+        processes = [item for item in usable if isinstance(item, ScheduledProcess)]
+        is_complete = len(processes) == len(here) and supply is FULL
+        found = self.exact(processes) if is_complete else None
         if found is None:
             found = self.bounds(usable, [item for item in here if isinstance(item, ScheduledProcess)], supply)
         by_name = {item.name: response for item, response in zip(usable, found, strict=True)}
@@ -59,28 +59,28 @@ class _Core:
         return by_name
 
     def _analysable(self, here: Sequence[ScheduledProcess | Server]) -> list[ScheduledProcess | Server]:
-        """Those that do not depend on anything unknown of the same or a higher rank; the others are marked unknown."""
+        """The items that depend on no unknown process of the same or a higher rank; the others are marked unknown."""
         found: list[ScheduledProcess | Server] = []
         unanalysable = self.context.unanalysable_cores
-        culprit: str | None = None
+        unknown: str | None = None
         for (is_isr, _), group in groupby(here, key=lambda item: (_is_isr(item), item.rank)):
             level = list(group)
-            culprit = culprit or unanalysable.get((self.core, True))
+            unknown = unknown or unanalysable.get((self.core, True))
             if not is_isr:
-                culprit = culprit or unanalysable.get((self.core, False))
-            culprit = culprit or next((item.name for item in level if not self._is_known(item)), None)
-            if culprit is None:
+                unknown = unknown or unanalysable.get((self.core, False))
+            unknown = unknown or next((item.name for item in level if not self._is_known(item)), None)
+            if unknown is None:
                 found += level
             else:
                 for item in level:
-                    self._mark_unknown(item, f"too little is known of {culprit!r}, which may come before it")
+                    self._mark_unknown(item, f"depends on {unknown!r}, which could not be analysed")
         return found
 
     def _is_known(self, item: ScheduledProcess | Server) -> bool:
         return isinstance(item, Server) or self.solution.is_known(item.name)
 
     def _mark_unknown(self, item: ScheduledProcess | Server, reason: str) -> None:
-        """Record why nothing can be said about a process, or about all in the budget of a server."""
+        """Record why a process, or all processes in the budget of a server, cannot be analysed."""
         if isinstance(item, ScheduledProcess):
             self.solution.mark_unknown(item.name, reason)
         else:
@@ -88,51 +88,51 @@ class _Core:
                 self._mark_unknown(inner, reason)
 
     def _inside(self, server: Server, response: Response) -> dict[str, Response]:
-        """The response times of those on the budget of a server, given when it gets its budget at the latest."""
+        """The response times in the budget of a server, given the latest time at which it gets its budget."""
         budget, period = server.budget * self.time_base, server.period * self.time_base
         if response.worst is None or response.worst > period:
-            self._mark_unknown(server, f"the server {server.name!r} is not sure to get its budget in each period")
+            self._mark_unknown(server, f"the server {server.name!r} is not guaranteed its budget in each period")
             return {}
-        # A job may come when the budget has just been used up as early as it can be, or when polling has just found nothing.
+        # Worst case: a job is activated just after the budget was used up as early as possible, or just after the server polled.
         used = 0 if server.scheduler.policy == Policy.POLLING_SERVER else budget
         supply = Budget(budget=budget, period=period, wait=period - used + response.worst - budget)
-        self.context.notes.assume("of servers no more is known than that they get their budget somewhere in each period")
+        self.context.notes.assume("a server can get its budget at any time within its period")
         return self.responses(server.name, supply)
 
     def exact(self, here: Sequence[ScheduledProcess]) -> list[Response] | None:
-        """By the schedule, where all releases are known and nobody waits for lower priorities."""
+        """The exact response times by the schedule, if all releases are known and there is no blocking."""
         tasks = self.released(here)
         found = schedule.response_times(tasks) if tasks else None
         if found is not None:
-            self.context.notes.assume("periodic tasks are released at their offsets; where none is stated, at 0")
+            self.context.notes.assume("periodic tasks are released at their offsets; the default offset is 0")
         return found
 
     def released(self, here: Sequence[ScheduledProcess]) -> list[schedule.PeriodicTask]:
-        """The processes, if all releases are known, and nobody waits for lower priorities; otherwise nothing."""
-        if len({placed.rank for placed in here}) < len(here) or Blocking(here, self.context.demand_model).ceilings:
+        """The processes, if all releases are known and there is no blocking; otherwise nothing."""
+        if len({item.rank for item in here}) < len(here) or Blocking(here, self.context.demand_model).ceilings:
             return []
-        found = [self._released(placed, rank) for rank, placed in enumerate(reversed(here))]
+        found = [self._released(item, rank) for rank, item in enumerate(reversed(here))]
         return [] if None in found else [task for task in reversed(found) if task is not None]
 
-    def _released(self, placed: ScheduledProcess, rank: int) -> schedule.PeriodicTask | None:
-        """A process whose releases are all known; None if it is none, or cannot always be interrupted."""
-        if not is_preemptive(placed) or placed.name in self.context.decisions:
+    def _released(self, scheduled: ScheduledProcess, rank: int) -> schedule.PeriodicTask | None:
+        """A preemptive process with known releases; None if it is not one."""
+        if not is_preemptive(scheduled) or scheduled.name in self.context.decisions:
             return None
-        stimulus = known_releases(placed.process, self.context.system)
+        stimulus = known_releases(scheduled.process, self.context.system)
         if stimulus is None:
             return None
         return schedule.PeriodicTask(
-            name=placed.name,
+            name=scheduled.name,
             period=stimulus.period * self.time_base,
             offset=stimulus.offset * self.time_base,
-            cost=self.context.demands[placed.name],
+            demand=self.context.demands[scheduled.name],
             priority=rank,
         )
 
     def bounds(
         self, usable: Sequence[ScheduledProcess | Server], here: Sequence[ScheduledProcess], supply: Supply
     ) -> list[Response]:
-        """By busy windows; who comes lower may block, if its demand is known."""
+        """Bounds by busy windows; processes of lower priority with known demand can block."""
         notes = self.context.notes
         ranks = sorted({item.rank for item in usable})
         tasks = [self._task(item, ranks) for item in usable]
@@ -140,37 +140,37 @@ class _Core:
         blocking.note_protocols(notes)
         waits = blocking.times()
         if tasks:
-            notes.assume("where not all releases on a core are known, all of them may come together at the worst moment")
-            notes.assume("best cases there hold once all tasks have been released")
+            notes.assume("if not all releases on a core are known, all tasks can be released together at the worst moment")
+            notes.assume("best cases on such cores hold once all tasks have been released")
         decisions = self._decisions(len(ranks)) if supply is FULL else []
         found = priority_levels.response_times(
             [*tasks, *decisions], [*(waits.get(item.name, 0) for item in usable), *[0] * len(decisions)], supply
         )
         for index, item in enumerate(usable):
-            # Where deadlines or budgets decide, the busy window holds for tasks that cannot be interrupted, too.
+            # Under EDF and in servers, the busy window is also valid for non-preemptive tasks.
             if (
                 isinstance(item, ScheduledProcess)
                 and not is_preemptive(item)
                 and item.equal_priority is EqualPriority.FIFO
                 and supply is FULL
             ):
-                found[index] = self._to_the_last_region(index, usable, [*tasks, *decisions], blocking, waits)
-        # The methods are exact for arrivals that do not know of each other; offsets may keep the worst moment from coming.
+                found[index] = self._non_preemptive(index, usable, [*tasks, *decisions], blocking, waits)
+        # The methods are exact for independent activations; offsets can make the worst case impossible.
         return [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
 
     def _task(self, item: ScheduledProcess | Server, ranks: Sequence[Rank]) -> Task:
-        """A process or server as the methods know it; the job of a server is to use its budget."""
+        """A process or server as the methods see it; a job of a server uses its budget."""
         if isinstance(item, Server):
-            # Budget that is kept may be used at the end of one period and again at the start of the next one.
+            # A deferred budget can be used at the end of one period and again at the start of the next one.
             jitter = item.period - item.budget if item.scheduler.policy == Policy.DEFERRABLE_SERVER else 0
-            arrivals: EventModel = Periodic(item.period, jitter)
-            cost = MultiframeDemand.constant(item.budget * self.time_base)
+            events: EventModel = Periodic(item.period, jitter)
+            demand = MultiframeDemand.constant(item.budget * self.time_base)
         else:
-            arrivals, cost = self.solution.event_models[item.name], self.context.demands[item.name]
+            events, demand = self.solution.event_models[item.name], self.context.demands[item.name]
         return Task(
             name=item.name,
-            arrivals=rescaled(arrivals, self.time_base),
-            cost=cost,
+            events=rescaled(events, self.time_base),
+            demand=demand,
             priority=ranks.index(item.rank),
             equal_priority=item.equal_priority,
             deadline=(item.deadline or 0) * self.time_base if item.equal_priority is EqualPriority.EDF else 0,
@@ -178,19 +178,19 @@ class _Core:
         )
 
     def _decisions(self, priority: int) -> list[Task]:
-        """The decisions of schedulers at the arrivals of tasks, which come before everything else."""
+        """The decisions of schedulers at activations of tasks, which precede everything else."""
         return [
             Task(
-                name=f"decision for {placed.name}",
-                arrivals=rescaled(self.solution.event_models[placed.name], self.time_base),
-                cost=self.context.decisions[placed.name],
+                name=f"decision for {scheduled.name}",
+                events=rescaled(self.solution.event_models[scheduled.name], self.time_base),
+                demand=self.context.decisions[scheduled.name],
                 priority=priority,
             )
-            for placed in self.context.on_core(self.core)
-            if placed.name in self.context.decisions and placed.name in self.solution.event_models
+            for scheduled in self.context.on_core(self.core)
+            if scheduled.name in self.context.decisions and scheduled.name in self.solution.event_models
         ]
 
-    def _to_the_last_region(
+    def _non_preemptive(
         self,
         index: int,
         here: Sequence[ScheduledProcess | Server],
@@ -198,24 +198,24 @@ class _Core:
         blocking: Blocking,
         waits: Mapping[str, Time],
     ) -> Response:
-        """The response time of a task that is not interrupted in its last region, or only by some."""
-        placed, task = here[index], tasks[index]
-        assert isinstance(placed, ScheduledProcess)
-        if preemption(placed) is Preemption.COOPERATIVE:
-            sentence = "cooperative tasks are interrupted by preemptive ones at once, by others between runnables"
+        """The response time of a task that only some tasks can preempt in its last region."""
+        item, task = here[index], tasks[index]
+        assert isinstance(item, ScheduledProcess)
+        if preemption(item) is Preemption.COOPERATIVE:
+            sentence = "preemptive tasks preempt cooperative ones immediately, cooperative tasks only between runnables"
             self.context.notes.assume(sentence)
         higher = [other for other in tasks if other is not task and other.priority >= task.priority]
-        always = [
+        always_preempting = [
             tasks[number]
             for number, other in enumerate(here)
-            if (tasks[number].priority > task.priority if isinstance(other, Server) else blocking.preempts(other, placed))
+            if (tasks[number].priority > task.priority if isinstance(other, Server) else blocking.preempts(other, item))
         ]
-        always += tasks[len(here) :]
-        return non_preemptive.response_time(task, higher, waits[placed.name], 1, blocking.last_region(placed), always)
+        always_preempting += tasks[len(here) :]
+        return non_preemptive.response_time(task, higher, waits[item.name], 1, blocking.last_region(item), always_preempting)
 
 
 def periodic_tasks(core: str, solution: Solution) -> list[schedule.PeriodicTask]:
-    """The tasks of a core whose schedule is known but for execution times; otherwise none."""
+    """The tasks of a core whose schedule is known apart from execution times; otherwise none."""
     context = solution.context
     here = context.served(core, None)
     processes = [item for item in here if isinstance(item, ScheduledProcess)]
@@ -223,17 +223,17 @@ def periodic_tasks(core: str, solution: Solution) -> list[schedule.PeriodicTask]
         return []
     if (core, True) in context.unanalysable_cores or (core, False) in context.unanalysable_cores:
         return []
-    return _Core(solution, core).released(processes)
+    return _CoreAnalysis(solution, core).released(processes)
 
 
 def in_picoseconds(response: Response, time_base: int) -> Response:
-    """A response time that was computed in time_base; the greatest values rounded up, the least ones down."""
+    """A response time computed in the time base of a core, in picoseconds; upper bounds are rounded up, lower bounds down."""
     if time_base == 1:
         return response
     worst = None if response.worst is None else -(-response.worst // time_base)
     terms = {name: -(-value // time_base) for name, value in response.terms.items()}
     if worst is not None and "interference" in terms:
-        # What rounding adds to the terms is taken from the greatest kind of them, so that they still add up.
+        # Rounding differences are added to the interference, so that the terms still add up.
         terms["interference"] += worst - sum(terms.values())
     return replace(
         response,

@@ -1,11 +1,11 @@
 """Response times under earliest deadline first.
 
 After M. Spuri, "Analysis of deadline scheduled real-time systems", INRIA, RR-2772, 1996: the
-worst response of a job that is activated `a` after the start of a busy window in which all others are activated as early as
-possible; only those of them count whose deadline is not later. Tasks of higher priority come first.
+worst-case response time of a job that is activated `a` after the start of a busy window in which all others are activated as early as
+possible; only those with an earlier or equal deadline interfere. Tasks of higher priority are served first.
 
-The activations `a` to be considered are those at which the deadline of the job meets that of another one, or at which it is one of the
-earliest that its own task can have.
+The candidates for `a` are the times at which the deadline of the job coincides with that of another one, or at which the job is one of
+the earliest of its own task.
 """
 
 from __future__ import annotations
@@ -36,52 +36,52 @@ def response_time(
     level = [task, *others]
     together = Interference.of([*higher.tasks, *others], higher.supply)
     if together.overloads_with(task):
-        return unbounded(task.cost.best, together, task, method, SOURCE)
+        return unbounded(task.demand.best, together, task, method, SOURCE)
     window = Interference.of([*higher.tasks, *level], higher.supply).window(blocking, 0)
-    most = max_jobs(*level)
-    arrivals = sorted(set(_arrivals(task, level, window, most))) if window is not None else []
-    if not arrivals or len(arrivals) > most:
-        reason = f"more than {most:,} arrivals in its busy window: the demand fills the processor"
-        return Response(worst=None, best=task.cost.best, method=method, source=SOURCE, reason=reason)
-    ends = [(_end(task, arrival, others, higher, blocking), arrival) for arrival in arrivals]
+    limit = max_jobs(*level)
+    candidates = sorted(set(_candidates(task, level, window, limit))) if window is not None else []
+    if not candidates or len(candidates) > limit:
+        reason = f"its busy window has more than {limit:,} activations: the tasks need nearly all of the core"
+        return Response(worst=None, best=task.demand.best, method=method, source=SOURCE, reason=reason)
+    ends = [(_end(task, activation, others, higher, blocking), activation) for activation in candidates]
     if any(end > LIMIT for end, _ in ends):
-        return Response(worst=None, best=task.cost.best, method=method, source=SOURCE, reason="its busy window does not end")
-    end, arrival = max(ends, key=lambda pair: pair[0] - pair[1])
-    # A window that ends before the job arrives says that nothing is in its way.
-    worst = max(end - arrival, higher.supply.time_for(task.cost.worst))
+        return Response(worst=None, best=task.demand.best, method=method, source=SOURCE, reason="its busy window does not end")
+    end, activation = max(ends, key=lambda pair: pair[0] - pair[1])
+    # If the window ends before the job is activated, nothing delays the job.
+    worst = max(end - activation, higher.supply.time_for(task.demand.worst))
     return Response(
         worst=worst,
-        best=task.cost.best,
+        best=task.demand.best,
         method=method,
         source=SOURCE,
         claim=Claim.BOUND,
-        jobs=len(arrivals),
+        jobs=len(candidates),
         window=end,
-        terms={"own": task.cost.worst, "interference": worst - task.cost.worst - blocking, "blocking": blocking},
+        terms={"own": task.demand.worst, "interference": worst - task.demand.worst - blocking, "blocking": blocking},
     )
 
 
-def _arrivals(task: Task, level: Iterable[Task], window: Time, most: int) -> Iterator[Time]:
-    """Where in the busy window an arrival of the task may be the worst one."""
+def _candidates(task: Task, level: Iterable[Task], window: Time, limit: int) -> Iterator[Time]:
+    """The activation times in the busy window that can give the worst case."""
     yield 0
     for other in level:
         later = other.deadline - task.deadline
-        for count in range(1, most + 2):
-            arrival = other.arrivals.delta_min(count) + later
-            if arrival >= window:
+        for count in range(1, limit + 2):
+            activation = other.events.delta_min(count) + later
+            if activation >= window:
                 break
-            if arrival > 0:
-                yield arrival
+            if activation > 0:
+                yield activation
 
 
-def _end(task: Task, arrival: Time, others: Sequence[Task], higher: Interference, blocking: Time) -> Time:
-    """The end of the busy window in which everything is served that comes no later than a job."""
-    own = task.cost.max_demand(task.arrivals.eta_plus(arrival + 1))
-    # As many of each other task have a deadline that is not later; arrivals at the end of that time count.
-    limits = [(other, other.arrivals.eta_plus(arrival + task.deadline - other.deadline + 1)) for other in others]
+def _end(task: Task, activation: Time, others: Sequence[Task], higher: Interference, blocking: Time) -> Time:
+    """The end of the busy window that serves a job and all jobs with earlier or equal deadlines."""
+    own = task.demand.max_demand(task.events.eta_plus(activation + 1))
+    # Number of jobs of each other task with an earlier or equal deadline; an activation at the end of that time counts.
+    limits = [(other, other.events.eta_plus(activation + task.deadline - other.deadline + 1)) for other in others]
     end = 0
     for _ in range(MAX_STEPS):
-        before = sum(other.cost.max_demand(min(limit, other.arrivals.eta_plus(end))) for other, limit in limits if limit > 0)
+        before = sum(other.demand.max_demand(min(limit, other.events.eta_plus(end))) for other, limit in limits if limit > 0)
         reached = higher.window(blocking + own + before, end)
         if reached is None:
             return LIMIT + 1

@@ -1,4 +1,4 @@
-"""Response times of tasks of equal priority that are served first come, first served, which is EDF with equal deadlines."""
+"""Response times of tasks of equal priority under FIFO, which is EDF with equal deadlines."""
 
 from __future__ import annotations
 

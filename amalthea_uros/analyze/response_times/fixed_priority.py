@@ -6,8 +6,8 @@ tasks", Real-Time Systems 6, 1994: the q-th job of the window ends at the least 
 
     w = B + C(q) + sum over higher priorities of C_j(eta_j(w))
 
-and its response time is w minus the least time at which it can arrive. Jobs are looked at until one ends before the next can arrive.
-For tasks that cannot be interrupted see `non_preemptive`.
+and its response time is w minus its earliest activation. Jobs are examined until one ends before the next can be activated. For
+non-preemptive tasks see `non_preemptive`.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from amalthea_uros.units import Time
 
 METHOD = "busy window, fixed priorities, preemptive"
 SOURCE = "Lehoczky 1990; Tindell, Burns, Wellings 1994"
-#: Busy windows with more jobs are given up; the load is then so near to 1 that the result would mean nothing.
+#: Busy windows with more jobs are considered unbounded: the load is then so close to 1 that a bound would be useless.
 MAX_JOBS = 20_000
-#: Where arrivals are irregular each job is more work, and longer windows make what they trigger still more irregular.
+#: The limit for irregular activations: each job takes longer to compute, and long windows increase the jitter of triggered tasks.
 MAX_IRREGULAR_JOBS = 1000
 
 
@@ -42,17 +42,17 @@ def response_time(
     worst, worst_window, worst_job = -1, 0, 0
     window = 0
     completions: list[Time] = []
-    most = max_jobs(task)
-    for job in range(1, most):
-        found = higher.window(blocking + task.cost.max_demand(job), window if job > 1 else start)
+    limit = max_jobs(task)
+    for job in range(1, limit):
+        found = higher.window(blocking + task.demand.max_demand(job), window if job > 1 else start)
         if found is None:
             break
         window = found
         completions.append(window)
-        if window - task.arrivals.delta_min(job) > worst:
-            worst, worst_window, worst_job = window - task.arrivals.delta_min(job), window, job
-        if window <= task.arrivals.delta_min(job + 1):
-            own = task.cost.max_demand(worst_job)
+        if window - task.events.delta_min(job) > worst:
+            worst, worst_window, worst_job = window - task.events.delta_min(job), window, job
+        if window <= task.events.delta_min(job + 1):
+            own = task.demand.max_demand(worst_job)
             response = Response(
                 worst=worst,
                 best=best,
@@ -67,22 +67,23 @@ def response_time(
                     "own": own,
                     "interference": worst_window - own - blocking,
                     "blocking": blocking,
-                    "earlier arrival": -task.arrivals.delta_min(worst_job),
+                    "earlier arrival": -task.events.delta_min(worst_job),
                 },
             )
             return response, completions[0]
-    reason = f"its busy window has more than {most:,} jobs: the demand up to this priority fills the processor"
+    reason = f"its busy window has more than {limit:,} jobs: tasks at this priority or higher need nearly all of the core"
     return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason), start
 
 
 def max_jobs(*tasks: Task) -> int:
-    """How many jobs of busy windows are looked at."""
-    return MAX_JOBS if all(isinstance(task.arrivals, Periodic) for task in tasks) else MAX_IRREGULAR_JOBS
+    """Maximum number of jobs of a busy window that are examined."""
+    return MAX_JOBS if all(isinstance(task.events, Periodic) for task in tasks) else MAX_IRREGULAR_JOBS
 
 
 def unbounded(best: Time, higher: Interference, task: Task, method: str, source: str) -> Response:
-    """What is told of a task where more is demanded than served."""
+    """The response time of a task that is overloaded together with those of higher priority."""
     rate = higher.rate + float(demand_rate(task))
-    supplied = f"{float(higher.supply.rate):.1%} of it are granted" if higher.supply.rate < 1 else "more than there is"
-    reason = f"the demand up to this priority is {rate:.1%} of the processor, {supplied}"
+    reason = f"overload: tasks at this priority or higher need {100 * rate:.1f} % of the core"
+    if higher.supply.rate < 1:
+        reason += f", and their server provides {100 * float(higher.supply.rate):.1f} %"
     return Response(worst=None, best=best, method=method, source=source, reason=reason)

@@ -1,6 +1,6 @@
-"""The loops of busy windows and of schedules, over whole numbers; compiled where that is possible.
+"""The inner loops of busy windows and schedules on integers; compiled if numba is installed.
 
-Of the rows of an array only the first `count` are used, so that those of all priorities share one array.
+Only the first `count` rows of an array are used, so that all priorities share one array.
 """
 
 from __future__ import annotations
@@ -18,43 +18,43 @@ if TYPE_CHECKING:
 
     Numbers = NDArray[np.int64]
 
-#: Whole numbers: a list as Python, an array as machine code.
+#: Integers: a list if interpreted, an array if compiled.
 Whole: TypeAlias = Any
 
-#: A busy window that is still growing after so many steps is taken to have no end.
+#: A busy window that still grows after so many steps is considered unbounded.
 MAX_STEPS = 100_000
 
 
 @compiled(cost=20)
 def demand_in(
-    window: int, periods: Numbers, jitters: Numbers, distances: Numbers, costs: Numbers, count: int, limited: bool
+    window: int, periods: Numbers, jitters: Numbers, distances: Numbers, demands: Numbers, count: int, limited: bool
 ) -> int:
-    """The demand that arrives in a window; without least distances where `limited` is false."""
-    arrivals = (window + jitters[:count] + periods[:count] - 1) // periods[:count]
+    """The demand that is activated in a window; minimum distances are ignored unless `limited`."""
+    events = (window + jitters[:count] + periods[:count] - 1) // periods[:count]
     if limited:
-        near = (window + distances[:count] - 1) // np.maximum(distances[:count], 1)
-        arrivals = np.where(distances[:count] > 0, np.minimum(arrivals, near), arrivals)
-    return int((arrivals * costs[:count]).sum())
+        nearby = (window + distances[:count] - 1) // np.maximum(distances[:count], 1)
+        events = np.where(distances[:count] > 0, np.minimum(events, nearby), events)
+    return int((events * demands[:count]).sum())
 
 
 @compiled(cost=20)
-def fixed_point(
+def least_fixed_point(
     window: int,
     fixed: int,
     periods: Numbers,
     jitters: Numbers,
     distances: Numbers,
-    costs: Numbers,
+    demands: Numbers,
     count: int,
     limited: bool,
 ) -> int:
-    """The least window that holds its own demand, from a lower bound on; more than LIMIT if there is none below it."""
+    """The shortest window that serves its own demand, at least `window`; more than LIMIT if there is none."""
     for _ in range(MAX_STEPS):
-        arrivals = (window + jitters[:count] + periods[:count] - 1) // periods[:count]
+        events = (window + jitters[:count] + periods[:count] - 1) // periods[:count]
         if limited:
-            near = (window + distances[:count] - 1) // np.maximum(distances[:count], 1)
-            arrivals = np.where(distances[:count] > 0, np.minimum(arrivals, near), arrivals)
-        demand = fixed + int((arrivals * costs[:count]).sum())
+            nearby = (window + distances[:count] - 1) // np.maximum(distances[:count], 1)
+            events = np.where(distances[:count] > 0, np.minimum(events, nearby), events)
+        demand = fixed + int((events * demands[:count]).sum())
         if demand <= window:
             return window
         if demand > LIMIT:
@@ -64,12 +64,12 @@ def fixed_point(
 
 
 @compiled(cost=20)
-def least_response(own: int, start: int, periods: Numbers, costs: Numbers, count: int) -> int:
-    """The greatest fixed point below a start of what a job waits for at least."""
+def greatest_fixed_point(own: int, start: int, periods: Numbers, demands: Numbers, count: int) -> int:
+    """The greatest fixed point, at most `start`, of the best-case response time."""
     response = start
     while True:
-        avoidable = np.maximum((response + periods[:count] - 1) // periods[:count] - 1, 0)
-        reached = own + int((avoidable * costs[:count]).sum())
+        unavoidable = np.maximum((response + periods[:count] - 1) // periods[:count] - 1, 0)
+        reached = own + int((unavoidable * demands[:count]).sum())
         if reached >= response:
             return response
         response = reached
@@ -84,21 +84,25 @@ def dispatch(
     tables: Whole,
     leads: Whole,
     cycles: Whole,
-    costs: Whole,
-    watched: Whole,
+    demands: Whole,
+    recorded: Whole,
     until: int,
     begins: Whole,
     ends: Whole,
 ) -> list[tuple[int, int, int]]:
-    """Serve jobs by priority with preemption; fills in when each job begins and ends, and returns the pieces of those that are watched.
+    """Schedule jobs by fixed priority with preemption.
+
+    Fills in when each job begins and ends, and returns the execution slices of the recorded tasks.
 
     Parameters
     ----------
-    ranks : lower ones are served first, equal ones in the order of release
+    ranks : lower ones are served first; equal ones in order of release
     firsts : the number of the first job of each task; its jobs follow
-    tables, leads, cycles, costs : where the costs of the jobs of a task stand, how many come before they repeat, and after how many
-    until : jobs that are released before it are served to their end
-    begins, ends : -1 at first
+    tables, leads, cycles : first index of a task in `demands`, number of jobs before its demands repeat, and length of a cycle
+    demands : of the jobs of all tasks
+    recorded : whether the execution slices of a task are returned
+    until : jobs released before it are served to their end
+    begins, ends : results; initially -1
 
     Returns
     -------
@@ -106,11 +110,11 @@ def dispatch(
     """
     upcoming = [(offsets[number], ranks[number], number, 0) for number in range(len(periods))]
     heapify(upcoming)
-    # A list has to hold something once, to have a type.
+    # An empty list has no type when compiled.
     ready = [(0, 0, 0, 0, 0)]
     ready.pop()
-    pieces = [(0, 0, 0)]
-    pieces.pop()
+    slices = [(0, 0, 0)]
+    slices.pop()
     now = 0
     pending = 0
     while pending > 0 or upcoming[0][0] < until:
@@ -125,7 +129,7 @@ def dispatch(
             if release < until:
                 job = firsts[number] + index
                 pending += 1
-            heappush(ready, (rank, release, number, costs[tables[number] + at], job))
+            heappush(ready, (rank, release, number, demands[tables[number] + at], job))
         rank, release, number, left, job = ready[0]
         if job >= 0 and begins[job] < 0:
             begins[job] = now
@@ -136,12 +140,12 @@ def dispatch(
                 ends[job] = end
                 pending -= 1
         else:
-            # Rank, release and number decide about the order; what is left does not.
+            # The order depends on rank, release and number only, so that the heap stays valid.
             heapreplace(ready, (rank, release, number, left - (end - now), job))
-        if job >= 0 and watched[number]:
-            if len(pieces) > 0 and pieces[-1][0] == job and pieces[-1][2] == now:
-                pieces[-1] = (job, pieces[-1][1], end)
+        if job >= 0 and recorded[number]:
+            if len(slices) > 0 and slices[-1][0] == job and slices[-1][2] == now:
+                slices[-1] = (job, slices[-1][1], end)
             else:
-                pieces.append((job, now, end))
+                slices.append((job, now, end))
         now = end
-    return pieces
+    return slices

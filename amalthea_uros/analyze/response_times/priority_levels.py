@@ -1,4 +1,4 @@
-"""Response times of all preemptive tasks of a processor or a server, one priority level after the other."""
+"""Response times of all preemptive tasks of a core or a server, one priority level after the other."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class EqualPriorityMethod(Protocol):
         ...
 
 
-#: The method for each way to share a priority.
+#: The method for tasks of equal priority.
 METHODS: Mapping[EqualPriority, EqualPriorityMethod] = {
     EqualPriority.FIFO: fifo.response_time,
     EqualPriority.EDF: edf.response_time,
@@ -65,7 +65,7 @@ def response_times(tasks: Sequence[Task], blocking: Sequence[Time] | None = None
 
 
 def _levels(tasks: Sequence[Task], order: Sequence[int]) -> Iterator[tuple[int, list[int]]]:
-    """Each priority from the highest one down: number of tasks of higher priority, and those that have it."""
+    """Each priority, highest first: number of tasks of higher priority, and the tasks of this one."""
     before = 0
     for _, group in groupby(order, key=lambda index: tasks[index].priority):
         level = list(group)

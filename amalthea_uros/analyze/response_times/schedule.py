@@ -1,9 +1,9 @@
-"""The schedule of a processor under fixed priorities with preemption, job by job.
+"""The schedule of a core under fixed priorities with preemption, job by job.
 
-For tasks whose releases are known the schedule over two hyperperiods behind the last offset contains every situation (J. Leung and
+For tasks with known releases the schedule over two hyperperiods after the last offset contains all situations (J. Leung and
 J. Whitehead, "On the complexity of fixed-priority scheduling of periodic, real-time tasks", Performance Evaluation 2, 1982). With fixed
-releases and without blocking a job never ends later because another one executes for a shorter time, so that the schedule of all worst
-cases holds the worst response times, and that of all best cases the best ones.
+releases and without blocking, a job never ends later because another one executes for a shorter time, so that the schedule of all
+worst cases contains the worst-case response times, and that of all best cases the best-case ones.
 """
 
 from __future__ import annotations
@@ -27,28 +27,28 @@ if TYPE_CHECKING:
 
 METHOD = "schedule over the hyperperiod, fixed priorities, preemptive"
 SOURCE = "Leung, Whitehead 1982"
-#: Longer schedules are not worth their time; a bound serves.
+#: Schedules with more jobs are not computed; busy windows give bounds.
 MAX_JOBS = 300_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PeriodicTask:
-    """A task whose releases are known: offset + k * period; higher numbers are served first."""
+    """A task released at offset + k * period; higher priorities are served first."""
 
     name: str
     period: Time
     offset: Time
-    cost: MultiframeDemand
+    demand: MultiframeDemand
     priority: int
 
 
 @dataclass(frozen=True, slots=True)
 class Jobs:
-    """The jobs of a task in order: when each is released, begins and ends, and in which pieces, where those were asked for.
+    """When the jobs of a task are released, begin and end, and when they execute, if that is recorded.
 
     Attributes
     ----------
-    pieces : rows of (number of the job, begin, end)
+    execution_slices : rows of (number of the job, begin, end)
     """
 
     releases: Numbers
@@ -60,25 +60,25 @@ class Jobs:
 def schedule(
     tasks: Sequence[PeriodicTask],
     until: Time,
-    cost_of: Callable[[MultiframeDemand, int], Time],
-    watched: Sequence[bool] | None = None,
+    demand_of: Callable[[MultiframeDemand, int], Time],
+    recorded: Sequence[bool] | None = None,
 ) -> list[Jobs]:
-    """The jobs of each task that are released before a time, all of them served to their ends.
+    """The jobs of each task that are released before a time.
 
     Parameters
     ----------
-    cost_of : what the n-th job (from 1) of a task executes
-    watched : of which tasks the pieces are wanted; None: of none
+    demand_of : demand of the n-th job, counted from 1
+    recorded : for each task, whether its execution slices are needed; None: for none
     """
     counts = [max(0, -(-(until - task.offset) // task.period)) for task in tasks]
     firsts = list(accumulate(counts, initial=0))
-    cycles = [cycle(task.cost) for task in tasks]
-    costs = [table(task.cost, cost_of) for task in tasks]
-    leads = [len(row) - length for row, length in zip(costs, cycles, strict=True)]
-    tables = list(accumulate(map(len, costs), initial=0))
+    cycles = [demand_cycle(task.demand) for task in tasks]
+    demands = [demand_table(task.demand, demand_of) for task in tasks]
+    leads = [len(row) - length for row, length in zip(demands, cycles, strict=True)]
+    tables = list(accumulate(map(len, demands), initial=0))
     periods, offsets = [task.period for task in tasks], [task.offset for task in tasks]
-    ranks, watch = [-task.priority for task in tasks], list(watched or [False] * len(tasks))
-    # About 3 us for each job as Python.
+    ranks, is_recorded = [-task.priority for task in tasks], list(recorded or [False] * len(tasks))
+    # About 3 us for each job if interpreted.
     dispatch.expect(3 * firsts[-1])
     form: Callable[[Any], Whole] = np.array if dispatch.is_compiled else list
     begins, ends = form([-1] * firsts[-1]), form([-1] * firsts[-1])
@@ -90,57 +90,57 @@ def schedule(
         form(tables[:-1]),
         form(leads),
         form(cycles),
-        form([cost for row in costs for cost in row]),
-        form(watch),
+        form([demand for row in demands for demand in row]),
+        form(is_recorded),
         until,
         begins,
         ends,
     )
     begins, ends = np.asarray(begins, dtype=np.int64), np.asarray(ends, dtype=np.int64)
-    pieces = np.array(found, dtype=np.int64).reshape(-1, 3)
+    slices = np.array(found, dtype=np.int64).reshape(-1, 3)
     result = []
     for number, task in enumerate(tasks):
         first, last = firsts[number], firsts[number + 1]
         releases = task.offset + task.period * np.arange(last - first, dtype=np.int64)
-        own = pieces[(pieces[:, 0] >= first) & (pieces[:, 0] < last)] - (first, 0, 0) if watch[number] else pieces[:0]
+        own = slices[(slices[:, 0] >= first) & (slices[:, 0] < last)] - (first, 0, 0) if is_recorded[number] else slices[:0]
         result.append(Jobs(releases, begins[first:last], ends[first:last], own))
     return result
 
 
-def table(cost: MultiframeDemand, cost_of: Callable[[MultiframeDemand, int], Time]) -> list[Time]:
-    """The costs of the first jobs; the last ones of these repeat, as many as a cycle has."""
-    return [cost_of(cost, index + 1) for index in range(_lead(cost) + cycle(cost))]
+def demand_table(demand: MultiframeDemand, demand_of: Callable[[MultiframeDemand, int], Time]) -> list[Time]:
+    """The demands of the first jobs: those before the cycle, then one cycle."""
+    return [demand_of(demand, index + 1) for index in range(_lead(demand) + demand_cycle(demand))]
 
 
-def _lead(cost: MultiframeDemand) -> int:
-    """How many jobs come before the costs repeat: counters with offsets may start late."""
-    return max((frame.offset for frame in cost.frames), default=0)
+def _lead(demand: MultiframeDemand) -> int:
+    """Number of jobs before the demands repeat, because of counters with offsets."""
+    return max((frame.offset for frame in demand.frames), default=0)
 
 
-def cycle(cost: MultiframeDemand) -> int:
-    """After how many jobs the costs repeat."""
-    return lcm(*(frame.prescaler for frame in cost.frames))
+def demand_cycle(demand: MultiframeDemand) -> int:
+    """Number of jobs after which the demands repeat."""
+    return lcm(*(frame.prescaler for frame in demand.frames))
 
 
 def hyperperiod(tasks: Sequence[PeriodicTask]) -> Time:
-    """The time after which releases and costs repeat."""
-    return lcm(*(task.period * cycle(task.cost) for task in tasks))
+    """The time after which releases and demands repeat."""
+    return lcm(*(task.period * demand_cycle(task.demand) for task in tasks))
 
 
 def steady_state_start(tasks: Sequence[PeriodicTask]) -> Time:
-    """The time behind which all tasks have been released, and all counters have started; a hyperperiod later everything repeats."""
-    return max((task.offset + _lead(task.cost) * task.period for task in tasks), default=0)
+    """The time at which all tasks have been released and all counters have started; the schedule repeats a hyperperiod later."""
+    return max((task.offset + _lead(task.demand) * task.period for task in tasks), default=0)
 
 
 def fits(tasks: Sequence[PeriodicTask], until: Time) -> bool:
-    """Whether a schedule up to a time is worth it, and exists: no more is demanded than served."""
+    """Whether a schedule up to a time is short enough to compute, and the core is not overloaded."""
     if until > LIMIT or sum(until // task.period + 1 for task in tasks) > MAX_JOBS:
         return False
-    return sum(task.cost.mean_worst / task.period for task in tasks) <= 1
+    return sum(task.demand.mean_worst / task.period for task in tasks) <= 1
 
 
 def response_times(tasks: Sequence[PeriodicTask]) -> list[Response] | None:
-    """The exact response times; None if the schedule is too long, or the processor overloaded."""
+    """The exact response times; None if the schedule is too long or the core is overloaded."""
     until = steady_state_start(tasks) + 2 * hyperperiod(tasks)
     if not fits(tasks, until):
         return None
@@ -152,7 +152,7 @@ def response_times(tasks: Sequence[PeriodicTask]) -> list[Response] | None:
 def _response(task: PeriodicTask, worst: Jobs, best: Jobs) -> Response:
     responses = worst.ends - worst.releases
     at = int(responses.argmax())
-    longest, own = int(responses[at]), task.cost.worst_of(at + 1)
+    longest, own = int(responses[at]), task.demand.worst_of(at + 1)
     return Response(
         worst=longest,
         best=int((best.ends - best.releases).min()),

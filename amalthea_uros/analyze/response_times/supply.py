@@ -1,4 +1,4 @@
-"""How much of a processor a scheduler gets: all of it, or what a server grants.
+"""The supply of a core: all of its time, or the budget of a server.
 
 The supply of a server is bounded as that of a periodic resource (I. Shin and I. Lee, "Periodic resource model for compositional
 real-time guarantees", RTSS 2003; R. I. Davis and A. Burns, "Hierarchical fixed priority pre-emptive scheduling", RTSS 2005).
@@ -15,17 +15,17 @@ from amalthea_uros.units import Time
 
 @dataclass(frozen=True, slots=True)
 class Full:
-    """All of the processor's time.
+    """All of the time of a core.
 
     Attributes
     ----------
-    rate : the share of the processor in the long run
+    rate : share of the core in the long run
     """
 
     rate: ClassVar[Fraction] = Fraction(1)
 
     def time_for(self, demand: Time) -> Time:
-        """The longest time until so much demand has been served."""
+        """Maximum time until the demand has been served."""
         return demand
 
 
@@ -35,7 +35,7 @@ class Budget:
 
     Attributes
     ----------
-    wait : the longest time without any supply, in front of the first budget
+    wait : maximum time without supply before the first budget
     """
 
     budget: Time
@@ -48,7 +48,7 @@ class Budget:
         return Fraction(self.budget, self.period)
 
     def time_for(self, demand: Time) -> Time:
-        """See `Full`; behind the first budget, one more gap comes with each further one that is needed."""
+        """See `Full`; each further budget that is needed adds a gap."""
         if demand <= 0:
             return 0
         gaps = -(-demand // self.budget) - 1

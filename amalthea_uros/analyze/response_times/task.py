@@ -1,4 +1,4 @@
-"""A process as the methods for response times know it."""
+"""A process as the methods for response times see it."""
 
 from __future__ import annotations
 
@@ -16,15 +16,16 @@ class Task:
 
     Attributes
     ----------
+    events : activations
     priority : higher numbers are served first
-    equal_priority : how tasks of its priority are served; the same for all of them
-    deadline : relative to the activation, for earliest deadline first
-    slice : length of a time slice, for round robin
+    equal_priority : how tasks of the same priority are served; equal for all of them
+    deadline : relative to the activation; used by EDF
+    slice : length of a time slice; used by round robin
     """
 
     name: str
-    arrivals: EventModel
-    cost: MultiframeDemand
+    events: EventModel
+    demand: MultiframeDemand
     priority: int = 0
     equal_priority: EqualPriority = EqualPriority.FIFO
     deadline: Time = 0

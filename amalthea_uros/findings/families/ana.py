@@ -1,4 +1,4 @@
-"""Findings of the response-time analysis."""
+"""Findings of the timing analysis."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ KINDS = (
         title="scheduler without a policy",
         severity=Severity.WARNING,
         rationale="Fixed-priority preemptive scheduling is assumed.",
-        remedy="Give the scheduler a definition that states its policy.",
+        remedy="Reference a scheduler definition with a policy, e.g. FixedPriorityPreemptive.",
     ),
     FindingKind(
         id="ANA002",
         title="scheduling that cannot be analysed",
         severity=Severity.WARNING,
         rationale=(
-            "There is no analysis for the policy, the hierarchy of schedulers, or a task on several cores. The "
-            "response times of the tasks concerned are unknown."
+            "The policy, the hierarchy of schedulers, or a task on several cores is not supported, so the response times "
+            "of these tasks, and of the tasks that depend on them, are unknown."
         ),
-        remedy="Use a supported policy, and give each task one core.",
+        remedy="Use a supported policy, and allocate each task to a single core.",
     ),
     FindingKind(
         id="ANA003",
-        title="semaphore without a supported protocol",
+        title="semaphore with an unsupported protocol",
         severity=Severity.WARNING,
         rationale=(
-            "The semaphore has no priority ceiling, or several cores or servers use it. It is analysed as if it "
-            "had a priority ceiling on one core."
+            "A semaphore without a priority ceiling is analysed as if it had one. The response times of tasks that share "
+            "a semaphore with other cores or servers are unknown."
         ),
         remedy="Use a priority ceiling protocol, and use the semaphore on one core only.",
     ),
@@ -38,40 +38,41 @@ KINDS = (
         title="process with unknown execution demand",
         severity=Severity.WARNING,
         rationale=(
-            "A loop, waiting for events, ticks without bounds or a core without a clock frequency make the "
-            "demand unbounded, so the response times of this core are unknown."
+            "Loops, waiting for events, ticks without bounds, or a core without a clock frequency make the demand "
+            "unbounded, so the response times of this process and of lower priorities on its core are unknown."
         ),
-        remedy="Give bounds for the ticks and loops, and the frequency of the core.",
+        remedy="Set bounds for ticks, avoid loops and waiting for events, and set the clock frequency of the core.",
     ),
     FindingKind(
         id="ANA005",
         title="process with an unknown activation pattern",
         severity=Severity.WARNING,
         rationale=(
-            "The process has no stimulus, or none that bounds its activations, so the response times of this core are unknown."
+            "The process has no stimulus, or its activations are unbounded, so the response times of this process and of "
+            "lower priorities on its core are unknown."
         ),
-        remedy="Give the process a stimulus with a minimum time between two activations.",
+        remedy="Add a stimulus with a minimum time between two activations.",
     ),
     FindingKind(
         id="ANA006",
-        title="overhead that is not taken into account",
+        title="overhead that is ignored",
         severity=Severity.WARNING,
         rationale=(
-            "The cost of this service of the operating system, or of a scheduler that runs on another core, is "
-            "missing in the results."
+            "The execution time of this operating system service, of a server runnable, or of a scheduler on another core "
+            "is not included in the results."
         ),
-        remedy="Add the cost to the execution times of the processes that use the service.",
+        remedy="Add the overhead to the execution times of the processes that use the service.",
     ),
     FindingKind(
         id="ANA007",
         title="activations that can be lost",
         severity=Severity.WARNING,
-        rationale="More jobs can be pending than the activation limit allows. Lost activations are not part of the bounds.",
+        rationale="More jobs can be pending than the activation limit allows. The bounds do not cover lost activations.",
         remedy="Raise the activation limit, or activate the task less often.",
     ),
     FindingKind(
         id="ANA008",
-        title="memory access of unknown cost",
+        title="memory access with unknown latency",
         severity=Severity.WARNING,
         rationale=(
             "The label is not mapped to a memory, or the core has no access element for the memory. The access "
@@ -83,7 +84,7 @@ KINDS = (
         id="ANA009",
         title="requirement that is not evaluated",
         severity=Severity.WARNING,
-        rationale="Only limits of times are evaluated.",
-        remedy="State the requirement as a limit of a time, or verify it in another way.",
+        rationale="Only time limits are evaluated.",
+        remedy="Use a time limit, or verify the requirement by other means.",
     ),
 )

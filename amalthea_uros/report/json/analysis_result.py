@@ -98,6 +98,6 @@ def _chain_json(chain: ChainResult, all_methods: bool) -> dict[str, Any]:
                 "method": value.method,
                 "source": value.source,
             }
-            for value in (chain.everything if all_methods else chain.values)
+            for value in (chain.all_values if all_methods else chain.values)
         ],
     }

@@ -7,7 +7,7 @@ from math import ceil
 
 from amalthea_uros.analyze.assignment import Proposal
 from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, RequirementResult, Verdict
-from amalthea_uros.analyze.sensitivity import GREATEST, Sensitivity
+from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
 from amalthea_uros.report.latencies import write_chains
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.analyze import AnalysisResult
@@ -18,7 +18,7 @@ _BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET)
 
 
 def write(result: AnalysisResult, terminal: Terminal) -> None:
-    """Write tables of loads, response times, chains and requirements, worst first, and what they rest on."""
+    """Write tables of loads, response times, chains and requirements, worst first, with methods and assumptions."""
     analysis = result.analysis
     _processors(terminal, analysis)
     _processes(terminal, analysis)
@@ -135,7 +135,7 @@ def _sensitivity(terminal: Terminal, found: Sensitivity | None) -> None:
 def _factor(factor: Fraction | None) -> str:
     if factor is None:
         return "none"
-    return f"{float(factor):.3f}" if factor < GREATEST else f"{GREATEST} or more"
+    return f"{float(factor):.3f}" if factor < MAX_FACTOR else f"{MAX_FACTOR} or more"
 
 
 def _proposal(terminal: Terminal, proposal: Proposal) -> None:

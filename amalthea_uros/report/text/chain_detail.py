@@ -16,7 +16,7 @@ def write(detail: ChainDetail, terminal: Terminal) -> None:
         terminal.line(f"  {route}")
     for sentence in filter(None, (chain.why, chain.reason)):
         terminal.line(f"  {sentence}")
-    values = chain.everything if detail.all_methods else chain.values
+    values = chain.all_values if detail.all_methods else chain.values
     if values:
         ordered = sorted(values, key=lambda value: list(Quantity).index(value.quantity))
         rows = [

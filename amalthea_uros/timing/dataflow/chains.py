@@ -1,8 +1,8 @@
-"""Event chains as sequences of events: containers and references unfolded, alternatives and joins side by side.
+"""Event chains as sequences of events: containers and references are unfolded, alternatives and joins become forks.
 
-Where INCHRON's importer drops or changes a chain, it is taken as it stands here: what is missing inside is left out, and where a
-segment starts elsewhere than the one before ended, both events are kept. Only a first segment that does not start with the chain,
-or a last one that does not end with it, has to give way, which is told.
+Chains are not changed as by INCHRON's importer: missing inner events are skipped, and if a segment does not start with the end of the
+previous one, both events are kept. Only the start of a first segment, or the end of a last one, that differs from that of the chain
+is ignored and reported.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from amalthea_uros.perf.events import Sequence as InSequence
 from amalthea_uros.perf.system import System
 
 #: A chain with more routes is not evaluated.
-MOST_ROUTES = 256
+MAX_ROUTES = 256
 
 
 class UnfoldError(Exception):
@@ -31,7 +31,7 @@ class Fork:
     ----------
     branches : sequences of events and further forks
     needed : how many of them have to complete
-    name : of the set of events that it stands for, if it is one
+    name : of the set of events that it represents, if any
     """
 
     branches: tuple[Unfolded, ...]
@@ -52,15 +52,15 @@ def unfold(chain: EventChain, system: System) -> tuple[Unfolded, tuple[str, ...]
     """
     unfolding = _Unfolding(system)
     found = unfolding.item(chain, (chain.name,))
-    if routes(found) > MOST_ROUTES:
-        raise UnfoldError(f"it has more than {MOST_ROUTES} routes")
+    if routes(found) > MAX_ROUTES:
+        raise UnfoldError(f"it has more than {MAX_ROUTES} routes")
     if any(len(events) < 2 for events in sequences(found)):
-        raise UnfoldError("it has no stimulus or no response, and nothing inside that could stand for it")
+        raise UnfoldError("it has no stimulus or no response, and no segment that defines one")
     return found, tuple(unfolding.left_out)
 
 
 def routes(unfolded: Unfolded) -> int:
-    """How many ways through a chain there are."""
+    """The number of ways through a chain."""
     product = 1
     for part in unfolded:
         if isinstance(part, Fork):
@@ -102,11 +102,11 @@ class _Unfolding:
         if isinstance(item, Segment):
             return self.item(item, above)
         if item.chain in above:
-            circle = " -> ".join((*above[above.index(item.chain) :], item.chain))
-            raise UnfoldError(f"it is part of itself: {circle}")
+            cycle = " -> ".join((*above[above.index(item.chain) :], item.chain))
+            raise UnfoldError(f"it contains itself: {cycle}")
         chain = self.system.chains.get(item.chain)
         if chain is None:
-            raise UnfoldError(f"its part {item.chain!r} is not in the model")
+            raise UnfoldError(f"its part {item.chain!r} is not defined in the model")
         return self.item(chain, (*above, chain.name))
 
     def _event(self, name: str | None) -> Unfolded:
@@ -114,7 +114,7 @@ class _Unfolding:
             return ()
         event = self.system.events_by_name.get(name)
         if event is None:
-            raise UnfoldError(f"the event {name!r} is not in the model")
+            raise UnfoldError(f"the event {name!r} is not defined in the model")
         if not isinstance(event, EventSet):
             return (name,)
         parts = tuple(self._event(inner) for inner in event.events)
@@ -122,7 +122,7 @@ class _Unfolding:
 
 
 def _joined(parts: Iterable[str | Fork]) -> Unfolded:
-    """Without events that come twice in a row; those at the ends of the branches of a fork are told apart from it."""
+    """The parts without consecutive duplicates; events at the ends of branches are not repeated before or after the fork."""
     found: list[str | Fork] = []
     for part in parts:
         if found and (found[-1] == part or _is_same_set(found[-1], part)):
@@ -136,12 +136,12 @@ def _joined(parts: Iterable[str | Fork]) -> Unfolded:
 
 
 def _is_same_set(one: str | Fork, other: str | Fork) -> bool:
-    """Whether both stand for a set with which one part of a chain ends and the next one starts."""
+    """Whether both represent the set of events at the end of one part of a chain and the start of the next one."""
     return isinstance(one, Fork) and isinstance(other, Fork) and bool(one.name) and one.name == other.name
 
 
 def _without(fork: Fork, event: str, at_start: bool) -> Fork:
-    """A fork whose branches do not repeat the event in front of it, or behind it."""
+    """A fork whose branches do not repeat the event before or after it."""
 
     def trimmed(branch: Unfolded) -> Unfolded:
         if at_start:
@@ -161,9 +161,9 @@ def sequences(unfolded: Unfolded) -> list[tuple[str, ...]]:
 
 
 def combined(unfolded: Unfolded, value: Mapping[tuple[str, ...], int | None], before: tuple[str, ...] = ()) -> int | None:
-    """The value of a chain of which those of all ways through are known; None stands for more than any.
+    """The value of a chain from those of all ways through it; None means unbounded.
 
-    Of a fork the branches are sorted, and the one counts with which enough of them have completed.
+    The branches of a fork are sorted by value; the value of the fork is that of the branch with which enough of them have completed.
     """
     for index, part in enumerate(unfolded):
         if isinstance(part, Fork):

@@ -42,11 +42,11 @@ from amalthea_uros.timing.dataflow.positions import ActivityPosition, TooComplex
 
 
 class UnresolvedError(Exception):
-    """An event is not found, or there is no analysis for it; the text says why."""
+    """An event cannot be located in a process; the text says why."""
 
 
 class JobPhase(Enum):
-    """A moment of a job, in the order in which they come."""
+    """A phase of a job, in order."""
 
     ACTIVATION = 0
     START = 1
@@ -97,7 +97,7 @@ class EventLocator:
 
         Raises
         ------
-        UnresolvedError : that is too much to be followed.
+        UnresolvedError : it executes too many activities.
         """
         if process not in self._positions:
             try:
@@ -116,11 +116,11 @@ class EventLocator:
 
         Raises
         ------
-        UnresolvedError : it is not found, or there is no analysis for it.
+        UnresolvedError : it does not occur in a process, or cannot be analysed.
         """
         found = list(self._occurrences(event)) or self._guess(event)
         if not found:
-            raise UnresolvedError(f"nothing in the model makes the event {event.name!r} occur")
+            raise UnresolvedError(f"no activity in the model raises the event {event.name!r}")
         return found
 
     def _occurrences(self, event: Event) -> Iterable[EventOccurrence]:
@@ -128,23 +128,23 @@ class EventLocator:
             case ProcessEvent():
                 when = _PROCESS_PHASES.get(event.change) if event.change else None
                 if when is None:
-                    raise UnresolvedError(f"{event.name!r}: {event.change or 'any change'} is no moment that each job has once")
+                    raise UnresolvedError(_no_single_time(event))
                 return [EventOccurrence(process, when) for process in self._processes(event.process)]
             case StimulusEvent():
                 activated = [p for p in self.system.processes.values() if event.stimulus in p.stimuli]
                 return [EventOccurrence(process, JobPhase.ACTIVATION) for process in activated]
             case RunnableEvent():
                 if event.change not in (RunnableChange.START, RunnableChange.TERMINATE):
-                    raise UnresolvedError(f"{event.name!r}: {event.change or 'any change'} is no moment that each job has once")
+                    raise UnresolvedError(_no_single_time(event))
                 when = JobPhase.BEFORE if event.change is RunnableChange.START else JobPhase.AFTER
                 return [EventOccurrence(p.process, when, p) for p in self._within(event.process) if raises(p, event)]
             case CustomEvent() | LabelEvent() | ModeLabelEvent() | ChannelEvent() | SemaphoreEvent():
                 process = None if isinstance(event, CustomEvent) else event.process
                 return [EventOccurrence(p.process, JobPhase.AFTER, p) for p in self._within(process) if raises(p, event)]
-        raise UnresolvedError(f"there is no analysis for the event {event.name!r}")
+        raise UnresolvedError(f"events such as {event.name!r} cannot be analysed")
 
     def _guess(self, event: Event) -> list[EventOccurrence]:
-        """Where an access is assumed of which the model has the event only."""
+        """Where an access is assumed if the model contains only its event."""
         if not isinstance(event, LabelEvent | ModeLabelEvent | ChannelEvent | SemaphoreEvent):
             return []
         is_read = event.change in (LabelChange.READ, ModeChange.READ, ChannelChange.RECEIVE, SemaphoreChange.LOCK)
@@ -164,7 +164,7 @@ class EventLocator:
 
     def _processes(self, name: str | None) -> list[Process]:
         if name is None:
-            raise UnresolvedError("an event names no process")
+            raise UnresolvedError("an event has no process")
         return [self.system.processes[name]] if name in self.system.processes else []
 
     def _within(self, process: str | None) -> Iterable[ActivityPosition]:
@@ -178,6 +178,13 @@ _PROCESS_PHASES = {
     ProcessChange.START: JobPhase.START,
     ProcessChange.TERMINATE: JobPhase.END,
 }
+
+
+def _no_single_time(event: ProcessEvent | RunnableEvent) -> str:
+    kind = f"{event.change} events do not" if event.change else "the event has no event type, so it does not"
+    return f"{event.name!r}: {kind} mark a single time in each job"
+
+
 _MODES = {
     ModeChange.READ: ModeOperation.READ,
     ModeChange.WRITE: ModeOperation.SET,
@@ -187,7 +194,7 @@ _MODES = {
 
 
 def raises(position: ActivityPosition, event: Event) -> bool:
-    """Whether an activity makes an event occur; what an event leaves open matches everything."""
+    """Whether an activity raises an event; unset features of the event match everything."""
     match event, position.activity:
         case CustomEvent(name=name), RaiseEvent(event=raised):
             return name == raised

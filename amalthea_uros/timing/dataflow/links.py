@@ -1,6 +1,6 @@
-"""What links processes: data that one writes and another reads, triggers, events and server calls.
+"""The links between processes: data that one writes and another reads, triggers, events and server calls.
 
-The one answer to the question what takes an effect from one process to another: chains, paths and rules ask it.
+Chains, paths and rules all use these links.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _Accesses = dict[str, list[ActivityPosition]]
 
 
 class LinkKind(StrEnum):
-    """What takes the effect from one event to the next."""
+    """How an event causes the next one."""
 
     JOB = "the same job"
     NEXT_JOB = "the next job"
@@ -46,12 +46,12 @@ class LinkKind(StrEnum):
     TOPIC = "a topic"
     OS_EVENT = "an OS event"
     SERVER_CALL = "a server call"
-    NOTHING = "nothing"
+    NOTHING = "no link"
 
 
 #: Without a link, a chain is evaluated as if there were a variable.
 GAPS = (LinkKind.NOTHING, LinkKind.NEXT_JOB)
-#: It is not known when in the jobs the effect is passed on; or, with a topic, how long it is under way.
+#: Links for which the time of the effect in the jobs is unknown, or the time that a message takes.
 UNTIMED = (*GAPS, LinkKind.OS_EVENT, LinkKind.SERVER_CALL, LinkKind.TOPIC)
 
 
@@ -73,7 +73,7 @@ class Link:
 
 @dataclass(slots=True)
 class Dataflow:
-    """Where jobs do what, and what links them; everything is looked up once."""
+    """The positions of activities in jobs, and the links between jobs; results are cached."""
 
     system: System
     events: EventLocator = field(init=False)
@@ -90,7 +90,7 @@ class Dataflow:
                 return self._returning(first, then) or Link(LinkKind.JOB)
             return self.data(first, then) or Link(LinkKind.NEXT_JOB)
         is_activation = then.when is JobPhase.ACTIVATION and first.when is JobPhase.ACTIVATION
-        # Of two activations neither causes the other: it takes a job to trigger something.
+        # An activation cannot cause another activation: only a job can trigger.
         trigger = None if is_activation else self.trigger(first.process.name, then.process.name)
         return trigger or self.data(first, then) or self._synchronisation(first, then) or Link(LinkKind.NOTHING)
 

@@ -30,7 +30,7 @@ MAX_PROCESSES = 12
 
 
 class UnknownEndError(Exception):
-    """There is nothing of a name at which a path could start or end."""
+    """A path cannot start or end at a name, because it is undefined."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +59,8 @@ def _end(process: str, runnable: str | None, is_start: bool) -> Event:
     if runnable is None:
         change = ProcessChange.START if is_start else ProcessChange.TERMINATE
         return ProcessEvent(name=f"{process}_{change}", process=process, change=change)
-    moment = RunnableChange.START if is_start else RunnableChange.TERMINATE
-    return RunnableEvent(name=f"{process}_{runnable}_{moment}", runnable=runnable, change=moment, process=process)
+    edge = RunnableChange.START if is_start else RunnableChange.TERMINATE
+    return RunnableEvent(name=f"{process}_{runnable}_{edge}", runnable=runnable, change=edge, process=process)
 
 
 def paths(system: System, start: str, end: str) -> list[Path]:

@@ -22,7 +22,7 @@ from amalthea_uros.perf.software import (
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 
-#: Calls that multiply, or nest deeper, are not followed.
+#: Processes with more activities, or deeper calls, are not analysed.
 MAX_POSITIONS = 200_000
 MAX_CALL_DEPTH = 100
 
@@ -31,7 +31,7 @@ Nesting: TypeAlias = tuple[tuple[tuple[Activity, ...], int], ...]
 
 
 class TooComplexError(Exception):
-    """A process executes too many activities to be followed; the text says which."""
+    """A process executes too many activities to be analysed; the text says which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,16 +63,16 @@ class ActivityPosition:
 
     @property
     def before(self) -> tuple[Activity, ...]:
-        """What a job has done when it reaches this position."""
+        """The activities that a job has executed when it reaches this position."""
         return tuple(activity for activities, index in self.outer for activity in activities[:index])
 
 
 def positions(process: Process, system: System) -> list[ActivityPosition]:
-    """Everything that the jobs of a process may do, in order; calls are followed by what the runnables do.
+    """All activities of the jobs of a process, in order; a call is followed by the activities of its runnable.
 
     Raises
     ------
-    TooComplexError : its calls multiply to more than `MAX_POSITIONS` activities, or nest deeper than `MAX_CALL_DEPTH`.
+    TooComplexError : it has more than `MAX_POSITIONS` activities, or calls nested deeper than `MAX_CALL_DEPTH`.
     """
     walk = _Walk(process, system)
     walk.through(process.activities, _Branch())
@@ -81,7 +81,7 @@ def positions(process: Process, system: System) -> list[ActivityPosition]:
 
 @dataclass(frozen=True, slots=True)
 class _Branch:
-    """What holds for all activities of a list."""
+    """The common properties of all activities of a list."""
 
     runnable: str | None = None
     outer: Nesting = ()
@@ -102,14 +102,14 @@ class _Walk:
             outer = (*branch.outer, (activities, index))
             counters, times = branch.counters, branch.times
             if isinstance(activity, Call | LabelAccess):
-                times *= _most(activity.times)
+                times *= _max_times(activity.times)
             if isinstance(activity, Call) and activity.counter is not None:
                 counters = (*counters, activity.counter)
             conditions = _conditions(activity, self.system)
             place = len(self.found)
             if place >= MAX_POSITIONS or len(branch.above) > MAX_CALL_DEPTH:
-                raise TooComplexError(f"the calls of {self.process.name!r} are too many or nested too deep to be followed")
-            # Its last number is known after what it contains.
+                raise TooComplexError(f"{self.process.name!r} has too many calls, or too deeply nested calls, to be analysed")
+            # Its last number is known only after its inner activities.
             self.found.append(None)
             if isinstance(activity, Call):
                 called = self.system.runnables.get(activity.runnable)
@@ -156,7 +156,7 @@ def _conditions(activity: Activity, system: System) -> tuple[Condition, ...]:
     return tuple(condition for condition in found if condition is not None)
 
 
-def _most(times: Count | float | None) -> int:
+def _max_times(times: Count | float | None) -> int:
     if times is None:
         return 1
     return times.most if isinstance(times, Count) else ceil(times)

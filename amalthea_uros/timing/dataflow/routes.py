@@ -1,7 +1,7 @@
-"""Which occurrences of its events a chain means: those between which something takes the effect on.
+"""Routes of a chain: the occurrences of its events that are linked to each other.
 
-Each event is looked for in the processes; where several occurrences are possible, those are taken that are linked. The names of
-segments do not matter: what counts is which label one process writes and the other one reads.
+Each event is located in the processes; if several occurrences are possible, those that are linked are selected. The names of segments
+are irrelevant: links are labels that one process writes and another one reads, triggers and OS events.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Route:
 
     @property
     def is_timed(self) -> bool:
-        """Whether it is known when each effect is passed on."""
+        """Whether the times of all links are known."""
         return not any(link.kind in UNTIMED for link in self.links)
 
 
@@ -47,15 +47,15 @@ def is_linked(first: Event, then: Event, dataflow: Dataflow) -> bool:
 
 
 def routes(events: Sequence[Event], dataflow: Dataflow) -> list[Route]:
-    """The ways that a sequence of events can mean, those with the fewest gaps.
+    """The possible routes of a sequence of events, reduced to those with the fewest gaps.
 
     Raises
     ------
-    UnresolvedError : an event is not found, or there is no analysis for it.
+    UnresolvedError : an event cannot be located.
     """
     choices = [dataflow.events.of(event) for event in events]
     if prod(map(len, choices)) > MAX_CANDIDATES:
-        raise UnresolvedError("its events fit too many processes; they should name theirs")
+        raise UnresolvedError("its events occur in too many processes; set the process of each event")
     names = tuple(event.name for event in events)
     found = [
         Route(names, occurrences, tuple(dataflow.between(first, then) for first, then in pairwise(occurrences)))

@@ -1,4 +1,4 @@
-"""Event models made of others: several sources, several events for one, every n-th event only, another unit of time."""
+"""Event models derived from others: several sources, several events for each one, every n-th event, another unit of time."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class AggregatedEventModel(EventModel):
 
     @cached_property
     def _distances(self) -> dict[int, Time]:
-        """Results so far; busy windows ask for the same ones again and again."""
+        """Cached results; busy windows need the same ones many times."""
         return {}
 
     def _delta_min(self, count: int) -> Time:
@@ -53,13 +53,13 @@ class AggregatedEventModel(EventModel):
 
 
 def aggregated(sources: tuple[EventModel, ...]) -> EventModel:
-    """The events of all sources; a single source stays as it is."""
+    """The events of all sources; the same model for a single source."""
     return sources[0] if len(sources) == 1 else AggregatedEventModel(sources)
 
 
 @dataclass(frozen=True)
 class Multiplied(EventModel):
-    """Several events for each one of another model, at the same moment in the worst case."""
+    """Several events for each event of another model, simultaneous in the worst case."""
 
     events: EventModel
     factor: int

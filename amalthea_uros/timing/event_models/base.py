@@ -1,4 +1,4 @@
-"""What an event model is: bounds on how many events can occur in a window (eta+), and how close together they can be (delta-).
+"""The protocol of event models: the maximum number of events in a window (eta+), and the minimum distance of events (delta-).
 
 After K. Richter, "Compositional Scheduling Analysis Using Standard Event Models", TU Braunschweig, 2005. A window is half open: an
 event at its end does not count.

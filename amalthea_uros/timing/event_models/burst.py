@@ -1,4 +1,4 @@
-"""Bursts, and other lists of events that repeat."""
+"""Bursts and other repeating lists of events."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from amalthea_uros.units import Time
 
 @dataclass(frozen=True)
 class Pattern(EventModel):
-    """A list of events that repeats with the period.
+    """A list of events that repeats with a period.
 
     Attributes
     ----------
@@ -27,8 +27,8 @@ class Pattern(EventModel):
         """See `EventModel`."""
         if count < 2:
             return 0
-        rounds, steps = divmod(count - 1, len(self.times))
-        return rounds * self.period + self._shortest[steps]
+        rounds, distances = divmod(count - 1, len(self.times))
+        return rounds * self.period + self._shortest[distances]
 
     def eta_plus(self, window: Time) -> int:
         """See `EventModel`."""
@@ -39,10 +39,10 @@ class Pattern(EventModel):
 
     @cached_property
     def _shortest(self) -> list[Time]:
-        """Minimum time that a number of steps takes, for less than one period."""
+        """Minimum time of so many consecutive distances, for less than one period."""
         twice = (*self.times, *(time + self.period for time in self.times))
         length = len(self.times)
-        return [min(twice[i + steps] - twice[i] for i in range(length)) for steps in range(length)]
+        return [min(twice[i + distances] - twice[i] for i in range(length)) for distances in range(length)]
 
     @property
     def rate(self) -> Fraction:

@@ -16,34 +16,34 @@ class Curve(EventModel):
 
     Attributes
     ----------
-    distances : (count, minimum time from the first to the last of so many consecutive events)
+    distances : (count, minimum time from the first to the last of that many consecutive events)
     """
 
     distances: tuple[tuple[int, Time], ...]
 
     @cached_property
     def _densest(self) -> tuple[int, Time]:
-        """The entry that bounds the long-run rate, as (steps, time)."""
+        """The entry that bounds the long-run rate, as (count - 1, time)."""
         return max(((count - 1, time) for count, time in self.distances), key=lambda entry: Fraction(entry[1], entry[0]))
 
     def delta_min(self, count: int) -> Time:
         """See `EventModel`; distances add up over consecutive groups of events."""
-        steps_at_once, time = self._densest
-        # Beyond the first rounds the densest entry repeats; the rest is the best combination of entries.
-        rounds, rest = divmod(max(0, count - 1), steps_at_once)
+        spacings, time = self._densest
+        # The densest entry repeats; the rest is the best combination of entries.
+        rounds, rest = divmod(max(0, count - 1), spacings)
         return rounds * time + self._combined[rest]
 
     @cached_property
     def _combined(self) -> list[Time]:
-        """Minimum time of so many steps, for fewer steps than the densest entry has."""
+        """Minimum time of so many spacings between events, for fewer than the densest entry has."""
         best = [0]
         for reached in range(1, self._densest[0]):
             usable = [(count - 1, time) for count, time in self.distances if count - 1 <= reached]
-            best.append(max((best[reached - step] + time for step, time in usable), default=best[reached - 1]))
+            best.append(max((best[reached - spacing] + time for spacing, time in usable), default=best[reached - 1]))
         return best
 
     @property
     def rate(self) -> Fraction:
         """See `EventModel`."""
-        steps, time = self._densest
-        return Fraction(steps, time) if time else Fraction(NEVER)
+        spacings, time = self._densest
+        return Fraction(spacings, time) if time else Fraction(NEVER)

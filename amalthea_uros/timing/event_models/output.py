@@ -37,15 +37,15 @@ class Delayed(EventModel):
 class OutputEventModel(EventModel):
     """The completions of the jobs of a task.
 
-    Jobs of one task end at least their minimum execution time apart. The q-th job of a busy window ends at its completion at the
-    latest; the one `count` - 1 later is activated after delta- at the earliest and takes its minimum execution time. That bounds how
-    close two completions can be (S. Schliecker, J. Rox, M. Ivers, R. Ernst, "Providing accurate event models for the analysis of
-    heterogeneous multiprocessor systems", CODES+ISSS 2008).
+    Jobs of a task end at least their minimum execution time apart. The q-th job of a busy window ends no later than its entry in
+    `completions`; the job `count` - 1 after it is activated no earlier than delta- and takes at least its minimum execution time.
+    That bounds the distance of two completions (S. Schliecker, J. Rox, M. Ivers, R. Ernst, "Providing accurate event models for the
+    analysis of heterogeneous multiprocessor systems", CODES+ISSS 2008).
 
     Attributes
     ----------
     completions : latest completions of the jobs of the longest busy window, from its start
-    bcet : minimum execution time of a job; no response time is shorter, not even that of the first job of a system
+    bcet : minimum execution time of a job, which is a lower bound of all response times
     """
 
     events: EventModel
@@ -74,7 +74,7 @@ class OutputEventModel(EventModel):
 
     @cached_property
     def _distances(self) -> dict[int, Time]:
-        """Results so far; busy windows ask for the same ones again and again."""
+        """Cached results; busy windows need the same ones many times."""
         return {}
 
     @property

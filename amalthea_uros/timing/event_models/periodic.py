@@ -1,4 +1,4 @@
-"""Events of known rate: periodic, sporadic, and events that occur once."""
+"""Periodic and sporadic events, and events that occur once."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Periodic(EventModel):
 
 @dataclass(frozen=True)
 class Sporadic(Periodic):
-    """Events that are as dense as periodic ones at most, and may also be less frequent.
+    """Events with a minimum distance that can also be less frequent.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class Sporadic(Periodic):
 
 
 def is_strictly_periodic(model: EventModel) -> bool:
-    """Whether every event of the period occurs, with or without jitter."""
+    """Whether an event occurs in every period, with or without jitter."""
     return isinstance(model, Periodic) and not isinstance(model, Sporadic)
 
 

@@ -14,14 +14,14 @@ from amalthea_uros.timing.event_models.periodic import Periodic, Single, Sporadi
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.units import SECOND, Frequency
 
-#: Longer lists of occurrences are not considered.
+#: Stimuli with more occurrences are not analysed.
 MAX_OCCURRENCES = 10_000
 
 
 def event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | None:
-    """The event model of a stimulus from outside; None if its rate is unbounded, or another process fires it.
+    """The event model of an external stimulus; None if its rate is unbounded, or if it is triggered by processes.
 
-    Times beyond what can be counted (13 days) are not bounds either.
+    Times of more than 13 days exceed the supported range and are treated as unbounded.
     """
     found = _event_model_of(stimulus, system)
     match found:
@@ -44,19 +44,18 @@ def _event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | Non
             earliest, latest = lowest(jitter), highest(jitter)
             return None if earliest is None or latest is None else Periodic(period, max(0, latest - earliest), distance or 0)
         case perf.RelativePeriodic(distance=distance):
-            least = lowest(distance)
-            longest = highest(distance)
-            if not least:
+            shortest, longest = lowest(distance), highest(distance)
+            if not shortest:
                 return None
-            return Periodic(least) if least == longest else Sporadic(least, longest=longest)
+            return Periodic(shortest) if shortest == longest else Sporadic(shortest, longest=longest)
         case perf.Synthetic(period=period, times=times) if period > 0 and times:
-            # Times beyond the period fall into later ones, where they meet those of the next rounds.
+            # Times beyond the period coincide with those of later periods.
             return Pattern(period, tuple(sorted(time % period for time in times)))
         case perf.Burst(period=period, length=length, distance=distance, count=count) if period > 0:
-            happening = min(count, -(-max(length, 1) // distance)) if distance > 0 else count
-            if not 0 < happening <= MAX_OCCURRENCES or (happening - 1) * distance >= period:
+            occurrences = min(count, -(-max(length, 1) // distance)) if distance > 0 else count
+            if not 0 < occurrences <= MAX_OCCURRENCES or (occurrences - 1) * distance >= period:
                 return None
-            return Pattern(period, tuple(index * distance for index in range(happening)))
+            return Pattern(period, tuple(index * distance for index in range(occurrences)))
         case perf.Single():
             return Single()
         case perf.ArrivalCurve(points=points):
@@ -66,14 +65,14 @@ def _event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | Non
             highest_rate = highest(rate)
             return Sporadic(max(1, int(step / Fraction(highest_rate)))) if highest_rate else None
         case perf.VariableRate(scenario=perf.Scenario(clock=name, recurrence=recurrence)) if recurrence > 0:
-            frequency = _greatest(next((clock for clock in system.stimuli.clocks if clock.name == name), None))
-            # An occurrence whenever the integral of the frequency has grown by the recurrence.
-            least = int(Fraction(recurrence) * SECOND / frequency) if frequency else 0
-            return Sporadic(least) if least else None
+            frequency = _max_frequency(next((clock for clock in system.stimuli.clocks if clock.name == name), None))
+            # An event occurs whenever the integral of the frequency has increased by the recurrence.
+            shortest = int(Fraction(recurrence) * SECOND / frequency) if frequency else 0
+            return Sporadic(shortest) if shortest else None
     return None
 
 
-def _greatest(clock: perf.Clock | None) -> Frequency | None:
+def _max_frequency(clock: perf.Clock | None) -> Frequency | None:
     match clock:
         case perf.ClockFunction(lowest=lowest, swing=swing):
             return lowest + swing

@@ -70,8 +70,8 @@ def built(tasks, chain):
     reads = {then: f"L{first}" for first, then in pairwise(chain)}
     rows = []
     for task in tasks:
-        before, between, behind = (ticks(worst, best) if worst > best else ticks(worst) for best, worst in task.parts)
-        body = [before, *([read(reads[task.name])] if task.name in reads else []), between, write(f"L{task.name}"), behind]
+        before, between, after = (ticks(worst, best) if worst > best else ticks(worst) for best, worst in task.parts)
+        body = [before, *([read(reads[task.name])] if task.name in reads else []), between, write(f"L{task.name}"), after]
         if task.triggers:
             body.append(Trigger(stimulus=f"go {task.triggers}"))
         rows.append((task.name, task.period, body, task.core, task.offset))
@@ -111,13 +111,13 @@ def run(tasks, until, random, communication):
             if job not in here or job["task"].preemption is not Preemption.NON_PREEMPTIVE:
                 job = min(here, key=lambda job: job["rank"])
             running[core] = job
-            times, (before, between, behind) = job["times"], job["spent"]
+            times, (before, between, after) = job["times"], job["spent"]
             times.setdefault("start", now)
             if job["done"] == before:
                 times.setdefault("read", now)
             if before + between == 0:
                 times.setdefault("write", now)
-            total = before + between + behind
+            total = before + between + after
             if total:
                 job["done"] += 1
             if job["done"] == before + between:
@@ -142,36 +142,36 @@ def moments(job, times, end, communication):
     return release, release, release + period, release + period
 
 
-def reactions(tracks, triggered):
+def reactions(chain_times, triggered):
     """(start before, start, end): from each job of the first task to the job that first uses its data, or that it triggers."""
-    first, *others = tracks
+    first, *others = chain_times
     for number in range(1, len(first)):
         job, (start, _, written, end) = number, first[number]
-        for track, is_triggered in zip(others, triggered, strict=True):
-            later = [job] if is_triggered else [i for i, (_, r, _, _) in enumerate(track) if r >= written]
-            if not later or later[0] >= len(track):
+        for times, is_triggered in zip(others, triggered, strict=True):
+            later = [job] if is_triggered else [i for i, (_, r, _, _) in enumerate(times) if r >= written]
+            if not later or later[0] >= len(times):
                 return
             job = later[0]
-            _, _, written, end = track[job]
+            _, _, written, end = times[job]
         yield first[number - 1][0], start, end
 
 
-def ages(tracks, triggered):
+def ages(chain_times, triggered):
     """(start, end, next end): from each job of the last task back to the one of which it uses the data, or that triggers it."""
-    *others, last = tracks
+    *others, last = chain_times
     for number in range(len(last) - 1):
         job, (begin, reading, _, end) = number, last[number]
-        for track, is_triggered in zip(reversed(others), reversed(triggered), strict=True):
-            earlier = [job] if is_triggered else [i for i, (_, _, w, _) in enumerate(track) if w <= reading]
+        for times, is_triggered in zip(reversed(others), reversed(triggered), strict=True):
+            earlier = [job] if is_triggered else [i for i, (_, _, w, _) in enumerate(times) if w <= reading]
             if not earlier:
                 break
             job = earlier[-1]
-            begin, reading, _, _ = track[job]
+            begin, reading, _, _ = times[job]
         else:
             yield begin, end, last[number + 1][3]
 
 
-def triggered_hops(tasks, chain):
+def triggered_links(tasks, chain):
     triggers = {(task.name, task.triggers) for task in tasks}
     return [link in triggers for link in pairwise(chain)]
 
@@ -188,17 +188,17 @@ def check(drawn, communication):
     steady_state_start = 40
     for seed in range(4):
         jobs = run(tasks, 260, Random(seed), communication)
-        tracks = [jobs[name] for name in chain]
-        for before, start, end in reactions(tracks, triggered_hops(tasks, chain)):
+        chain_times = [jobs[name] for name in chain]
+        for before, start, end in reactions(chain_times, triggered_links(tasks, chain)):
             if before >= steady_state_start:
                 assert end - start <= values["max_reduced_reaction_time"]
                 assert end - start >= values.get("min_first_to_first", 0)
                 assert end - before <= values.get("max_reaction_time", end)
-        for begin, end, behind in ages(tracks, triggered_hops(tasks, chain)):
+        for begin, end, overwritten in ages(chain_times, triggered_links(tasks, chain)):
             if begin >= steady_state_start:
                 assert end - begin <= values["max_reduced_data_age"]
                 assert end - begin >= values.get("min_last_to_last", 0)
-                assert behind - begin <= values.get("max_data_age", behind)
+                assert overwritten - begin <= values.get("max_data_age", overwritten)
 
 
 ALWAYS = [Preemption.PREEMPTIVE]
@@ -245,13 +245,19 @@ def test_constant_execution_times_are_met_exactly(communication, drawn):
     result, values, claims, _ = evaluate(built(tasks, chain), communication=communication)
     assert claims == {"exact"}, result.why
     jobs = run(tasks, 400, Random(0), communication)
-    tracks = [jobs[name] for name in chain]
+    chain_times = [jobs[name] for name in chain]
     found = [
-        (end - before, end - start) for before, start, end in reactions(tracks, triggered_hops(tasks, chain)) if before >= 100
+        (end - before, end - start)
+        for before, start, end in reactions(chain_times, triggered_links(tasks, chain))
+        if before >= 100
     ]
     assert max(found)[0] == values["max_reaction_time"]
     assert max(reduced for _, reduced in found) == values["max_reduced_reaction_time"]
     assert min(reduced for _, reduced in found) == values["min_first_to_first"]
-    aged = [(behind - begin, end - begin) for begin, end, behind in ages(tracks, triggered_hops(tasks, chain)) if begin >= 100]
+    aged = [
+        (overwritten - begin, end - begin)
+        for begin, end, overwritten in ages(chain_times, triggered_links(tasks, chain))
+        if begin >= 100
+    ]
     assert max(aged)[0] == values["max_data_age"]
     assert max(reduced for _, reduced in aged) == values["max_reduced_data_age"]

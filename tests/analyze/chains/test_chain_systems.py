@@ -1,4 +1,4 @@
-"""Chains of whole systems: what carries the effect, when it is read and written, and what is told where nothing is known."""
+"""Chains of whole systems: links between events, read and write times, and reasons of unknown results."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -86,8 +86,8 @@ def system(tasks, events, chains=None, stimuli=(), runnables=(), cores=("core",)
         for core in cores
     )
     names = [event.name for event in events]
-    steps = tuple(Segment(stimulus=first, response=then) for first, then in pairwise(names))
-    whole = EventChain(name="chain", stimulus=names[0], response=names[-1], items=Sequence(steps))
+    segments = tuple(Segment(stimulus=first, response=then) for first, then in pairwise(names))
+    whole = EventChain(name="chain", stimulus=names[0], response=names[-1], items=Sequence(segments))
     return System(
         hardware=Hardware(clocks=(Clock(name="clock", frequency=Fraction(10**12, unit)),), structures=structures),
         os=Os(
@@ -174,41 +174,41 @@ class TestTheThesis:
 
     def test_over_all_phases_of_the_message(self):
         system = describe(self.SAMPLE).system
-        _, values, claims, _ = evaluate(system, any_phase=True)
+        _, values, claims, _ = evaluate(system, all_phases=True)
         assert claims == {"exact"}
-        # By hand: taken in the tick of Message_Factor 1000 + 16; taken in the tick behind it, up to the long job 20 ticks later.
+        # By hand: taken in the tick of Message_Factor 1000 + 16; taken in the tick after it, up to the long job 20 ticks later.
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (1016, 20029)
-        # Ticks 0 to 19 behind Message_Factor: 20 in steps of one, of which each ends at 16 or, where it meets a message, at 29.
+        # Ticks 0 to 19 after Message_Factor: 20 in steps of one, each of which ends at 16 or, where it meets a message, at 29.
         assert values["mean_first_to_first"] == pytest.approx(sum(range(1, 21)) * 1000 / 20 + 16 + 13 / 20)
         assert (values["min_last_to_last"], values["max_reduced_data_age"]) == (1016, 39016)
 
     @pytest.mark.parametrize(
-        ("start", "end", "least", "most"),
+        ("start", "end", "minimum", "maximum"),
         [(START, END, 1016, 20029), (END, END, 991, 20004), (END, ACTIVATION, 975, 19975)],
     )
-    def test_other_end_points(self, start, end, least, most):
+    def test_other_end_points(self, start, end, minimum, maximum):
         system = describe(self.SAMPLE).system
         events = (at("Executor_Task", start), at("Message_Factor", END), at("Control_Function", end))
         segments = tuple(Segment(stimulus=a.name, response=b.name) for a, b in pairwise(events))
         chain = EventChain(name="c", stimulus=events[0].name, response=events[-1].name, items=Sequence(segments))
         system = replace(system, events=Events(events=events, chains=(chain,)))
-        _, values, _, _ = evaluate(system, any_phase=True)
-        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (least, most)
+        _, values, _, _ = evaluate(system, all_phases=True)
+        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (minimum, maximum)
 
     def test_within_five_per_cent_of_what_was_measured(self):
-        _, values, _, _ = evaluate(describe(self.SAMPLE).system, any_phase=True)
+        _, values, _, _ = evaluate(describe(self.SAMPLE).system, all_phases=True)
         measured = {"min_first_to_first": 970, "mean_first_to_first": 10320, "max_reduced_reaction_time": 19978}
         for quantity, value in measured.items():
             assert abs(values[quantity] - value) / value < 0.05
 
     def test_logical_execution_times(self):
-        _, values, claims, _ = evaluate(describe(self.SAMPLE).system, any_phase=True, communication=Communication.LET)
+        _, values, claims, _ = evaluate(describe(self.SAMPLE).system, all_phases=True, communication=Communication.LET)
         assert claims == {"exact"}
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (22000, 41000)
 
 
 def producer_and_consumer(*chain, unit=US, **more):
-    """A producer of 2 + 3 that writes behind its 2, each 10; a consumer of 4 + 1 each 20 that reads behind its 4."""
+    """A producer of 2 + 3 that writes after its 2, every 10; a consumer of 4 + 1 every 20 that reads after its 4."""
     runnables = [
         Runnable(name="make", activities=(ticks(2), write("L"))),
         Runnable(name="rest", activities=(ticks(3),)),
@@ -253,7 +253,7 @@ class TestCommunication:
             for runnable in built.software.runnables
         )
         _, values, _, _ = evaluate(replace(built, software=replace(built.software, runnables=runnables)))
-        # Written at 10 and 20, read at 20 and out at its end behind the producer, at 30.
+        # Written at 10 and 20, read at 20 and out at its end after the producer, at 30.
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (20, 30)
 
     def logical(self, activity):
@@ -281,7 +281,7 @@ class TestWhatCarries:
         [(RunnableChange.TERMINATE, "the same job", 4), (RunnableChange.START, "the next job", 8)],
     )
     def test_what_a_runnable_does_comes_before_its_end(self, change, kind, value):
-        # The write comes 2 us behind the start of the job, which takes 6 us.
+        # The write comes 2 us after the start of the job, which takes 6 us.
         runnables = [
             Runnable(name="outer", activities=(ticks(1), Call(runnable="inner"), ticks(1))),
             Runnable(name="inner", activities=(ticks(1), write("L"), ticks(3))),
@@ -362,7 +362,7 @@ class TestWhatCarries:
         chain, values, claims, _ = evaluate(replace(built, software=replace(built.software, tasks=tasks)))
         assert chain.routes == ("source start -[a trigger go]-> sink terminate",)
         assert claims == {"bound"}
-        # 2, and 3 behind another job of the source that may come in between.
+        # 2, and 3 after another job of the source that may come in between.
         assert values["max_reduced_reaction_time"] == 2 + 3 + 2
 
     @pytest.mark.parametrize(
@@ -388,7 +388,7 @@ class TestWhatCarries:
         assert values["max_reduced_reaction_time"] >= 3 + 3
 
     def test_a_frame_on_a_bus(self):
-        # A bus is a core whose frames are tasks that nothing interrupts: the frame waits for a longer one of lower priority.
+        # A bus is a core whose frames are non-preemptive tasks: the frame waits for a longer one of lower priority.
         tasks = [
             ("sensor", 10, [ticks(1), write("raw")], "one"),
             ("frame", 10, [read("raw"), ticks(2), write("received")], "bus"),
@@ -424,7 +424,7 @@ class TestWhatCarries:
         tasks = [("A", 10, [ticks(1)]), ("B", 10, [ticks(1)])]
         chain, values, claims, rules = evaluate(system(tasks, [at("A", START), at("B", END)]))
         assert rules == ["CHN002"]
-        assert chain.routes == ("A start -[nothing]-> B terminate",)
+        assert chain.routes == ("A start -[no link]-> B terminate",)
         assert claims == {"bound"}
         assert values["max_reduced_reaction_time"] == 2
 
@@ -462,7 +462,7 @@ class TestWhatCarries:
         assert (values["max_reduced_reaction_time"], values["max_reaction_time"]) == (11, 21)
         _, values, claims, _ = evaluate(system(tasks, events, cores=("one", "two"), controllers=True))
         assert claims == {"bound"}
-        # Clocks that are not synchronized: a period and a response time at each step.
+        # Clocks that are not synchronized: a period and a response time at each task.
         assert values["max_reaction_time"] == 10 + 4 + 10 + 1
 
 
@@ -502,7 +502,7 @@ class TestForms:
             EventChain(name="d", items=Sequence((ChainReference(chain="c"),))),
         )
         chain, values, _, rules = self.evaluate(*chains)
-        assert chain.reason == "it is part of itself: c -> d -> c"
+        assert chain.reason == "it contains itself: c -> d -> c"
         assert rules == ["CHN001", "CHN001"]
         assert not values
 
@@ -562,7 +562,7 @@ class TestNoFiniteBound:
         tasks = [("A", 10, [ticks(8), write("L")]), ("B", 10, [read("L"), ticks(4)])]
         chain, values, _, rules = evaluate(system(tasks, [at("A", START), at("B", END)]))
         assert rules == ["CHN003"]
-        assert "'B' has no bound: the demand up to this priority is 120.0%" in chain.reason
+        assert "'B' is unbounded: overload: tasks at this priority or higher need 120.0 % of the core" in chain.reason
         assert not values
 
     def test_what_may_stay_away(self):
@@ -571,7 +571,7 @@ class TestNoFiniteBound:
         built = system(tasks, [at("A", START), at("B", END)], stimuli=[sporadic])
         _, values, claims, _ = evaluate(built)
         assert claims == {"bound"}
-        # 50 from one to the next; it comes before B, which reads within 10 and takes 4 behind another job of A.
+        # 50 from one to the next; it comes before B, which reads within 10 and takes 4 after another job of A.
         assert values["max_reaction_time"] == 50 + 10 + 4 + 1
 
     def test_hyperperiods_that_are_too_long(self):

@@ -13,13 +13,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support import SHARED
 
-from amalthea_uros.analyze.chains import job_chains
-from amalthea_uros.analyze.chains import let as logical
+from amalthea_uros.analyze.chains import job_chains, let
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
-from amalthea_uros.analyze.chains.job_times import ReadWriteTimes
-from amalthea_uros.analyze.response_times import priority_levels as levels
-from amalthea_uros.analyze.response_times import schedule
+from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
+from amalthea_uros.analyze.response_times import priority_levels, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.timing.event_models import Periodic
@@ -43,7 +41,7 @@ def tasks_of(case):
             name=task["name"],
             period=task["period"],
             offset=task["offset"],
-            cost=MultiframeDemand.constant(task["wcet"], task["bcet"]),
+            demand=MultiframeDemand.constant(task["wcet"], task["bcet"]),
             priority=-task["priority"],
         )
         for task in case["tasks"]
@@ -59,11 +57,11 @@ def build_job_chains(tasks, chain):
         schedule.schedule(tasks, until, MultiframeDemand.best_of),
     )
     index = {task.name: number for number, task in enumerate(tasks)}
-    tracks = []
+    chain_times = []
     for position, name in enumerate(chain):
         task, jobs = tasks[index[name]], worst[index[name]]
         reader = tasks[index[chain[position + 1]]] if position + 1 < len(chain) else None
-        tracks.append(
+        chain_times.append(
             ReadWriteTimes(
                 releases=jobs.releases,
                 reads=best[index[name]].begins,
@@ -73,7 +71,7 @@ def build_job_chains(tasks, chain):
                 preempts_reader=reader is not None and task.priority > reader.priority,
             )
         )
-    return job_chains.build_job_chains(tracks, start + cycle)
+    return job_chains.build_job_chains(chain_times, start + cycle)
 
 
 def distribution(latencies):
@@ -105,7 +103,7 @@ def test_job_chains(case):
         assert distribution(found.last_to_last) == case["distribution_one_hyperperiod"]["last_to_last"]
 
 
-def steps_of(case):
+def chain_tasks_of(case):
     tasks, responses = {}, {}
     for task, response in zip(case["tasks"], case["wcrt"], strict=True):
         tasks[task["name"]], responses[task["name"]] = task, response
@@ -123,30 +121,30 @@ def steps_of(case):
 
 @pytest.mark.parametrize("case", cases(lambda case: "bounds" in case))
 def test_published_bounds(case):
-    steps = steps_of(case)
+    chain_tasks = chain_tasks_of(case)
     assert {
-        "davare07": davare.reaction_time(steps),
-        "duerr19_mrt": duerr.reaction_time(steps),
-        "duerr19_mrda": duerr.reduced_data_age(steps),
-        "kloda18_mrt": kloda.reaction_time(steps),
-        "bi22_mrda": bi.reduced_data_age(steps),
-        "becker17_response_times_mrda": becker.reduced_data_age(steps),
-        "becker17_no_information_mrda": becker.reduced_data_age([replace(step, response=step.period) for step in steps]),
-        "hamann17_let": hamann.reaction_time(steps),
+        "davare07": davare.reaction_time(chain_tasks),
+        "duerr19_mrt": duerr.reaction_time(chain_tasks),
+        "duerr19_mrda": duerr.reduced_data_age(chain_tasks),
+        "kloda18_mrt": kloda.reaction_time(chain_tasks),
+        "bi22_mrda": bi.reduced_data_age(chain_tasks),
+        "becker17_response_times_mrda": becker.reduced_data_age(chain_tasks),
+        "becker17_no_information_mrda": becker.reduced_data_age([replace(task, response=task.period) for task in chain_tasks]),
+        "hamann17_let": hamann.reaction_time(chain_tasks),
     } == case["bounds"]
 
 
 def logically(periods, offsets=None):
     cycle = lcm(*periods)
     offsets = offsets or [0] * len(periods)
-    tracks = [logical.track(period, offset, cycle) for period, offset in zip(periods, offsets, strict=True)]
-    return job_chains.build_job_chains(tracks, max(offsets))
+    chain_times = [let.read_write_times(period, offset, cycle) for period, offset in zip(periods, offsets, strict=True)]
+    return job_chains.build_job_chains(chain_times, max(offsets))
 
 
 @pytest.mark.parametrize("case", cases())
 def test_logical_execution_times(case):
-    steps = steps_of(case)
-    found = logically([step.period for step in steps], [step.offset for step in steps])
+    chain_tasks = chain_tasks_of(case)
+    found = logically([task.period for task in chain_tasks], [task.offset for task in chain_tasks])
     assert {"mrt": found.reaction_time, "mda": found.data_age, "mrda": int(found.last_to_last.max())} == case["let"]
 
 
@@ -181,7 +179,7 @@ class TestTheChallengeOf2017:
         variant = "unimore_300MHz_nomem"
         for chain in chains.values():
             names = chain["task_sequence_for_analysis"]
-            steps = [
+            chain_tasks = [
                 ChainTask(
                     period=round(tasks[name]["max_interarrival_us"] * 1000),
                     response=round(tasks[name]["wcrt_us"][variant] * 1000),
@@ -193,9 +191,9 @@ class TestTheChallengeOf2017:
                 for name, then in zip(names, [*names[1:], None], strict=True)
             ]
             expected = chain["implicit_bounds"][variant]
-            assert davare.reaction_time(steps) == pytest.approx(expected["davare2007_us"] * 1000, abs=1)
-            assert duerr.reaction_time(steps) == pytest.approx(expected["duerr2019_max_reaction_us"] * 1000, abs=1)
-            assert duerr.reduced_data_age(steps) == pytest.approx(expected["duerr2019_max_data_age_us"] * 1000, abs=1)
+            assert davare.reaction_time(chain_tasks) == pytest.approx(expected["davare2007_us"] * 1000, abs=1)
+            assert duerr.reaction_time(chain_tasks) == pytest.approx(expected["duerr2019_max_reaction_us"] * 1000, abs=1)
+            assert duerr.reduced_data_age(chain_tasks) == pytest.approx(expected["duerr2019_max_data_age_us"] * 1000, abs=1)
 
 
 # Brute force: jobs with random execution times, played through moment by moment.
@@ -211,28 +209,28 @@ def drawn(rows):
             name=str(index),
             period=period,
             offset=offset,
-            cost=MultiframeDemand.constant(cost, max(1, cost - less)),
+            demand=MultiframeDemand.constant(wcet, max(1, wcet - less)),
             priority=-index,
         )
-        for index, (period, cost, less, offset) in enumerate(rows)
+        for index, (period, wcet, less, offset) in enumerate(rows)
     ]
-    assume(sum(task.cost.mean_worst / task.period for task in tasks) <= 1)
+    assume(sum(task.demand.mean_worst / task.period for task in tasks) <= 1)
     return tasks
 
 
 def observe(tasks, chain, until, random):
     """The latencies of a chain in one run: reads and writes of all jobs, then each value followed on its way."""
-    costs = {}
+    drawn_demands = {}
 
-    def cost_of(cost, job):
-        return costs.setdefault((id(cost), job), random.randint(cost.best, cost.worst))
+    def demand_of(demand, job):
+        return drawn_demands.setdefault((id(demand), job), random.randint(demand.best, demand.worst))
 
     waiting, found = [], {task.name: [] for task in tasks}
     for now in range(until):
         for task in tasks:
             if now >= task.offset and (now - task.offset) % task.period == 0:
                 number = (now - task.offset) // task.period
-                waiting.append([-task.priority, now, task.name, cost_of(task.cost, number), None])
+                waiting.append([-task.priority, now, task.name, demand_of(task.demand, number), None])
         if waiting:
             job = min(waiting, key=lambda job: job[:2])
             job[4] = now if job[4] is None else job[4]
@@ -240,34 +238,34 @@ def observe(tasks, chain, until, random):
             if not job[3]:
                 waiting.remove(job)
                 found[job[2]].append((job[4], now + 1))
-    tracks = [found[name] for name in chain]
-    return forward(tracks), backward(tracks)
+    chain_times = [found[name] for name in chain]
+    return forward(chain_times), backward(chain_times)
 
 
-def forward(tracks):
+def forward(chain_times):
     """(read before, read, end) of each job of the first task."""
-    first, *others = tracks
+    first, *others = chain_times
     for (before, _), (read, written) in pairwise(first):
         end = written
-        for track in others:
-            end = next((write for start, write in track if start >= end), None)
+        for times in others:
+            end = next((write for start, write in times if start >= end), None)
             if end is None:
                 break
         if end is not None:
             yield before, read, end
 
 
-def backward(tracks):
+def backward(chain_times):
     """(read, write, next write) of each job of the last task."""
-    *others, last = tracks
-    for (read, write), (_, behind) in pairwise(last):
+    *others, last = chain_times
+    for (read, write), (_, next_write) in pairwise(last):
         start = read
-        for track in reversed(others):
-            start = next((begin for begin, end in reversed(track) if end <= start), None)
+        for times in reversed(others):
+            start = next((begin for begin, end in reversed(times) if end <= start), None)
             if start is None:
                 break
         if start is not None:
-            yield start if others else read, write, behind
+            yield start if others else read, write, next_write
 
 
 @settings(max_examples=150)
@@ -277,11 +275,11 @@ def test_no_run_is_worse_than_a_bound(rows, data):
     names = [task.name for task in tasks]
     chain = data.draw(st.permutations(names).map(lambda order: order[: data.draw(st.integers(1, len(names)))]))
     found = build_job_chains(tasks, chain)
-    responses = levels.response_times(
-        [Task(name=t.name, arrivals=Periodic(t.period), cost=t.cost, priority=t.priority) for t in tasks]
+    responses = priority_levels.response_times(
+        [Task(name=t.name, events=Periodic(t.period), demand=t.demand, priority=t.priority) for t in tasks]
     )
     by_name = {task.name: (task, response.worst) for task, response in zip(tasks, responses, strict=True)}
-    steps = [
+    chain_tasks = [
         ChainTask(
             period=by_name[name][0].period,
             response=by_name[name][1],
@@ -290,13 +288,13 @@ def test_no_run_is_worse_than_a_bound(rows, data):
         )
         for name, then in zip(chain, [*chain[1:], None], strict=True)
     ]
-    reactions = [found.reaction_time, davare.reaction_time(steps)]
+    reactions = [found.reaction_time, davare.reaction_time(chain_tasks)]
     ages = [int(found.last_to_last.max())]
-    if all(step.response <= step.period for step in steps):
-        reactions += [duerr.reaction_time(steps), kloda.reaction_time(steps)]
-        ages += [duerr.reduced_data_age(steps), becker.reduced_data_age(steps)]
-        if len({step.offset for step in steps}) == 1:
-            ages.append(bi.reduced_data_age(steps))
+    if all(task.response <= task.period for task in chain_tasks):
+        reactions += [duerr.reaction_time(chain_tasks), kloda.reaction_time(chain_tasks)]
+        ages += [duerr.reduced_data_age(chain_tasks), becker.reduced_data_age(chain_tasks)]
+        if len({task.offset for task in chain_tasks}) == 1:
+            ages.append(bi.reduced_data_age(chain_tasks))
     for seed in range(3):
         reacting, ageing = observe(tasks, chain, 150, Random(seed))
         steady_state_start = max(task.offset + task.period for task in tasks)
@@ -304,23 +302,23 @@ def test_no_run_is_worse_than_a_bound(rows, data):
             if before >= steady_state_start:
                 assert end - before <= min(reactions)
                 assert end - read <= found.first_to_first.max()
-        for read, write, behind in ageing:
+        for read, write, next_write in ageing:
             if read >= steady_state_start:
-                assert behind - read <= found.data_age
+                assert next_write - read <= found.data_age
                 assert write - read <= min(ages)
 
 
 @given(rows=ROWS, data=st.data())
 def test_constant_execution_times_are_exact(rows, data):
-    tasks = drawn([(period, cost, 0, offset) for period, cost, _, offset in rows])
+    tasks = drawn([(period, wcet, 0, offset) for period, wcet, _, offset in rows])
     names = [task.name for task in tasks]
     chain = data.draw(st.permutations(names).map(lambda order: order[: data.draw(st.integers(1, len(names)))]))
     found = build_job_chains(tasks, chain)
     reacting, ageing = observe(tasks, chain, 400, Random(0))
     reacting = [(before, read, end) for before, read, end in reacting if before >= 100]
-    ageing = [(read, write, behind) for read, write, behind in ageing if read >= 100]
+    ageing = [(read, write, next_write) for read, write, next_write in ageing if read >= 100]
     assert found.reaction_time == max(end - before for before, _, end in reacting)
-    assert found.data_age == max(behind - read for read, _, behind in ageing)
+    assert found.data_age == max(next_write - read for read, _, next_write in ageing)
     # Reaction time and data age are the same, whatever the schedule (Günzel and others 2023).
     assert found.reaction_time == found.data_age
     assert {*found.first_to_first.tolist()} == {end - read for _, read, end in reacting}

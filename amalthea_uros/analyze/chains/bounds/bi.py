@@ -1,7 +1,7 @@
-"""A bound of the data age of periodic tasks whose releases are known, step by step.
+"""A bound of the data age of periodic tasks with the same offset, from each task to the next.
 
 R. Bi, X. Liu, J. Ren, P. Wang, H. Lv and G. Tan, "Efficient maximum data age analysis for cause-effect chains in automotive
-systems", DAC 2022: releases of two periodic tasks are apart by whole multiples of the greatest common divisor of their periods.
+systems", DAC 2022: the releases of two periodic tasks are multiples of the greatest common divisor of their periods apart.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from amalthea_uros.units import Time
 SOURCE = "Bi and others 2022"
 
 
-def reduced_data_age(steps: Sequence[ChainTask]) -> Time:
+def reduced_data_age(tasks: Sequence[ChainTask]) -> Time:
     """A bound of the maximum reduced data age of tasks that are released together."""
-    return steps[-1].response + sum(_between(step, reader) for step, reader in pairwise(steps))
+    return tasks[-1].response + sum(_between(task, reader) for task, reader in pairwise(tasks))
 
 
-def _between(step: ChainTask, reader: ChainTask) -> Time:
-    grid = gcd(step.period, reader.period)
-    if step.preempts_reader:
-        return step.period - grid
-    return step.response + step.period - (step.response % grid or grid)
+def _between(task: ChainTask, reader: ChainTask) -> Time:
+    grid = gcd(task.period, reader.period)
+    if task.preempts_reader:
+        return task.period - grid
+    return task.response + task.period - (task.response % grid or grid)

@@ -1,4 +1,4 @@
-"""What the bounds know of a step of a chain: no schedule, but how often it comes and how long it takes."""
+"""A task of a chain as the bounds see it: without a schedule, only activation, response time and priority."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from amalthea_uros.units import Time
 if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
 
-#: Bounds that go through all jobs of a hyperperiod give up beyond.
+#: Bounds that examine all jobs of a hyperperiod are not computed for more jobs.
 MAX_JOBS = 10_000_000
 
 
@@ -25,10 +25,10 @@ class ChainTask:
 
     Attributes
     ----------
-    period : the longest time between two releases, if `is_regular`: there is such a time
+    period : maximum time between two releases, if there is one (`is_regular`)
     response : worst-case response time
-    offset : of the first release; None if releases are not known
-    preempts_reader : whether its jobs come before those of the next step on the same core
+    offset : of the first release; None if releases are unknown
+    preempts_reader : whether its jobs preempt those of the next task on the same core
     """
 
     name: str = ""
@@ -39,16 +39,16 @@ class ChainTask:
     preempts_reader: bool = False
 
 
-def first_releases(steps: Sequence[ChainTask]) -> Numbers | None:
-    """The releases of the first step in one hyperperiod of the chain; None if they are not known, or too many."""
-    if any(step.offset is None for step in steps):
+def first_releases(tasks: Sequence[ChainTask]) -> Numbers | None:
+    """The releases of the first task in one hyperperiod of the chain; None if they are unknown or too many."""
+    if any(task.offset is None for task in tasks):
         return None
-    cycle = lcm(*(step.period for step in steps))
-    count = cycle // steps[0].period
-    steady_state_start = max(step.offset or 0 for step in steps)
-    if count * len(steps) > MAX_JOBS or steady_state_start + 2 * cycle > LIMIT:
+    cycle = lcm(*(task.period for task in tasks))
+    count = cycle // tasks[0].period
+    steady_state_start = max(task.offset or 0 for task in tasks)
+    if count * len(tasks) > MAX_JOBS or steady_state_start + 2 * cycle > LIMIT:
         return None
-    offset = steps[0].offset or 0
-    lead = -(-(steady_state_start - offset) // steps[0].period)
-    releases: Numbers = offset + steps[0].period * (lead + np.arange(count, dtype=np.int64))
+    offset = tasks[0].offset or 0
+    lead = -(-(steady_state_start - offset) // tasks[0].period)
+    releases: Numbers = offset + tasks[0].period * (lead + np.arange(count, dtype=np.int64))
     return releases

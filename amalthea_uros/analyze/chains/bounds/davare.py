@@ -1,7 +1,7 @@
 """A bound of the maximum reaction time from periods and response times alone.
 
 A. Davare, Q. Zhu, M. Di Natale, C. Pinello, S. Kanajan and A. Sangiovanni-Vincentelli, "Period optimization for hard real-time
-distributed automotive systems", DAC 2007: at each step a period of waiting and a response time. It needs no common time.
+distributed automotive systems", DAC 2007: at each task a period of waiting and a response time. No common clock is required.
 """
 
 from __future__ import annotations
@@ -14,6 +14,6 @@ from amalthea_uros.units import Time
 SOURCE = "Davare and others 2007"
 
 
-def reaction_time(steps: Sequence[ChainTask]) -> Time:
+def reaction_time(tasks: Sequence[ChainTask]) -> Time:
     """A bound of the maximum reaction time."""
-    return sum(step.period + step.response for step in steps)
+    return sum(task.period + task.response for task in tasks)

@@ -1,7 +1,7 @@
-"""A bound of the reaction time under logical execution times.
+"""A bound of the reaction time under logical execution time (LET).
 
 A. Hamann, D. Dasari, S. Kramer, M. Pressler and F. Wurst, "Communication centric design in complex automotive embedded systems",
-ECRTS 2017: at each step a period of waiting, and a period until the output is there.
+ECRTS 2017: at each task a period of waiting, and a period until the output becomes visible.
 """
 
 from __future__ import annotations
@@ -14,6 +14,6 @@ from amalthea_uros.units import Time
 SOURCE = "Hamann and others 2017"
 
 
-def reaction_time(steps: Sequence[ChainTask]) -> Time:
+def reaction_time(tasks: Sequence[ChainTask]) -> Time:
     """A bound of the maximum reaction time."""
-    return sum(2 * step.period for step in steps)
+    return sum(2 * task.period for task in tasks)

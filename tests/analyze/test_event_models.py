@@ -1,4 +1,4 @@
-"""Event models: both directions belong together, and no arrivals beat them."""
+"""Event models: eta+ and delta- are consistent, and no sequence of events exceeds them."""
 
 import json
 from fractions import Fraction
@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from support import SHARED
 
 from amalthea_uros.analyze.propagation import completions
-from amalthea_uros.analyze.response_times import non_preemptive
-from amalthea_uros.analyze.response_times import priority_levels as levels
+from amalthea_uros.analyze.response_times import non_preemptive, priority_levels
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import Constant, Uniform
@@ -89,7 +88,7 @@ def test_several_arrivals_for_each_of_others():
         (perf.RelativePeriodic(name="s", distance=Uniform(lower=5, upper=9)), Sporadic(5, longest=9)),
         # Offset 5, period 10, length 5, distance 2, count 3: 5, 7, 9, 15, 17, 19 ...
         (perf.Burst(name="s", offset=5, period=10, length=5, distance=2, count=3), Pattern(10, (0, 2, 4))),
-        # The third occurrence would lie behind the burst.
+        # The third occurrence would be after the burst.
         (perf.Burst(name="s", period=10, length=4, distance=2, count=3), Pattern(10, (0, 2))),
         (perf.Synthetic(name="s", period=10, times=(7, 1)), Pattern(10, (1, 7))),
         (perf.Single(name="s", time=4), Single()),
@@ -133,19 +132,19 @@ def test_the_tutorial_of_compositional_analysis():
     if not path.exists():
         pytest.skip("the vectors are not at hand")
     case = json.loads(path.read_text())
-    arrivals = {name: Periodic(source["P"], source["J"]) for name, source in case["sources"].items()}
+    events = {name: Periodic(source["P"], source["J"]) for name, source in case["sources"].items()}
     worst = {}
     for resource, analysis in (
-        ("CPU1", levels.response_times),
+        ("CPU1", priority_levels.response_times),
         ("BUS", non_preemptive.response_times),
-        ("CPU2", levels.response_times),
+        ("CPU2", priority_levels.response_times),
     ):
         tasks = [
             # Lower numbers are more important there.
             Task(
                 name=t["name"],
-                arrivals=arrivals[t["name"]],
-                cost=MultiframeDemand.constant(t["wcet"], t["bcet"]),
+                events=events[t["name"]],
+                demand=MultiframeDemand.constant(t["wcet"], t["bcet"]),
                 priority=-t["priority"],
             )
             for t in case["tasks"]
@@ -156,5 +155,5 @@ def test_the_tutorial_of_compositional_analysis():
             for chain in case["precedence"]:
                 if task.name in chain[:-1]:
                     follower = chain[chain.index(task.name) + 1]
-                    arrivals[follower] = completions(task.arrivals, response, task.cost.best)
+                    events[follower] = completions(task.events, response, task.demand.best)
     assert worst == case["expected_wcrt"]

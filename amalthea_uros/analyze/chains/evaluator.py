@@ -1,13 +1,13 @@
-"""The chains of a system: resolved, put in time, evaluated by every method, and the tightest valid value of each taken."""
+"""Evaluates event chains: routes, read and write times, all valid methods, and the tightest value of each quantity."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from amalthea_uros.analyze.chains.methods import Methods
-from amalthea_uros.analyze.chains.read_write_times import StageTiming, UnboundedStageError
-from amalthea_uros.analyze.chains.stages import Stage, communication_of, hop_text, stages
+from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
+from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
+from amalthea_uros.analyze.chains.stages import Stage, communication_of, link_text, stages
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, Value
 from amalthea_uros.analyze.solution import Solution
@@ -21,7 +21,7 @@ from amalthea_uros.timing.dataflow.routes import Route, routes
 
 
 @dataclass(slots=True)
-class Evaluation:
+class ChainEvaluator:
     """Evaluates the chains of a system."""
 
     solution: Solution
@@ -30,7 +30,7 @@ class Evaluation:
 
     @property
     def context(self) -> TimingContext:
-        """The system."""
+        """The timing context of the system."""
         return self.solution.context
 
     def __post_init__(self) -> None:
@@ -38,12 +38,13 @@ class Evaluation:
         self.controllers = controller_of_core(self.context.system)
 
     def chain(self, chain: EventChain) -> ChainResult:
-        """One chain."""
-        known_events = self.context.system.events_by_name
+        """The latencies of a chain."""
+        events_by_name = self.context.system.events_by_name
         try:
             unfolded, left_out = unfold(chain, self.context.system)
             ways = {
-                events: routes([known_events[name] for name in events], self.context.dataflow) for events in sequences(unfolded)
+                events: routes([events_by_name[name] for name in events], self.context.dataflow)
+                for events in sequences(unfolded)
             }
         except (UnfoldError, UnresolvedError) as error:
             self.context.notes.warning("CHN001", f"the chain {chain.name!r} is not evaluated: {error}", chain)
@@ -51,8 +52,8 @@ class Evaluation:
         every = [route for found in ways.values() for route in found]
         self._note(chain, left_out, every)
         found = self._evaluated(ways)
-        everything = _combine(unfolded, found.values)
-        tightest = _tightest(everything)
+        all_values = _combine(unfolded, found.values)
+        tightest = _tightest(all_values)
         has_bound = any(value.quantity is Quantity.MAX_REACTION_TIME for value in tightest)
         reason = found.reason or ("" if has_bound else found.why_unbounded)
         if reason:
@@ -62,13 +63,13 @@ class Evaluation:
             communication=communication_of(stage for route in every for stage in self._stages(route)),
             routes=tuple(map(_route_text, every)),
             values=tightest,
-            everything=tuple(everything),
+            all_values=tuple(all_values),
             why=found.why,
             reason=reason,
         )
 
     def _evaluated(self, ways: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
-        """The values of each way through a chain, and why they are what they are."""
+        """The values of each way through a chain, and the reasons."""
         found = _Evaluated()
         for events, found_routes in ways.items():
             try:
@@ -83,37 +84,39 @@ class Evaluation:
         return found
 
     def pair(self, first: Event, then: Event) -> tuple[Value, ...]:
-        """The tightest values from one event to another, whether there is a chain between them or not.
+        """The tightest values from one event to another, which need not be part of a chain.
 
         Raises
         ------
-        UnresolvedError, UnboundedStageError : nothing is known of them.
+        UnresolvedError, UnboundedStageError : there are no values.
         """
         found = routes([first, then], self.context.dataflow)
         return _tightest(_worst_of([list(self._methods(route).values()) for route in found]))
 
     def _note(self, chain: EventChain, left_out: Iterable[str], found: Sequence[Route]) -> None:
-        """What had to be assumed of a chain."""
+        """Report what had to be assumed about a chain."""
         notes = self.context.notes
         for event in left_out:
-            message = f"the chain {chain.name!r} does not start or end with {event!r}, as a part of it does; that is left out"
+            message = (
+                f"the chain {chain.name!r} does not start or end with {event!r}, but a part of it does; {event!r} is ignored"
+            )
             notes.warning("CHN005", message, chain)
         for event, guess in self.context.dataflow.events.guesses.items():
-            message = f"nothing in the model makes the event {event!r} occur; it is taken to do so {guess}"
+            message = f"no activity in the model raises the event {event!r}; it is assumed to occur {guess}"
             notes.warning("CHN004", message, self.context.system.events_by_name[event])
         for route in found:
             for link, first, then in zip(route.links, route.events, route.events[1:], strict=False):
                 if link.kind in GAPS:
                     message = (
-                        f"in the chain {chain.name!r} nothing carries the effect from {first!r} to {then!r}; "
-                        "it is evaluated as if there were a variable between them"
+                        f"in the chain {chain.name!r} no data flow or trigger connects {first!r} to {then!r}; "
+                        "it is evaluated as if a variable connected them"
                     )
                     notes.warning("CHN002", message, chain)
 
     def _stages(self, route: Route) -> list[Stage]:
         return stages(route, self.context.settings.communication)
 
-    def _methods(self, route: Route) -> Methods:
+    def _methods(self, route: Route) -> RouteLatencies:
         for link in route.links:
             if link.kind is LinkKind.TOPIC:
                 raise UnboundedStageError(
@@ -127,11 +130,11 @@ class Evaluation:
                 parts.append([])
             parts[-1].append(self.timing.group(group, follower))
             before = controller
-        return Methods(parts, self.timing.unit, is_certain=route.is_timed)
+        return RouteLatencies(parts, self.timing.unit, is_certain=route.is_timed)
 
     def _controller(self, stage: Stage) -> str:
-        placed = self.context.scheduled.get(stage.process.name)
-        return self.controllers.get(placed.core, "") if placed is not None else ""
+        scheduled = self.context.scheduled.get(stage.process.name)
+        return self.controllers.get(scheduled.core, "") if scheduled is not None else ""
 
 
 @dataclass(slots=True)
@@ -140,9 +143,9 @@ class _Evaluated:
 
     Attributes
     ----------
-    why : why the tightest ones are what they are
-    why_unbounded : why some are not there
-    reason : why a way has none at all
+    why : why the tightest values are exact or only bounds
+    why_unbounded : why there is no bound of the reaction time
+    reason : why a way has no values
     """
 
     values: dict[tuple[str, ...], list[Value]] = field(default_factory=dict)
@@ -152,7 +155,7 @@ class _Evaluated:
 
 
 def _groups(found: Sequence[Stage]) -> list[list[Stage]]:
-    """Stages with those that they trigger."""
+    """Each stage together with those that it triggers."""
     groups: list[list[Stage]] = []
     for stage in found:
         if stage.is_triggered:
@@ -170,12 +173,12 @@ def _with_followers(groups: Sequence[Sequence[Stage]]) -> list[tuple[Sequence[St
 def _route_text(route: Route) -> str:
     parts = [route.events[0]]
     for link, event in zip(route.links, route.events[1:], strict=True):
-        parts.append(f"-[{hop_text(link)}]-> {event}")
+        parts.append(f"-[{link_text(link)}]-> {event}")
     return " ".join(parts)
 
 
 def _worst_of(found: Sequence[Sequence[Value]]) -> list[Value]:
-    """The values of several ways that one sequence of events can mean: of each method the worst one."""
+    """The worst value of each method over the routes of one sequence of events."""
     if len(found) == 1:
         return list(found[0])
     result = []
@@ -192,7 +195,7 @@ def _same(value: Value, others: Iterable[Value]) -> Value | None:
 
 
 def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[Value]]) -> list[Value]:
-    """The values of a chain from those of the ways through it."""
+    """The values of a chain from those of all ways through it."""
     if len(values) == 1:
         return next(iter(values.values()))
     (_, first), *_ = values.items()
@@ -206,13 +209,13 @@ def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[Value]]) 
         if reacts:
             time = combined(unfolded, times)
         else:
-            known = [time for time in times.values() if time is not None]
-            time = (max if value.quantity.is_upper else min)(known)
+            finite = [time for time in times.values() if time is not None]
+            time = (max if value.quantity.is_upper else min)(finite)
         found.append(
             Value(
                 quantity=value.quantity,
                 value=time,
-                # The greatest of the smallest is not the smallest of the greatest: of alternatives it is a bound.
+                # The maximum of minima is not the minimum of maxima: for alternatives it is a bound.
                 claim=Claim.BOUND
                 if reacts or any(way.claim is not Claim.EXACT for way in each.values() if way)
                 else Claim.EXACT,
@@ -224,7 +227,7 @@ def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[Value]]) 
 
 
 def _tightest(values: Sequence[Value]) -> tuple[Value, ...]:
-    """Of each quantity the value that is exact, or else the tightest bound."""
+    """For each quantity the exact value, or else the tightest bound."""
     found = {}
     for quantity in Quantity:
         here = [value for value in values if value.quantity is quantity and value.value is not None]

@@ -1,4 +1,4 @@
-"""Timing constraints on the producer and the consumer, all worked out by hand: 5 each 10, and 5 behind it each 20."""
+"""Timing constraints on the producer and the consumer, all computed by hand: 5 every 10, and 5 after it every 20."""
 
 from dataclasses import replace
 
@@ -30,7 +30,7 @@ EVENTS = (at("producer", START), at("producer", END), at("consumer", START), at(
 MADE, OUT = EVENTS[0].name, EVENTS[3].name
 
 
-def judge(*constraints, built=None, data_ages=(), orders=(), chains=()):
+def evaluate(*constraints, built=None, data_ages=(), orders=(), chains=()):
     built = built or producer_and_consumer(*EVENTS, chains=(EventChain(name="chain", stimulus=MADE, response=OUT), *chains))
     stated = Constraints(constraints=constraints, data_ages=data_ages, orders=orders)
     analysis = analyze_system(replace(built, constraints=stated))
@@ -49,36 +49,40 @@ def judge(*constraints, built=None, data_ages=(), orders=(), chains=()):
 )
 def test_latencies_of_a_chain(kind, minimum, maximum, expected):
     limits = {"minimum": minimum and minimum * US, "maximum": maximum and maximum * US}
-    assert judge(LatencyConstraint(name="L", chain="chain", kind=kind, **limits)) == expected
+    assert evaluate(LatencyConstraint(name="L", chain="chain", kind=kind, **limits)) == expected
 
 
 def test_a_chain_that_is_not_there():
-    assert judge(LatencyConstraint(name="L", chain="none", maximum=1)) == [("LatencyConstraint", None, "unknown")]
+    assert evaluate(LatencyConstraint(name="L", chain="none", maximum=1)) == [("LatencyConstraint", None, "unknown")]
 
 
 def test_a_delay():
     delay = DelayConstraint(name="D", source=MADE, target=OUT, lower=10 * US, upper=19 * US)
-    assert judge(delay) == [("delay", 20, "missed"), ("delay", 10, "met")]
+    assert evaluate(delay) == [("delay", 20, "missed"), ("delay", 10, "met")]
 
 
 def test_a_delay_whose_occurrences_belong_together_one_by_one():
     within = DelayConstraint(name="D", source=MADE, target=EVENTS[1].name, matching=Matching.ONE_TO_ONE, upper=5 * US)
-    assert judge(within) == [("delay", 5, "met")]
+    assert evaluate(within) == [("delay", 5, "met")]
     across = DelayConstraint(name="D", source=MADE, target=OUT, matching=Matching.ONE_TO_ONE, upper=99 * US)
-    assert judge(across) == [("DelayConstraint", None, "unknown")]
+    assert evaluate(across) == [("DelayConstraint", None, "unknown")]
 
 
 def test_repetition():
-    # The consumer starts at 5 behind each 20; by its response time of 10 and its 5 it might start 5 later.
+    # The consumer starts at 5 after every 20; by its response time of 10 and its 5 it might start 5 later.
     repetition = RepetitionConstraint(name="R", event=EVENTS[2].name, span=2, lower=35 * US, upper=44 * US, jitter=5 * US)
-    assert judge(repetition) == [("repetition", 45, "missed"), ("repetition", 35, "met"), ("jitter", 5, "met")]
+    assert evaluate(repetition) == [("repetition", 45, "missed"), ("repetition", 35, "met"), ("jitter", 5, "met")]
 
 
 def test_repetition_of_what_comes_at_any_moment():
     sporadic = RelativePeriodic(name="A", distance=Boundaries(lower=20 * US, upper=50 * US))
     built = system([("A", None, [ticks(1)])], [at("A", START), at("A", END)], stimuli=[sporadic])
     repetition = RepetitionConstraint(name="R", event="A start", lower=20 * US, upper=50 * US, jitter=US)
-    assert judge(repetition, built=built) == [("repetition", 50, "met"), ("repetition", 20, "met"), ("jitter", None, "unknown")]
+    assert evaluate(repetition, built=built) == [
+        ("repetition", 50, "met"),
+        ("repetition", 20, "met"),
+        ("jitter", None, "unknown"),
+    ]
 
 
 def test_events_that_should_come_together():
@@ -88,17 +92,17 @@ def test_events_that_should_come_together():
     )
     # A ends at 2, B 1 later activated and 1 to wait: between 2 and 5.
     together = EventSynchronization(name="S", events=("A terminate", "B terminate"), tolerance=3 * US)
-    assert judge(together, built=built) == [("spread", 3, "met")]
+    assert evaluate(together, built=built) == [("spread", 3, "met")]
     apart = EventSynchronization(name="S", events=("A terminate", "C terminate"), tolerance=99 * US)
-    assert judge(apart, built=built) == [("EventSynchronization", None, "unknown")]
+    assert evaluate(apart, built=built) == [("EventSynchronization", None, "unknown")]
 
 
 def test_chains_that_should_end_together():
     short = EventChain(name="short", stimulus=MADE, response=EVENTS[1].name)
     constraint = ChainSynchronization(name="S", chains=("chain", "short"), tolerance=10 * US)
     # One takes 10 to 20, the other one 5.
-    assert judge(constraint, chains=[short]) == [("spread at the response", 15, "missed")]
-    assert judge(replace(constraint, end=ChainEnd.STIMULUS), chains=[short]) == [("spread at the stimulus", 0, "met")]
+    assert evaluate(constraint, chains=[short]) == [("spread at the response", 15, "missed")]
+    assert evaluate(replace(constraint, end=ChainEnd.STIMULUS), chains=[short]) == [("spread at the stimulus", 0, "met")]
 
 
 @pytest.mark.parametrize(
@@ -111,13 +115,13 @@ def test_chains_that_should_end_together():
     ],
 )
 def test_how_long_data_are_valid(limits, expected):
-    # The writer ends at 1 and 11 of each 20, the reader reads at 5.
+    # The writer ends at 1 and 11 of every 20, the reader reads at 5.
     built = system(
         [("writer", 10, [Call(runnable="make")]), ("reader", 20, [read("L"), ticks(1)], "core", 5)],
         [at("writer", END), at("reader", START)],
         runnables=[Runnable(name="make", activities=(ticks(1), write("L")))],
     )
-    assert judge(built=built, data_ages=[DataAgeConstraint(name="A", runnable="make", label="L", **limits)]) == expected
+    assert evaluate(built=built, data_ages=[DataAgeConstraint(name="A", runnable="make", label="L", **limits)]) == expected
 
 
 @pytest.mark.parametrize(
@@ -138,4 +142,4 @@ def test_the_order_of_runnables(groups, ordering, verdict):
     runnables = [Runnable(name=name, activities=(ticks(1),)) for name in "abc"]
     built = system([("T", 10, [Call(runnable=name) for name in "abc"])], [at("T", START), at("T", END)], runnables=runnables)
     order = OrderConstraint(name="O", groups=tuple(map(tuple, groups)), ordering=ordering)
-    assert judge(built=built, orders=[order]) == [("order of runnables", None, verdict)]
+    assert evaluate(built=built, orders=[order]) == [("order of runnables", None, verdict)]

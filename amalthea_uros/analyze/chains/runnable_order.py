@@ -1,4 +1,4 @@
-"""Whether runnables stand in a process as a sequencing constraint demands."""
+"""Whether a process calls runnables in the order that an order constraint requires."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering
 
 
-def in_order(called: Sequence[str], constraint: OrderConstraint) -> bool:
-    """Whether groups follow each other, once each runnable; within a group any order is right."""
+def satisfies_order(called: Sequence[str], constraint: OrderConstraint) -> bool:
+    """Whether the groups follow each other and each runnable is called once; the order within a group is free."""
     members = [set(group) for group in constraint.groups]
     position = [next((i for i, group in enumerate(members) if name in group), None) for name in called]
     found = [(i, number) for i, number in enumerate(position) if number is not None]

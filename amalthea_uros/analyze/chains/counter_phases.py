@@ -1,7 +1,7 @@
-"""Chains that start in every n-th job of a process, where it is not known in which.
+"""Chains that start in every n-th job of a process, evaluated for all phases of the counter.
 
-A counter stands for something that comes from outside, such as a message every 20 ms to an executor that runs each millisecond.
-Which of the jobs takes it is a matter of chance at the start of the system; here all of them are tried.
+A counter represents an external event, such as a message every 20 ms for an executor that runs every millisecond. Which job takes
+the message depends on the start of the system, so all phases are evaluated.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.routes import routes
 
-#: More phases are not tried.
-MOST_PHASES = 1000
+#: Chains with more phases are evaluated for the modelled phase only.
+MAX_PHASES = 1000
 
 
 def variants(chain: EventChain, context: TimingContext) -> Iterator[System]:
-    """The system with each phase of the counter at which a chain starts; nothing, if there is no such counter."""
+    """The system with each phase of the counter at which a chain starts; nothing if there is no such counter."""
     position = _counted_start(chain, context)
     if position is None:
         return
@@ -38,7 +38,7 @@ def variants(chain: EventChain, context: TimingContext) -> Iterator[System]:
 
 
 def _counted_start(chain: EventChain, context: TimingContext) -> ActivityPosition | None:
-    """Where a chain starts in some jobs only."""
+    """The position at which a chain starts if a counter lets only some jobs reach it."""
     try:
         events = sequences(unfold(chain, context.system)[0])[0]
         route, *_ = routes([context.system.events_by_name[name] for name in events], context.dataflow)
@@ -47,13 +47,13 @@ def _counted_start(chain: EventChain, context: TimingContext) -> ActivityPositio
         return None
     for position in first.positions:
         call = position.process.activities[position.outer[0][1]]
-        if isinstance(call, Call) and call.counter is not None and 1 < call.counter.prescaler <= MOST_PHASES:
+        if isinstance(call, Call) and call.counter is not None and 1 < call.counter.prescaler <= MAX_PHASES:
             return position
     return None
 
 
 def _with(system: System, process: Process, index: int, activity: Activity) -> System:
-    """A system in which one activity of a process is another one."""
+    """The system with one activity of a process replaced."""
     changed = replace(process, activities=(*process.activities[:index], activity, *process.activities[index + 1 :]))
     software = system.software
     if isinstance(changed, Task):
@@ -64,15 +64,15 @@ def _with(system: System, process: Process, index: int, activity: Activity) -> S
 
 
 def merged(results: Sequence[ChainResult]) -> ChainResult:
-    """What holds whatever the phase is: the greatest, the least, and the mean of the means."""
+    """The values over all phases: the maximum, the minimum, and the mean of the means."""
     first, *_ = results
     found = []
     for quantity in Quantity:
         values = [result.value(quantity) for result in results]
-        known = [value for value in values if value is not None and value.value is not None]
-        if known and len(known) == len(values):
-            found.append(_over(quantity, known))
-    return replace(first, values=tuple(found), everything=tuple(found))
+        finite = [value for value in values if value is not None and value.value is not None]
+        if finite and len(finite) == len(values):
+            found.append(_over(quantity, finite))
+    return replace(first, values=tuple(found), all_values=tuple(found))
 
 
 def _over(quantity: Quantity, values: Sequence[Value]) -> Value:

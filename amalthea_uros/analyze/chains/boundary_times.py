@@ -1,4 +1,4 @@
-"""When the moments of the jobs of a stage come, in a schedule."""
+"""The times at which the jobs of a stage reach its boundaries, in a schedule."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.chains import completed_work as completed_work
-from amalthea_uros.analyze.chains.stages import At, Fire, Moment, Read, Stage, Write
+from amalthea_uros.analyze.chains import completed_work
+from amalthea_uros.analyze.chains.stages import At, Boundary, Fire, Read, Stage, Write
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.schedule import Jobs
 from amalthea_uros.perf.software import Communication
@@ -24,19 +24,19 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Moments:
-    """The moments of the jobs of a stage in a schedule."""
+class BoundaryTimes:
+    """The jobs of a stage in a schedule."""
 
     context: TimingContext
     stage: Stage
     jobs: Jobs
     period: Time
-    cost_of: Callable[[MultiframeDemand, int], Time]
+    demand_of: Callable[[MultiframeDemand, int], Time]
 
-    def at(self, moment: Moment, is_late: bool) -> Numbers:
-        """Of each job; where it is not certain, on the late or the early side."""
+    def at(self, boundary: Boundary, is_late: bool) -> Numbers:
+        """When each job reaches a boundary; where that is uncertain, an upper or a lower bound."""
         jobs = self.jobs
-        match kind(moment):
+        match kind(boundary):
             case JobPhase.ACTIVATION:
                 return jobs.releases
             case JobPhase.START:
@@ -45,31 +45,31 @@ class Moments:
                 return jobs.ends
             case None:
                 return jobs.releases + self.period
-        position = moment.occurrence.position if isinstance(moment, At) else moment.position
+        position = boundary.occurrence.position if isinstance(boundary, At) else boundary.position
         assert position is not None
         if not position.is_certain:
             return jobs.ends if is_late else jobs.begins
-        if kind(moment) is JobPhase.BEFORE:
-            return completed_work.before(jobs, self._executed(position, with_place=False))
-        return completed_work.behind(jobs, self._executed(position, with_place=True))
+        if kind(boundary) is JobPhase.BEFORE:
+            return completed_work.times_of_continuation(jobs, self._executed(position, including=False))
+        return completed_work.times_of_completion(jobs, self._executed(position, including=True))
 
-    def _executed(self, position: ActivityPosition, with_place: bool) -> Numbers:
-        """How much each job has executed before a position, or behind it."""
+    def _executed(self, position: ActivityPosition, including: bool) -> Numbers:
+        """The demand that each job has executed before a position, or including it."""
         process, context = self.stage.process, self.context
         core = context.scheduled[process.name].core
-        before = (*position.before, position.activity) if with_place else position.before
-        cost = context.demand_model.of_activities(process, before, core)
-        table = schedule.table(cost, self.cost_of)
-        lead = len(table) - schedule.cycle(cost)
+        before = (*position.before, position.activity) if including else position.before
+        demand = context.demand_model.of_activities(process, before, core)
+        table = schedule.demand_table(demand, self.demand_of)
+        lead = len(table) - schedule.demand_cycle(demand)
         index = np.arange(len(self.jobs.releases))
-        at = np.where(index < lead, index, lead + (index - lead) % schedule.cycle(cost))
+        at = np.where(index < lead, index, lead + (index - lead) % schedule.demand_cycle(demand))
         found: Numbers = np.array(table, dtype=np.int64)[at]
         return found
 
 
-def kind(moment: Moment) -> JobPhase | None:
-    """At what a moment is; None: at the end of the period."""
-    match moment:
+def kind(boundary: Boundary) -> JobPhase | None:
+    """The phase of the job at a boundary; None: the end of the period."""
+    match boundary:
         case Read(communication=Communication.LET):
             return JobPhase.ACTIVATION
         case Read(communication=Communication.EXPLICIT, position=ActivityPosition()):
@@ -89,11 +89,11 @@ def kind(moment: Moment) -> JobPhase | None:
     return JobPhase.END
 
 
-def is_inside(moment: Moment) -> bool:
-    """Whether a moment lies within a job, where only its pieces tell when that is."""
-    return kind(moment) in (JobPhase.BEFORE, JobPhase.AFTER)
+def is_inside(boundary: Boundary) -> bool:
+    """Whether a boundary is inside a job, so that its time depends on the execution slices."""
+    return kind(boundary) in (JobPhase.BEFORE, JobPhase.AFTER)
 
 
-def is_logical(moment: Moment) -> bool:
-    """Whether a moment depends on releases and periods alone."""
-    return not isinstance(moment, Fire) and moment.communication is Communication.LET
+def is_logical(boundary: Boundary) -> bool:
+    """Whether a boundary depends only on releases and periods."""
+    return not isinstance(boundary, Fire) and boundary.communication is Communication.LET

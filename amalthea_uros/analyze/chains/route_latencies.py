@@ -1,0 +1,183 @@
+"""The latencies of a route through a chain, by each method that is valid for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from amalthea_uros.analyze.chains import job_chains
+from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
+from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
+from amalthea_uros.analyze.chains.stage_timing import in_picoseconds
+from amalthea_uros.analyze.chains.timed_stage import TimedStage
+from amalthea_uros.analyze.results import Claim, Quantity, Value
+from amalthea_uros.units import Time
+
+_Make = Callable[[Quantity, "Time | float"], Value]
+
+if TYPE_CHECKING:
+    from amalthea_uros.analyze.chains.job_chains import JobChains
+
+EXACT = "job chains over the hyperperiod"
+BOUNDED = "job chains with earliest reads and latest writes"
+SUMMED = "sum over controllers whose clocks are not synchronized"
+
+
+@dataclass(frozen=True, slots=True)
+class RouteLatencies:
+    """The latencies of a route whose stages are grouped by controller.
+
+    Attributes
+    ----------
+    parts : the stages on each controller, in order
+    unit : time units per picosecond
+    is_certain : whether all events are connected by links of known time
+    """
+
+    parts: Sequence[Sequence[TimedStage]]
+    unit: int
+    is_certain: bool
+
+    @property
+    def why(self) -> str:
+        """Why the tightest values are exact, or only bounds."""
+        everything = [timed for part in self.parts for timed in part]
+        reason = next((timed.reason for timed in everything if timed.reason), "")
+        if reason:
+            return f"bounds: {reason}"
+        if len(self.parts) > 1:
+            return "bounds: the clocks of the controllers are not synchronized"
+        if not self.is_certain:
+            return "bounds: the time at which an event of the chain causes the next one is unknown"
+        varying = next((timed.task.name for timed in everything if not timed.is_exact), None)
+        if varying is not None:
+            return f"bounds: the read and write times of {varying!r} can vary"
+        return "exact: all release times are known, and execution times are constant or have no effect"
+
+    @property
+    def why_unbounded(self) -> str:
+        """Why there is no bound of the reaction time; "" if there is one."""
+        irregular = next((timed.task.name for part in self.parts for timed in part if not timed.task.is_regular), None)
+        return f"the maximum time between two activations of {irregular!r} is unknown" if irregular is not None else ""
+
+    def values(self) -> Iterator[Value]:
+        """The values of all methods."""
+        yield from self._of_job_chains()
+        tasks = [timed.task for part in self.parts for timed in part]
+        yield from self._of_periods(tasks)
+        if all(timed.is_logical for part in self.parts for timed in part):
+            time = hamann.reaction_time(tasks)
+            yield from self._reactions(time, tasks[0], "two periods for each step", hamann.SOURCE)
+        if len(self.parts) == 1:
+            yield from self._of_releases(tasks)
+
+    # By job chains
+
+    def _of_job_chains(self) -> Iterator[Value]:
+        found = [_job_chains(part, pessimistic=True) for part in self.parts]
+        if len(found) == 1 and found[0] is not None:
+            yield from self._of_single_clock(found[0])
+        elif None not in found:
+            yield from self._summed([each for each in found if each is not None])
+
+    def _of_single_clock(self, chains: JobChains) -> Iterator[Value]:
+        is_exact = self.is_certain and all(timed.is_exact for timed in self.parts[0])
+        claim, method = (Claim.EXACT, EXACT) if is_exact else (Claim.BOUND, BOUNDED)
+
+        def value(quantity: Quantity, time: Time | float) -> Value:
+            exactly = Fraction(time) / self.unit
+            whole = round(exactly) if quantity.is_mean else in_picoseconds(exactly, 1, quantity.is_upper)
+            return Value(quantity=quantity, value=whole, claim=claim, method=method, source=job_chains.SOURCE)
+
+        yield value(Quantity.MAX_REACTION_TIME, chains.reaction_time)
+        yield value(Quantity.MAX_REDUCED_REACTION_TIME, int(chains.first_to_first.max()))
+        yield value(Quantity.MAX_DATA_AGE, chains.data_age)
+        yield value(Quantity.MAX_REDUCED_DATA_AGE, int(chains.last_to_last.max()))
+        if not is_exact:
+            yield from self._minima(value)
+            return
+        yield value(Quantity.MAX_FIRST_TO_LAST, int(chains.inputs.first_to_last.max()))
+        yield value(Quantity.MAX_LAST_TO_FIRST, int(chains.inputs.last_to_first.max()))
+        yield value(Quantity.MIN_LAST_TO_FIRST, int(chains.inputs.last_to_first.min()))
+        yield value(Quantity.MIN_FIRST_TO_FIRST, int(chains.first_to_first.min()))
+        yield value(Quantity.MIN_LAST_TO_LAST, int(chains.last_to_last.min()))
+        yield value(Quantity.MEAN_REACTION_TIME, chains.mean_reaction_time)
+        yield value(Quantity.MEAN_FIRST_TO_FIRST, float(chains.first_to_first.mean()))
+        yield value(Quantity.MEAN_LAST_TO_LAST, float(chains.last_to_last.mean()))
+
+    def _minima(self, value: _Make) -> Iterator[Value]:
+        """Lower bounds by latest reads and earliest writes."""
+        chains = _job_chains(self.parts[0], pessimistic=False)
+        if chains is not None:
+            yield value(Quantity.MIN_FIRST_TO_FIRST, max(0, int(chains.first_to_first.min())))
+            yield value(Quantity.MIN_LAST_TO_LAST, max(0, int(chains.last_to_last.min())))
+
+    def _summed(self, found: Sequence[JobChains]) -> Iterator[Value]:
+        """The sum over controllers without a common clock (theorem 5.8 of RTAS 2021)."""
+        first, *others = found
+        *before, last = found
+        sums = {
+            Quantity.MAX_REACTION_TIME: sum(each.reaction_time for each in found),
+            Quantity.MAX_REDUCED_REACTION_TIME: int(first.first_to_first.max()) + sum(e.reaction_time for e in others),
+            Quantity.MAX_DATA_AGE: sum(each.data_age for each in found),
+            Quantity.MAX_REDUCED_DATA_AGE: sum(each.data_age for each in before) + int(last.last_to_last.max()),
+        }
+        for quantity, time in sums.items():
+            yield self._bound(quantity, time, SUMMED, job_chains.SOURCE)
+
+    # By periods and response times
+
+    def _bound(self, quantity: Quantity, time: Time, method: str, source: str) -> Value:
+        whole = in_picoseconds(time, self.unit, quantity.is_upper)
+        return Value(quantity=quantity, value=whole, claim=Claim.BOUND, method=method, source=source)
+
+    def _reactions(self, time: Time, first: ChainTask, method: str, source: str) -> Iterator[Value]:
+        """A bound of the reaction time, and the bounds of data age and reduced reaction time that follow from it."""
+        yield self._bound(Quantity.MAX_REACTION_TIME, time, method, source)
+        yield self._bound(
+            Quantity.MAX_DATA_AGE, time, f"{method}; data age as reaction time", f"{source}; Günzel and others 2023"
+        )
+        yield self._bound(
+            Quantity.MAX_REDUCED_REACTION_TIME, time - first.period, f"{method}, without the first period", source
+        )
+
+    def _of_periods(self, tasks: Sequence[ChainTask]) -> Iterator[Value]:
+        """Bounds that need only maximum times between activations, and response times."""
+        first, *others = tasks
+        method = "sum of periods and response times"
+        if all(task.is_regular for task in tasks):
+            yield from self._reactions(davare.reaction_time(tasks), first, method, davare.SOURCE)
+        elif all(task.is_regular for task in others):
+            time = davare.reaction_time(tasks) - first.period
+            yield self._bound(Quantity.MAX_REDUCED_REACTION_TIME, time, f"{method}, without the first period", davare.SOURCE)
+        if not all(task.is_regular for task in tasks[:-1]):
+            return
+        if all(task.response <= task.period for task in tasks if task.is_regular):
+            if tasks[-1].is_regular:
+                yield from self._reactions(duerr.reaction_time(tasks), first, "sporadic chains", duerr.SOURCE)
+            time = duerr.reduced_data_age(tasks)
+            yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, time, "sporadic chains", duerr.SOURCE)
+
+    def _of_releases(self, tasks: Sequence[ChainTask]) -> Iterator[Value]:
+        """Bounds for periodic tasks with known releases."""
+        if any(task.offset is None or not task.is_regular or task.response > task.period for task in tasks):
+            return
+        reaction = kloda.reaction_time(tasks)
+        if reaction is not None:
+            yield from self._reactions(reaction, tasks[0], "next releases", kloda.SOURCE)
+        age = becker.reduced_data_age(tasks)
+        if age is not None:
+            yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, age, "reachable jobs", becker.SOURCE)
+        if len({task.offset for task in tasks}) == 1:
+            age = bi.reduced_data_age(tasks)
+            yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, age, "grid of releases", bi.SOURCE)
+
+
+def _job_chains(part: Sequence[TimedStage], pessimistic: bool) -> JobChains | None:
+    bounds = [timed.read_write for timed in part if timed.read_write is not None]
+    chain = [each.pessimistic if pessimistic else each.optimistic for each in bounds]
+    if len(bounds) < len(part) or not all(len(task.releases) for task in chain):
+        return None
+    return job_chains.build_job_chains(chain, max(each.steady_state_start for each in bounds))
