@@ -14,7 +14,7 @@ from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import response_time
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results import Analysis, require_analysis
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.timing.event_models import rescaled
 from amalthea_uros.timing.preemption import is_preemptive
@@ -67,6 +67,7 @@ class Proposal:
 
 def propose_priorities(analysis: Analysis) -> list[Proposal]:
     """A proposal for each core that executes tasks."""
+    require_analysis(analysis)
     solution = analysis.solution
     cores = {core: solution.context.on_core(core) for core in solution.context.system.cores}
     return [_propose(core, here, solution) for core, here in cores.items() if any(not item.is_isr for item in here)]

@@ -264,3 +264,12 @@ class Analysis:
         """Whether a deadline, requirement or constraint is missed."""
         verdicts = (*(p.verdict for p in self.processes), *(r.verdict for r in self.requirements))
         return any(verdict in (Verdict.MISSED, Verdict.UNBOUNDED) for verdict in verdicts)
+
+
+def require_analysis(analysis: Analysis) -> None:
+    """Raise a TypeError that says where an analysis comes from, if it is something else."""
+    if not isinstance(analysis, Analysis):
+        raise TypeError(
+            f"expected an Analysis, not {type(analysis).__name__}; analyze_system(system) makes one, for a model "
+            "analyze_system(extract(model).system), for a file analyze_files(path).analysis"
+        )

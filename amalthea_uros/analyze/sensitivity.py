@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results import Analysis, require_analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.timing.settings import Settings
 
@@ -36,6 +36,7 @@ class Sensitivity:
 
 def sensitivity(analysis: Analysis) -> Sensitivity:
     """The maximum factors; unknown verdicts are ignored."""
+    require_analysis(analysis)
     return Sensitivity(
         everything=max_scale(analysis),
         processes={process.name: _max_factor_of(process.name, analysis) for process in analysis.processes},

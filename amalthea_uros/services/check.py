@@ -11,7 +11,7 @@ from amalthea_uros.diagnostics import Finding, Severity, by_place
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.findings.baseline import baseline_text, read_baseline
 from amalthea_uros.findings.fingerprint import fingerprint
-from amalthea_uros.findings.grouping import Group
+from amalthea_uros.findings.grouping import Group, group
 from amalthea_uros.findings.presentation import Presentation, present
 from amalthea_uros.findings.suppression import is_suppressed
 from amalthea_uros.findings.targets import TARGETS, Target
@@ -110,13 +110,15 @@ def check_files(
     rules = selection.rules()
     found: list[Finding] = []
     is_readable = True
-    for group in by_model(files, each):
+    for paths_of_model in by_model(files, each):
         try:
-            found += _check_group(group, rules)
+            found += _check_group(paths_of_model, rules)
         except ReadError as error:
             found += error.findings
             is_readable &= not any(finding.rule.startswith(_UNREADABLE) for finding in error.findings)
     findings = tuple(finding for finding in found if _is_shown(finding, selection, accepted))
+    if len(findings) < len(found):
+        findings = _without_repeated(findings, found)
     return CheckResult(
         paths=files,
         findings=findings,
@@ -184,6 +186,22 @@ def _accepted(baseline: Path | None) -> Collection[str]:
 def _is_shown(finding: Finding, selection: Selection, accepted: Collection[str]) -> bool:
     """Whether a finding is not suppressed in any way."""
     return not (selection.is_ignored(finding.rule) or is_suppressed(finding) or fingerprint(finding) in accepted)
+
+
+def _without_repeated(findings: Sequence[Finding], found: Sequence[Finding]) -> tuple[Finding, ...]:
+    """The findings without those of reading whose flaw a suppressed rule reports too: it must not come back in general terms.
+
+    Parameters
+    ----------
+    findings : those of `found` that are not suppressed
+    """
+    kept = set(findings)
+    repeated: set[Finding] = set()
+    for flaw in group(found):
+        rules = [finding for finding in flaw.same if registry.profile_of(finding.rule) is not None]
+        if rules and kept.isdisjoint(rules):
+            repeated.update(flaw.same)
+    return tuple(finding for finding in findings if finding not in repeated)
 
 
 def _asked(selection: Selection, targets: Iterable[str]) -> set[str]:

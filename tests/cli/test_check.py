@@ -283,7 +283,7 @@ def test_what_follows_from_a_finding_is_counted_below_it(tmp_path):
     assert run.returncode == 1
     assert "INC-IO-VERSION error" in run.stdout
     assert "  consequences: INC-IO-FEATURE (1)\n" in run.stdout
-    assert run.stdout.endswith("1 finding: 1 of severity error\n")
+    assert run.stdout.endswith("1 finding: 1 error\n")
 
 
 def test_target_tools_are_summed_up_unless_they_are_asked_for(bad, tmp_path):
@@ -307,4 +307,4 @@ def test_target_tools_are_summed_up_unless_they_are_asked_for(bad, tmp_path):
     assert "INC-HW-PU-CLOCK" in run.stdout
     assert "TA tools: note 1; amuros check --profile ta shows them" in run.stdout
     (tmp_path / "amuros.toml").write_text(CHECK + 'targets = ["inchrom"]\n')
-    assert "'targets' cannot be 'inchrom'\n  help: It is one of inchron, ta." in amuros("check", bad).stderr
+    assert "'targets' cannot be 'inchrom'\n  help: Expected one of inchron, ta." in amuros("check", bad).stderr

@@ -5,13 +5,13 @@ import re
 from collections import defaultdict
 
 import pytest
-from amalthea_uros.cli.configuration import configuration_of
 from support import MODEL, ROOT
 
 from amalthea_uros import build, load
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings import catalogue
+from amalthea_uros.services.settings import project_settings
 from amalthea_uros.validate import registry
 
 ALL_KINDS = [kind for family in catalogue.FAMILIES for kind in catalogue.kinds(family)]
@@ -27,7 +27,7 @@ def emitted():
             continue
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Call):
-                for value in node.args[:1]:
+                for value in node.args[:2]:
                     if isinstance(value, ast.Constant) and isinstance(value.value, str) and ID.fullmatch(value.value):
                         found[value.value] |= set(re.findall(r"Severity\.([A-Z]+)", ast.unparse(node)))
             elif isinstance(node, ast.IfExp):
@@ -80,7 +80,7 @@ def reported(example, family, folder):
         match family:
             case "CFG":
                 (folder / "amuros.toml").write_text(example)
-                configuration_of(folder / "model.amxmi")
+                project_settings(folder / "model.amxmi")
                 return []
             case "YML" | "APP":
                 path = folder / "app.yaml"

@@ -9,6 +9,7 @@ import pytest
 
 from amalthea_uros import services
 from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.findings.presentation import present
 from amalthea_uros.report import formats
 from amalthea_uros.report.wording import counted, findings_text
 from amalthea_uros.services.check import CheckResult
@@ -40,7 +41,9 @@ def test_a_new_format_is_one_file(tmp_path, monkeypatch):
     monkeypatch.setattr(formats, "__path__", [*formats.__path__, str(tmp_path)])
     assert formats.formats_for(CheckResult) == ["text", "github", "json", "junit", "lines", "sarif"]
     stream = StringIO()
-    formats.write("lines", CheckResult(paths=(), findings=(), fail_on=Severity.ERROR, is_readable=True), stream)
+    formats.write(
+        "lines", CheckResult(paths=(), findings=(), presentation=present(()), fail_on=Severity.ERROR, is_readable=True), stream
+    )
     assert stream.getvalue() == "0 lines"
 
 

@@ -40,7 +40,7 @@ def test_a_baseline_accepts_findings(project, tmp_path):
     before = amuros.check_files(project)
     write_baseline(before, tmp_path / "accepted.json")
     assert amuros.check_files(project, amuros.CheckSettings(baseline=tmp_path / "accepted.json")).findings == ()
-    with pytest.raises(ValueError, match="is no baseline"):
+    with pytest.raises(ValueError, match="is not a baseline"):
         amuros.check_files(project, amuros.CheckSettings(baseline=project))
 
 

@@ -23,8 +23,11 @@ def result():
 
 WRONG_TYPES = {
     "a model instead of a system": (lambda m: amuros.analyze_system(m), r"not Model; extract\(model\).system"),
-    "a path instead of a system": (lambda m: amuros.sensitivity("app.yaml"), r"not str; .* analyze_files\(path\)"),
-    "a system without extraction": (lambda m: amuros.propose_priorities(m), "expected a System, not Model"),
+    "a path instead of a system": (lambda m: amuros.sensitivity("app.yaml"), r"not str; .* analyze_files\(path\).analysis"),
+    "a model instead of its analysis": (
+        lambda m: amuros.propose_priorities(m),
+        r"not Model; .* analyze_system\(extract\(model\).system\)",
+    ),
     "a name without a class": (lambda m: m["Brake (left)"], r"model\[am.Task, 'Brake \(left\)'\]"),
     "one rule instead of a list": (lambda m: amuros.check(m, "TIM-WAIT"), r"rules must be a list, e.g. \['TIM-WAIT'\]"),
     "a path instead of a model": (lambda m: amuros.check("app.amxmi"), r"not str; use check_files\(\)"),
