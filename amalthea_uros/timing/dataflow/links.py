@@ -30,7 +30,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import EventLocator, EventOccurrence, JobPhase, raises
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 
-#: The names of what an activity accesses in one way; mostly none.
+#: The names of the objects that an activity accesses in one way; empty for most activities.
 NamesOf = Callable[[ActivityPosition], tuple[str, ...]]
 
 
@@ -97,7 +97,7 @@ class Dataflow:
         return Link(LinkKind.TRIGGER, (found[0][0],), found[0][1]) if found else None
 
     def data(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
-        """The data written where one event occurs and read where the other one does; None if there are none."""
+        """The data written at one event and read at the other one; None if there are none."""
         written, read = self._accesses(first, writes), self._accesses(then, reads)
         names = tuple(name for name in written if name in read)
         if not names:
@@ -106,7 +106,7 @@ class Dataflow:
         return Link(LinkKind.DATA, names, written[names[0]][-1], read[names[0]][0])
 
     def direct(self) -> Iterator[tuple[str, str, str]]:
-        """All links between different processes, as (process, name of what links them, process)."""
+        """All links between different processes, as (process, name of the link, process)."""
         ways = ((writes, reads), *((source, target) for _, source, target in _SYNCHRONISATION))
         for source, target in ways:
             consumers: dict[str, list[str]] = {}
@@ -157,7 +157,7 @@ class Dataflow:
         return [(name, event) for name, event in found if not _is_start(event)]
 
     def _synchronisation(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
-        """How a process lets another one continue: by OS events, or by calling it as a server and getting its result."""
+        """The synchronisation of two processes by OS events, or by calls of server runnables and their results."""
         for kind, source, target in _SYNCHRONISATION:
             written, read = self.by_name(first.process.name, source), self.by_name(then.process.name, target)
             names = tuple(name for name in written if name in read)
@@ -166,7 +166,7 @@ class Dataflow:
         return None
 
     def _accesses(self, occurrence: EventOccurrence, names_of: NamesOf) -> dict[str, list[ActivityPosition]]:
-        """What is written or read where an event occurs: by the access itself, in its runnable, or anywhere in the process."""
+        """The data written or read at an event: by the access itself, in its runnable, or anywhere in the process."""
         everything = self.by_name(occurrence.process.name, names_of)
         position = occurrence.position
         if position is None:
@@ -231,7 +231,7 @@ def _serves(position: ActivityPosition) -> tuple[str, ...]:
     return ()
 
 
-#: How processes wait for each other: what one does, and what the other one does.
+#: Synchronisation of processes: kind of link, activity of the first process, activity of the second one.
 _SYNCHRONISATION: tuple[tuple[LinkKind, NamesOf, NamesOf], ...] = (
     (LinkKind.OS_EVENT, _sets, _awaits),
     (LinkKind.SERVER_CALL, _requests, _serves),

@@ -38,7 +38,7 @@ class Path:
 
     Attributes
     ----------
-    links : names of what links each process to the next
+    links : names of the data and triggers between each process and the next
     start, end : the runnables with which it starts and ends; None: the processes as a whole
     """
 
@@ -109,7 +109,7 @@ def _ends(name: str, dataflow: Dataflow, accesses: NamesOf) -> list[tuple[str, s
 
 
 def _graph(dataflow: Dataflow) -> nx.DiGraph:
-    """Processes, and what links them."""
+    """The graph of processes and their links."""
     graph: nx.DiGraph = nx.DiGraph()
     graph.add_nodes_from(dataflow.system.processes)
     for process, name, target in dataflow.direct():
@@ -120,7 +120,7 @@ def _graph(dataflow: Dataflow) -> nx.DiGraph:
 
 
 def with_chains(system: System, found: list[Path]) -> System:
-    """A system of which the chains are these paths, by their numbers."""
+    """The system with these paths as its chains, named by their numbers."""
     events: dict[str, Event] = dict(system.events_by_name)
     chains = []
     for number, path in enumerate(found, start=1):
