@@ -40,6 +40,7 @@ gen: $(READY)
 	$(BIN)/python tools/draw_terminal.py docs/images/build.svg build bodas-test-advanced.yaml
 	$(BIN)/python tools/draw_terminal.py docs/images/check.svg check bodas-test-hardware.yaml
 	$(BIN)/python tools/draw_quantities.py docs/images
+	$(BIN)/python tools/draw_rooms.py
 
 bench: $(READY)
 	$(BIN)/python -m pip install --quiet --editable '.[bench]'

@@ -142,7 +142,6 @@ def parse_bit_rate(text: str) -> BitRate:
 _TIME_STEPS = (("s", SECOND), ("ms", MILLISECOND), ("us", MICROSECOND), ("ns", NANOSECOND), ("ps", PICOSECOND))
 _FREQUENCY_STEPS = (("GHz", 10**9), ("MHz", 10**6), ("kHz", 10**3), ("Hz", 1))
 _DATA_STEPS = tuple((unit, DATA_SIZE.units[unit]) for unit in ("GiB", "GB", "MiB", "MB", "KiB", "kB", "B", "bit"))
-_RATE_STEPS = (("Gbit/s", 10**9), ("Mbit/s", 10**6), ("kbit/s", 10**3), ("bit/s", 1))
 
 
 _TWELVE_DIGITS = Context(prec=12, Emax=MAX_EMAX)
@@ -176,11 +175,6 @@ def data_size_text(value: DataSize) -> str:
     """A data size for people, in the largest unit that needs no decimals: "240 KiB", "4 B"."""
     unit, size = next(step for step in _DATA_STEPS if (value and value % step[1] == 0) or step[1] == 1)
     return f"{number_text(value // size)} {unit}" if value else "0 B"
-
-
-def bit_rate_text(value: BitRate) -> str:
-    """A bit rate for people: "250 kbit/s"."""
-    return _steps_text(value, _RATE_STEPS)
 
 
 def ticks_of_time(time: Time, frequency: Frequency) -> Fraction:

@@ -12,7 +12,8 @@ from support import ROOT
 
 from amalthea_uros.validate import registry
 
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "benchmarks").glob("*.md"))]
+FOLDERS = (ROOT / "docs", ROOT / "benchmarks")
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(page for folder in FOLDERS for page in sorted(folder.glob("*.md")))]
 BLOCK = re.compile(r"```(python|console)\n(.*?)```", re.DOTALL)
 
 
@@ -58,7 +59,6 @@ def test_every_rule_is_documented():
 
 def test_the_number_of_rules():
     number = len(list(registry.ids()))
-    assert f"{number} rules" in (ROOT / "benchmarks" / "README.md").read_text()
     assert "Nearly two hundred rules" in (ROOT / "README.md").read_text()
     assert 190 <= number < 200
 

@@ -105,9 +105,8 @@ def test_a_number_as_text_is_right_to_twelve_digits(number):
     assert abs(Fraction(units.number_text(number)) - number) <= abs(number) / 10**11
 
 
-def test_frequencies_and_bit_rates_as_text():
+def test_frequencies_as_text():
     assert units.frequency_text(Fraction(300 * 10**6)) == "300 MHz"
-    assert units.bit_rate_text(250_000) == "250 kbit/s"
 
 
 @given(st.integers(0, 10**11))

@@ -110,16 +110,6 @@ def write_bytes(path: Path, data: bytes) -> None:
                 Path(temporary).unlink()
 
 
-def write_text(path: Path, text: str) -> None:
-    """Write a UTF-8 file whole or not at all.
-
-    Raises
-    ------
-    FileError : as for `write_bytes`.
-    """
-    write_bytes(path, text.encode())
-
-
 def not_writable(path: Path, error: OSError | ValueError) -> FileError:
     """The error for a path at which a file or a directory cannot be created."""
     return FileError(path, f"the file cannot be written: {_cause(error)}")

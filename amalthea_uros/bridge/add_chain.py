@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypeVar
 
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.model import Model
@@ -18,8 +17,6 @@ _RUNNABLE = {
     RunnableChange.START: am.RunnableEventType.START,
     RunnableChange.TERMINATE: am.RunnableEventType.TERMINATE,
 }
-
-T = TypeVar("T", bound=am.BaseObject)
 
 
 def add_chain(model: Model, chain: EventChain, events: Sequence[Event]) -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 
@@ -15,41 +16,36 @@ from amalthea_uros.services.analyze import AnalysisResult, ChainDetail, Explanat
 from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.units import Frequency, parse_frequency
 
+T = TypeVar("T")
+
 _COMMUNICATION = {str(how).lower(): how for how in Communication}
 
 
-class CoreFrequency(click.ParamType[tuple[str, Frequency]]):
-    """`CORE=300MHz`."""
+class Assignment(click.ParamType[tuple[str, T]]):
+    """Text of the form NAME=VALUE; a function that raises a `ValueError` for wrong text converts the value."""
 
-    name = "CORE=FREQUENCY"
+    def __init__(self, form: str, convert: Callable[[str], T]) -> None:
+        self.name = form
+        self._convert = convert
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, Frequency]:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, T]:
         """Parse one value."""
         if isinstance(value, tuple):
             return value
-        core, _, text = str(value).partition("=")
+        name, _, text = str(value).partition("=")
+        if not name or not text:
+            self.fail(f"{value!r} is not of the form {self.name}", param, ctx)
         try:
-            frequency = parse_frequency(text)
+            return name, self._convert(text)
         except ValueError as error:
             self.fail(str(error), param, ctx)
-        if frequency <= 0:
-            self.fail("a frequency must be greater than zero", param, ctx)
-        return core, frequency
 
 
-class ModeValue(click.ParamType[tuple[str, str]]):
-    """`LABEL=VALUE`."""
-
-    name = "LABEL=VALUE"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, str]:
-        """Parse one value."""
-        if isinstance(value, tuple):
-            return value
-        label, equals, text = str(value).partition("=")
-        if not equals or not label or not text:
-            self.fail(f"{value!r} is not of the form LABEL=VALUE", param, ctx)
-        return label, text
+def _clock(text: str) -> Frequency:
+    frequency = parse_frequency(text)
+    if frequency <= 0:
+        raise ValueError("a frequency must be greater than zero")
+    return frequency
 
 
 @click.command("analyze")
@@ -58,7 +54,7 @@ class ModeValue(click.ParamType[tuple[str, str]]):
     "--frequency",
     "frequencies",
     multiple=True,
-    type=CoreFrequency(),
+    type=Assignment("CORE=FREQUENCY", _clock),
     help="Clock of a core, e.g. Core_0=300MHz; may be repeated.",
 )
 @click.option(
@@ -68,7 +64,13 @@ class ModeValue(click.ParamType[tuple[str, str]]):
     show_default=True,
     help="Factor by which all execution times are multiplied.",
 )
-@click.option("--mode", "modes", multiple=True, type=ModeValue(), help="Constant value of a mode label; may be repeated.")
+@click.option(
+    "--mode",
+    "modes",
+    multiple=True,
+    type=Assignment("LABEL=VALUE", str),
+    help="Constant value of a mode label; may be repeated.",
+)
 @click.option(
     "--memory",
     type=click.Choice([str(memory) for memory in Memory]),

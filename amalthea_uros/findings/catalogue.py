@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from importlib import import_module
 
 from amalthea_uros.findings.kind import FindingKind
@@ -29,11 +28,6 @@ def kinds(family: str) -> tuple[FindingKind, ...]:
     """The kinds of findings of a family, by id."""
     found: tuple[FindingKind, ...] = import_module(f"amalthea_uros.findings.families.{family.lower()}").KINDS
     return found
-
-
-def all_kinds() -> Iterator[FindingKind]:
-    """The kinds of findings of all families."""
-    return (kind for family in FAMILIES for kind in kinds(family))
 
 
 def find(identifier: str) -> FindingKind | None:

@@ -462,11 +462,18 @@ class Label(Named):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Channel(Named):
-    """A queue; sizes in bits, capacity in elements."""
+    """A queue; sizes in bits, capacity in elements.
+
+    Attributes
+    ----------
+    external : elements leave the system on their way, as the messages of a topic do that pass an agent: it is unknown when they
+        arrive
+    """
 
     element_size: DataSize | None = None
     default_elements: int = 0
     capacity: int = 0
+    external: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -25,10 +25,6 @@ class Counter:
     prescaler: int = 1
     offset: int = 0
 
-    def lets_through(self, occurrence: int) -> bool:
-        """Whether an occurrence, counted from 1, takes effect."""
-        return occurrence >= max(self.offset, 1) and (occurrence - self.offset) % self.prescaler == 0
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AbstractStimulus(Named):

@@ -13,7 +13,7 @@ from amalthea_uros.perf.hardware import Cache, Clock, Connection, Core, Hardware
 from amalthea_uros.perf.mapping import Mapping as SystemMapping
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.os import InterruptController, Os, Scheduler
-from amalthea_uros.perf.software import Label, Process, Runnable, Software
+from amalthea_uros.perf.software import Channel, Label, Process, Runnable, Software
 from amalthea_uros.perf.stimuli import Stimuli, Stimulus
 
 N = TypeVar("N", bound=Named)
@@ -92,6 +92,11 @@ class System:
     def labels(self) -> Mapping[str, Label]:
         """The labels."""
         return _by_name(self.software.labels)
+
+    @cached_property
+    def channels(self) -> Mapping[str, Channel]:
+        """The channels."""
+        return _by_name(self.software.channels)
 
     @cached_property
     def events_by_name(self) -> Mapping[str, Event]:

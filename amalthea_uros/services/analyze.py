@@ -13,8 +13,9 @@ from amalthea_uros.analyze.sensitivity import Sensitivity, sensitivity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import StrPath, as_paths, open_system
+from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require
+from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.timing.settings import Settings
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.metamodel.model import Document, Model
-from amalthea_uros.services.inputs import StrPath
+from amalthea_uros.services.paths import StrPath
 from amalthea_uros.uros.assemble import Assembly, assemble
 
 

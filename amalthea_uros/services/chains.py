@@ -8,7 +8,8 @@ from pathlib import Path
 from amalthea_uros.analyze.results import ChainResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.inputs import StrPath, is_description, open_system
+from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.paths import StrPath, is_description
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.paths import Path as ProcessPath
 from amalthea_uros.timing.dataflow.paths import UnknownEndError, paths, with_chains

@@ -17,7 +17,8 @@ from amalthea_uros.findings.suppression import is_suppressed
 from amalthea_uros.findings.targets import TARGETS, Target
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import StrPath, as_paths, by_model, open_model
+from amalthea_uros.services.inputs import open_model
+from amalthea_uros.services.paths import StrPath, as_paths, by_model
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run, run_system

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from amalthea_uros.difference.comparison import Change, difference
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.services.inputs import StrPath
+from amalthea_uros.services.paths import StrPath
 from amalthea_uros.xmi.load import load
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros.services.check import selection_of
-from amalthea_uros.services.inputs import StrPath, as_paths, by_model, is_description
+from amalthea_uros.services.paths import StrPath, as_paths, by_model, is_description
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.repair import repair

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError, WriteError
-from amalthea_uros.services.inputs import StrPath, as_paths
+from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.xmi.load import load, model_files
 from amalthea_uros.xmi.save import save
 from amalthea_uros.xmi.writer import document_text

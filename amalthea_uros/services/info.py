@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.metamodel.summary import ModelSummary, summarise
-from amalthea_uros.services.inputs import StrPath, as_paths
+from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.xmi.load import load
 
 

@@ -1,22 +1,17 @@
-"""What a path is, and what is read from it: an `app.yaml`, or AMALTHEA models."""
+"""What is read from paths: an `app.yaml`, or AMALTHEA models."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.services.paths import StrPath, is_description
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Model
     from amalthea_uros.perf.system import System
-
-StrPath = str | PathLike[str]
-
-_DESCRIPTION_SUFFIXES = (".yaml", ".yml")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,41 +43,6 @@ class SystemInput:
     system: System
     model: Model | None
     findings: tuple[Finding, ...]
-
-
-def is_description(path: StrPath) -> bool:
-    """Whether a file is an `app.yaml`, by its name."""
-    return Path(path).suffix in _DESCRIPTION_SUFFIXES
-
-
-def as_paths(paths: StrPath | Iterable[StrPath]) -> tuple[Path, ...]:
-    """One path or several, as a tuple.
-
-    Raises
-    ------
-    ValueError : there is none.
-    """
-    found = (Path(paths),) if isinstance(paths, str | PathLike) else tuple(map(Path, paths))
-    if not found:
-        raise ValueError("no path given; expected at least one file or folder")
-    return found
-
-
-def by_model(paths: Iterable[Path], each: bool = False) -> Iterator[tuple[Path, ...]]:
-    """The paths that make one model together: all models, but each description on its own.
-
-    Parameters
-    ----------
-    each : every path is a model of its own
-    """
-    models = []
-    for path in paths:
-        if each or is_description(path):
-            yield (path,)
-        else:
-            models.append(path)
-    if models:
-        yield tuple(models)
 
 
 def open_model(paths: Sequence[StrPath]) -> ModelInput:

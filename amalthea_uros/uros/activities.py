@@ -1,4 +1,4 @@
-"""The activities of a runnable: lock, read, compute, write, unlock, trigger."""
+"""The activities of a runnable: lock, read, compute, write, send, unlock, trigger."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from amalthea_uros.perf.software import (
     LabelAccess,
     SemaphoreAccess,
     SemaphoreOperation,
+    Send,
     Trigger,
     Waiting,
 )
@@ -26,6 +27,7 @@ def activity_sequence(
     *,
     reads: Iterable[str] = (),
     writes: Iterable[str] = (),
+    sends: Iterable[str] = (),
     triggers: Iterable[str] = (),
     locks: Iterable[str] = (),
 ) -> tuple[Activity, ...]:
@@ -36,6 +38,7 @@ def activity_sequence(
         *(LabelAccess(label=label, kind=AccessKind.READ) for label in reads),
         *execute,
         *(LabelAccess(label=label, kind=AccessKind.WRITE) for label in writes),
+        *(Send(channel=channel) for channel in sends),
         *(_access(lock, SemaphoreOperation.RELEASE) for lock in reversed(held)),
         *(Trigger(stimulus=trigger_name(task)) for task in triggers),
     )

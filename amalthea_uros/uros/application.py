@@ -63,7 +63,9 @@ def _executor_calls(
     period: Time,
     core: str,
 ) -> list[PlannedCall]:
-    runnables = ExecutorRunnables(middleware=context.description.middleware, converter=context.converter, core=core)
+    runnables = ExecutorRunnables(
+        middleware=context.description.middleware, converter=context.converter, core=core, channels=context.channels
+    )
     return [
         PlannedCall(runnable=runnables.spin(timer_count((*outside, *inside)))),
         *own_task_calls(outside, runnables, period),
@@ -111,6 +113,7 @@ def _body(context: AssemblyContext, callback: Callback, executor_core: str) -> R
         context.converter.execute([section.execution_time, *sending], core, section.location("execution_time")),
         reads=dict.fromkeys([*([callback.buffer] if callback.buffer else []), *section.reads]),
         writes=dict.fromkeys(section.writes),
+        sends=[message.channel for message in callback.outgoing if message.channel in context.channels],
     )
     return Runnable(name=body_name(callback), activities=activities, origin=callback.origin)
 

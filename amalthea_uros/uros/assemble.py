@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
@@ -15,21 +15,23 @@ from amalthea_uros.perf.stimuli import Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import Hardware
+from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.uros.application import add_callbacks, add_interrupt
 from amalthea_uros.uros.background_tasks import add_background_tasks
 from amalthea_uros.uros.bus_messages import BusMessage, bus_messages, check_bus_load
-from amalthea_uros.uros.callbacks import Callback, callbacks_of
+from amalthea_uros.uros.callbacks import Callback, callbacks_of, internal_channels
 from amalthea_uros.uros.chain_elements import chain_elements
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
-from amalthea_uros.uros.names import check_unique_names
+from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
 from amalthea_uros.uros.periods import PeriodChoice
 from amalthea_uros.uros.pools import Pool, check_pools, pools_of
+from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
 from amalthea_uros.uros.streams import check_streams
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
@@ -86,6 +88,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
     pools = pools_of(application, middleware)
     check_pools(pools, callbacks, middleware, context.notes)
     check_streams(callbacks, middleware, context.notes)
+    context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
     add_interrupt(context, messages)
     add_background_tasks(context)
@@ -110,10 +113,9 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
     description, notes = context.description, context.notes
     check_misspelled_labels(description, context.runnables, notes)
     labels = labels_of(description, callbacks, context.runnables)
+    check_unique_data(labels, context.channels.values(), notes)
     elements = chain_elements(context, callbacks)
-    chains = Chains(elements, frozenset(label.name for label in labels), notes)
-    limits = chains.add_all(description.chains)
-    return System(
+    system = System(
         hardware=context.controller.hardware,
         os=os_of(context),
         stimuli=Stimuli(stimuli=context.stimuli.stimuli),
@@ -122,12 +124,19 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
             isrs=tuple(map(_isr, context.isrs)),
             runnables=tuple(context.runnables.values()),
             labels=labels,
+            channels=tuple(context.channels.values()),
         ),
         mapping=Mapping(
             tasks=tuple(task_allocations(context)),
             isrs=tuple(isr_allocations(context)),
             placements=tuple(placements(labels, description, context.controller, notes)),
         ),
+    )
+    check_shared_priorities(system, context.tasks, notes)
+    chains = Chains(elements, Dataflow(system), notes)
+    limits = chains.add_all(description.chains)
+    return replace(
+        system,
         events=Events(events=tuple(chains.events.values()), chains=tuple(chains.chains.values())),
         constraints=Constraints(
             constraints=limits, requirements=tuple(requirements(description.requirements, elements, notes))

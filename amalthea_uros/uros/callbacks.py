@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.software import Channel
 from amalthea_uros.spec.application import Application, Client, MessageCallback, Node, Service, Subscription, Timer
 from amalthea_uros.spec.application import Callback as Section
 from amalthea_uros.spec.middleware import Executor
@@ -31,12 +32,14 @@ class Message:
     ----------
     callback : the callback that receives or sends it
     topic : or the service, for requests and responses
+    channel : the name of its channel in the model, if the same application sends and receives it
     size : without headers
     interval : minimum time between two messages
     """
 
     callback: str
     topic: str
+    channel: str
     size: DataSize
     interval: Time
     reliable: bool
@@ -142,22 +145,39 @@ def _incoming(section: Section, interval: Time) -> Message | None:
     match section:
         case Subscription():
             topic, size, reliable = section.topic, section.message_size, section.reliability == "reliable"
+            channel = _topic_channel(topic)
         case Service():
             topic, size, reliable = section.name, section.request_size, True
+            channel = _request_channel(topic)
         case Client():
             topic, size, reliable = section.service, section.response_size, True
+            channel = _response_channel(topic)
         case _:
             return None
     return Message(
-        callback=section.name, topic=topic, size=size, interval=interval, reliable=reliable, origin=section.location()
+        callback=section.name,
+        topic=topic,
+        channel=channel,
+        size=size,
+        interval=interval,
+        reliable=reliable,
+        origin=section.location(),
     )
 
 
 def _outgoing(section: Section, node: Node, interval: Time, notes: Notes) -> Iterator[Message]:
     """What a callback sends: messages to topics, requests to services, and the response if it is a service."""
 
-    def message(topic: str, size: DataSize, reliable: bool, origin: Location | None) -> Message:
-        return Message(callback=section.name, topic=topic, size=size, interval=interval, reliable=reliable, origin=origin)
+    def message(topic: str, channel: str, size: DataSize, reliable: bool, origin: Location | None) -> Message:
+        return Message(
+            callback=section.name,
+            topic=topic,
+            channel=channel,
+            size=size,
+            interval=interval,
+            reliable=reliable,
+            origin=origin,
+        )
 
     for index, topic in enumerate(section.publishes):
         publisher = next((publisher for publisher in node.publishers if publisher.topic == topic), None)
@@ -165,16 +185,40 @@ def _outgoing(section: Section, node: Node, interval: Time, notes: Notes) -> Ite
             topics = [publisher.topic for publisher in node.publishers]
             notes.undefined("publisher", topic, topics, section.location("publishes", index), owner=f"node {node.name!r}")
         else:
-            yield message(topic, publisher.message_size, publisher.reliability == "reliable", publisher.location())
+            is_reliable = publisher.reliability == "reliable"
+            yield message(topic, _topic_channel(topic), publisher.message_size, is_reliable, publisher.location())
     for index, name in enumerate(section.requests):
         client = next((client for client in node.clients if client.name == name), None)
         if client is None:
             names = [client.name for client in node.clients]
             notes.undefined("client", name, names, section.location("requests", index), owner=f"node {node.name!r}")
         else:
-            yield message(client.service, client.request_size, True, client.location())
+            yield message(client.service, _request_channel(client.service), client.request_size, True, client.location())
     if isinstance(section, Service):
-        yield message(section.name, section.response_size, True, section.location())
+        yield message(section.name, _response_channel(section.name), section.response_size, True, section.location())
+
+
+def _topic_channel(topic: str) -> str:
+    return f"{topic}_topic"
+
+
+def _request_channel(service: str) -> str:
+    return f"{service}_request"
+
+
+def _response_channel(service: str) -> str:
+    return f"{service}_response"
+
+
+def internal_channels(callbacks: Sequence[Callback]) -> Mapping[str, Channel]:
+    """The channels of messages that the application sends and receives itself; they pass the agent on their way."""
+    received = {callback.incoming.channel for callback in callbacks if callback.incoming is not None}
+    sent = {message.channel: message for callback in callbacks for message in callback.outgoing}
+    return {
+        name: Channel(name=name, element_size=message.size, capacity=1, external=True, origin=message.origin)
+        for name, message in sent.items()
+        if name in received
+    }
 
 
 def registration_order(callbacks: Iterable[Callback], executor: Executor, notes: Notes) -> tuple[Callback, ...]:

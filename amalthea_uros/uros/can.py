@@ -58,18 +58,6 @@ def frames(message_bytes: int) -> int:
     return max(1, -(-message_bytes // BLOCK_BYTES))
 
 
-def block_header(index: int, count: int) -> int:
-    """The first byte of a block: bit 0 marks the first block of a message, bit 1 the last one."""
-    return (index == 0) | (index == count - 1) << 1
-
-
-def blocks(message: bytes) -> list[bytes]:
-    """The data of the frames of a message: a header byte each, then up to 7 bytes."""
-    count = frames(len(message))
-    parts = (message[index * BLOCK_BYTES : (index + 1) * BLOCK_BYTES] for index in range(count))
-    return [bytes([block_header(index, count)]) + part for index, part in enumerate(parts)]
-
-
 def max_message_bits(bus: CanBus, message_bytes: int) -> int:
     """Maximum bits of a message on the bus: all its frames with full data, since a transport may pad the last block."""
     return frames(message_bytes) * bus.max_frame_bits(FRAME_BYTES)

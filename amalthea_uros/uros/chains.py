@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import pairwise, product
 
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf import events as perf
 from amalthea_uros.perf.constraints import LatencyConstraint, LatencyKind
+from amalthea_uros.perf.software import Label
 from amalthea_uros.spec.requirements import Chain, Moment
+from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.timing.dataflow.links import Dataflow
+from amalthea_uros.timing.dataflow.routes import is_linked
 from amalthea_uros.uros.chain_elements import ChainElement
 from amalthea_uros.uros.notes import Notes
 
@@ -27,15 +31,20 @@ class Chains:
     Attributes
     ----------
     elements : by the name that a path uses
-    labels : names of all labels
+    dataflow : of the system, which has no events yet
     """
 
     elements: Mapping[str, ChainElement]
-    labels: frozenset[str]
+    dataflow: Dataflow
     notes: Notes
     events: dict[str, perf.Event] = field(default_factory=dict)
     chains: dict[str, perf.EventChain] = field(default_factory=dict)
     _seen: set[str] = field(default_factory=set)
+
+    @property
+    def labels(self) -> Mapping[str, Label]:
+        """The labels."""
+        return self.dataflow.system.labels
 
     def add_all(self, sections: Sequence[Chain]) -> tuple[LatencyConstraint, ...]:
         """Add all chains of the description, and return the limits of their latency."""
@@ -100,35 +109,67 @@ class Chains:
                 advice = f"Add the process or runnable that accesses {path[index]!r}."
                 self.notes.error("APP004", message, place(index), advice)
                 return None
-        self._check_hops(path, place)
-        names = [self._event_at(path[0], section.start)]
-        for before, name, after in zip(path, path[1:], path[2:], strict=False):
+        self._check_labels(path, place)
+        found = [(0, self._event_at(path[0], section.start))]
+        for index, (before, name, after) in enumerate(zip(path, path[1:], path[2:], strict=False), start=1):
             if name in self.labels and name not in self.elements:
-                names.append(self._write_event(before, name))
+                found.append((index, self._write_event(before, name)))
             elif after in self.elements:
                 # An element that writes the next label of the path is represented by that write.
-                names.append(self._event_at(name, "finish"))
-        names.append(self._event_at(path[-1], section.end))
+                found.append((index, self._event_at(name, "finish")))
+        found.append((len(path) - 1, self._event_at(path[-1], section.end)))
+        names = self._connected(found, path, place)
         if names[0] == names[-1]:
             message = f"chain {section.name!r} starts and ends with the same event {names[0]!r}"
             self.notes.error("APP004", message, section.location(), "Change 'from' or 'to', or extend the path.")
             return None
         return names
 
-    def _check_hops(self, path: Sequence[str], place: Callable[[int], Location | None]) -> None:
-        """Note where nothing carries the effect from one member to the next."""
+    def _check_labels(self, path: Sequence[str], place: Callable[[int], Location | None]) -> None:
+        """Note labels of the path that the member before does not write, or the one after does not read."""
         members = [(index, name) for index, name in enumerate(path) if name in self.elements]
         for (start, first), (end, then) in pairwise(members):
-            between = path[start + 1 : end]
-            for label in between:
+            for label in path[start + 1 : end]:
                 if label not in self.elements[first].writes:
                     self.notes.warning("UR130", f"{first!r} does not write {label!r}", place(start + 1))
                 if label not in self.elements[then].reads:
                     self.notes.warning("UR130", f"{then!r} does not read {label!r}", place(end))
-            if not between and carrier(self.elements[first], self.elements[then]) is None:
-                message = f"no data flow or trigger connects {first!r} to {then!r}"
-                advice = f"Let {first!r} write a label that {then!r} reads, or trigger it."
-                self.notes.warning("UR130", message, place(end), advice)
+
+    def _connected(
+        self, events: Sequence[tuple[int, str]], path: Sequence[str], place: Callable[[int], Location | None]
+    ) -> list[str]:
+        """The events, with those by which a message comes back from the agent; members that nothing connects get a finding.
+
+        Parameters
+        ----------
+        events : position in the path, and name
+        """
+        found = [events[0][1]]
+        for (index, first), (_, then) in pairwise(events):
+            members = path[index : index + 2]
+            if len(members) == 2 and all(name in self.elements for name in members):
+                taken_by = self._taken_by(*(self.elements[name] for name in members))
+                if taken_by is not None and not self._is_direct(first, then):
+                    found.append(self._event_at(taken_by, "finish"))
+                elif not is_linked(self.events[first], self.events[then], self.dataflow):
+                    message = f"no data flow or trigger connects {members[0]!r} to {members[1]!r}"
+                    advice = f"Let {members[0]!r} write a label that {members[1]!r} reads, or trigger it."
+                    self.notes.warning("UR130", message, place(index + 1), advice)
+            found.append(then)
+        return found
+
+    def _taken_by(self, sender: ChainElement, receiver: ChainElement) -> str | None:
+        """The element that takes the messages of one member for another one; None if there are none."""
+        name = receiver.taken_by if sender.sends & receiver.receives else None
+        return name if name in self.elements else None
+
+    def _is_direct(self, first: str, then: str) -> bool:
+        """Whether a label or a trigger connects two events, so that no message has to."""
+        try:
+            ends = product(*(self.dataflow.events.of(self.events[name]) for name in (first, then)))
+        except UnresolvedError:
+            return False
+        return any(self.dataflow.data(*pair) or self.dataflow.trigger(*(end.process.name for end in pair)) for pair in ends)
 
     def _event_at(self, name: str, moment: Moment) -> str:
         """The event of a process or runnable at a moment of its job."""
@@ -200,16 +241,6 @@ class Chains:
         items = perf.Parallel(items=branches, completed=section.completed)
         ((first, last),) = ends
         return perf.EventChain(name=section.name, stimulus=first, response=last, items=items, origin=section.location())
-
-
-def carrier(first: ChainElement, then: ChainElement) -> str | None:
-    """What carries the effect from one member to the next: a label, a trigger, or a topic by way of the agent."""
-    label = min(first.writes & then.reads, default=None)
-    if label is not None:
-        return label
-    if then.process in first.activates:
-        return f"trigger of {then.process}"
-    return min(first.sends & then.receives, default=None)
 
 
 def _limits(section: Chain) -> list[LatencyConstraint]:

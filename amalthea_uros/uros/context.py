@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.perf.software import Runnable
+from amalthea_uros.perf.software import Channel, Runnable
 from amalthea_uros.spec.description import Description
 from amalthea_uros.uros.demand import DemandConverter
 from amalthea_uros.uros.hardware import Controller
@@ -21,6 +22,7 @@ class AssemblyContext:
     Attributes
     ----------
     runnables : by name, in the order of their creation
+    channels : by name, of the messages that the application sends and receives itself
     """
 
     description: Description
@@ -30,6 +32,7 @@ class AssemblyContext:
     tasks: list[PlannedTask] = field(default_factory=list)
     isrs: list[PlannedIsr] = field(default_factory=list)
     runnables: dict[str, Runnable] = field(default_factory=dict)
+    channels: Mapping[str, Channel] = field(default_factory=dict)
 
     @property
     def converter(self) -> DemandConverter:

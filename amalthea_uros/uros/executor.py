@@ -11,10 +11,10 @@ every n-th time.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.perf.software import AccessKind, Activity, Call, LabelAccess, Runnable
+from amalthea_uros.perf.software import AccessKind, Activity, Call, LabelAccess, Receive, ReceiveOperation, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.middleware import Executor, MessageCost, Middleware
@@ -40,11 +40,17 @@ class PlannedCall:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExecutorRunnables:
-    """Creates the runnables of the executor, with their cost on its core."""
+    """Creates the runnables of the executor, with their cost on its core.
+
+    Attributes
+    ----------
+    channels : names of the channels of messages that the application sends itself
+    """
 
     middleware: Middleware
     converter: DemandConverter
     core: str
+    channels: Collection[str]
 
     def spin(self, timers: int) -> Runnable:
         """What every activation does."""
@@ -59,11 +65,18 @@ class ExecutorRunnables:
         cost = self.middleware.executor.execution_time
         message = callback.incoming
         parts = [cost.per_ready_callback, *message_cost(cost.per_message, message.size if message else None)]
-        activities: list[Activity] = [*self.converter.execute(parts, self.core, callback.origin)]
+        activities: list[Activity] = []
+        if message is not None and message.channel in self.channels:
+            activities.append(Receive(channel=message.channel, operation=ReceiveOperation.FIFO_TAKE))
+        activities += self.converter.execute(parts, self.core, callback.origin)
         if callback.buffer is not None:
             activities.append(LabelAccess(label=callback.buffer, kind=AccessKind.WRITE))
-        verb = "Take" if message else "Notify"
-        return Runnable(name=f"{verb}_{callback.name}", activities=tuple(activities), origin=callback.origin)
+        return Runnable(name=notification_name(callback), activities=tuple(activities), origin=callback.origin)
+
+
+def notification_name(callback: Callback) -> str:
+    """The name of the runnable of the executor that makes a callback ready."""
+    return f"{'Take' if callback.incoming else 'Notify'}_{callback.name}"
 
 
 def message_cost(cost: MessageCost, size: DataSize | None) -> list[ExecutionTime | Time | None]:

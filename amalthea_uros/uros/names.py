@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.software import Channel, Label
 from amalthea_uros.spec.description import Description
 from amalthea_uros.uros.notes import Notes
 
@@ -14,6 +15,12 @@ def check_unique_names(description: Description, notes: Notes) -> None:
     nodes = description.application.nodes
     _check("node", ((node.name, node.location("name")) for node in nodes), notes)
     _check("process", _processes(description), notes)
+
+
+def check_unique_data(labels: Iterable[Label], channels: Iterable[Channel], notes: Notes) -> None:
+    """Report labels that have the name of a channel, so that one could be taken for the other."""
+    named = ((item.name, item.origin) for items in (labels, channels) for item in items)
+    _check("label or channel", named, notes)
 
 
 def _processes(description: Description) -> Iterable[tuple[str, Location | None]]:

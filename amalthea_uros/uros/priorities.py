@@ -6,10 +6,13 @@ executor has the highest priority; the others follow in the order of the file.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import count
 from math import inf
 
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.allocation import allocated_cores
+from amalthea_uros.timing.shared_priorities import sharing_a_priority
 from amalthea_uros.units import time_text
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.tasks import PlannedTask
@@ -29,7 +32,6 @@ def priorities(tasks: Sequence[PlannedTask], notes: Notes) -> Mapping[str, int]:
         else:
             assigned[task.name] = task.priority
         highest = max(highest, assigned[task.name])
-    _check_duplicates(tasks, notes)
     return assigned
 
 
@@ -58,12 +60,13 @@ def _report_no_gap(task: PlannedTask, above: PlannedTask, notes: Notes) -> None:
     notes.warning("UR105", message, task.origin, f"Set the priority of {task.name!r}, or raise that of {above.name!r}.")
 
 
-def _check_duplicates(tasks: Sequence[PlannedTask], notes: Notes) -> None:
-    first: dict[int, PlannedTask] = {}
-    for task in tasks:
-        if task.priority is None:
-            continue
-        other = first.setdefault(task.priority, task)
-        if other is not task:
-            message = f"{task.name!r} has the same priority {task.priority} as {other.name!r}"
-            notes.warning("UR106", message, task.origin, "Set different priorities.")
+def check_shared_priorities(system: System, tasks: Iterable[PlannedTask], notes: Notes) -> None:
+    """Report the tasks that have the priority of one before them, where the priority decides."""
+    origins = {task.name: task.origin for task in tasks}
+    seen: set[str] = set()
+    for allocation, priority, others in sharing_a_priority(system, allocated_cores(system)):
+        seen.add(allocation.task)
+        before = next((other for other in others if other in seen), None)
+        if before is not None:
+            message = f"{allocation.task!r} has the same priority {priority} as {before!r}"
+            notes.warning("UR106", message, origins.get(allocation.task), "Set different priorities.")

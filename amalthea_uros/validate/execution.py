@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import ceil, isfinite
+from collections.abc import Collection, Iterator, Mapping
 
 from amalthea_uros._internal.graphs import bottom_up
 from amalthea_uros.metamodel.classes import (
@@ -65,49 +64,31 @@ def _servers(context: Context) -> dict[IExecutable, list[Runnable]]:
     return found
 
 
-def order(context: Context) -> list[IExecutable]:
-    """All that processes execute, runnables before their callers."""
-    return context.once(_order)
+def executing(item: Element, context: Context) -> Collection[Process]:
+    """The processes in whose jobs something is executed, in the order of the model."""
+    holder = item if isinstance(item, IExecutable) else item.enclosing(IExecutable)
+    return context.once(_executing).get(holder, {}) if holder is not None else {}
 
 
-def _order(context: Context) -> list[IExecutable]:
-    return bottom_up(context.all(Process), lambda caller: called(caller, context))
-
-
-def executions(context: Context) -> Mapping[IExecutable, Mapping[Process, int]]:
-    """How often at most a job of each process executes a process or runnable: itself once."""
-    return context.once(_executions)
-
-
-def _executions(context: Context) -> dict[IExecutable, dict[Process, int]]:
-    found: dict[IExecutable, dict[Process, int]] = {process: {process: 1} for process in context.all(Process)}
-    done: set[IExecutable] = set()
-    for caller in reversed(order(context)):
-        done.add(caller)
-        for call in calls(context).get(caller, ()):
-            # Within a circle nothing is counted twice.
-            if call.runnable is not None and call.runnable not in done:
-                _add(found.setdefault(call.runnable, {}), found.get(caller, {}), times(call))
+def _executing(context: Context) -> dict[IExecutable, dict[Process, None]]:
+    """The processes that execute each process or runnable, as the keys of a mapping, which keeps their order."""
+    found: dict[IExecutable, dict[Process, None]] = {}
+    for process in context.all(Process):
+        starts: list[IExecutable] = [process]
+        for item in bottom_up(starts, lambda caller: _executed(caller, context)):
+            found.setdefault(item, {})[process] = None
     return found
 
 
-def _add(counts: dict[Process, int], others: Mapping[Process, int], factor: int) -> None:
-    for process, count in others.items():
-        if count * factor:
-            counts[process] = counts.get(process, 0) + count * factor
+def _executed(caller: IExecutable, context: Context) -> Iterator[Runnable]:
+    return (call.runnable for call in calls(context).get(caller, ()) if call.runnable is not None and _is_performed(call))
 
 
-def times(call: RunnableCall) -> int:
-    """How often a call is performed at most; once if nothing is stated."""
+def _is_performed(call: RunnableCall) -> bool:
+    """Whether a job performs a call at all: the statistic of a call may say that it never does."""
     match call.statistic and call.statistic.statistic:
         case MinAvgMaxStatistic(max=most):
-            return most or 0
+            return bool(most)
         case SingleValueStatistic(value=value):
-            return ceil(value) if value and isfinite(value) else 0
-    return 1
-
-
-def executing(item: Element, context: Context) -> Mapping[Process, int]:
-    """The processes in whose jobs something is executed, and how often at most its process or runnable is."""
-    holder = item if isinstance(item, IExecutable) else item.enclosing(IExecutable)
-    return executions(context).get(holder, {}) if holder is not None else {}
+            return bool(value)
+    return True

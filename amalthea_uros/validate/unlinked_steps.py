@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 from amalthea_uros.perf.named import Located
 from amalthea_uros.timing.dataflow.chains import steps
-from amalthea_uros.timing.dataflow.events import UnresolvedError
-from amalthea_uros.timing.dataflow.routes import routes
+from amalthea_uros.timing.dataflow.routes import is_linked
 from amalthea_uros.validate.system_context import SystemContext
 
 
@@ -30,17 +29,10 @@ class UnlinkedStep(NamedTuple):
 
 def unlinked_steps(context: SystemContext) -> Iterator[UnlinkedStep]:
     """All of them; events of which it is unknown where they occur do not count."""
-    system = context.system
+    system, events = context.system, context.system.events_by_name
     for chain in system.events.chains:
         for item, starts, ends in steps(chain, system):
             for first, then in product(starts, ends):
-                if first != then and not _is_linked(first, then, context):
+                is_known = first != then and first in events and then in events
+                if is_known and not is_linked(events[first], events[then], context.dataflow):
                     yield UnlinkedStep(chain.name, item, first, then)
-
-
-def _is_linked(first: str, then: str, context: SystemContext) -> bool:
-    events = [context.system.events_by_name[name] for name in (first, then) if name in context.system.events_by_name]
-    try:
-        return len(events) < 2 or routes(events, context.dataflow)[0].gaps == 0
-    except UnresolvedError:
-        return True

@@ -1,11 +1,11 @@
-"""CAN frames and XRCE-DDS blocks, against the figures of the papers."""
+"""CAN frames against the figures of the papers."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros.units import MICROSECOND
-from amalthea_uros.uros.can import CanBus, Identifier, block_header, blocks, frames, transmission_time
+from amalthea_uros.uros.can import CanBus, Identifier, frames, transmission_time
 
 
 @pytest.mark.parametrize("data_bytes", range(9))
@@ -48,19 +48,6 @@ def test_the_longest_frame_exists():
 )
 def test_frames_of_a_message(length, count):
     assert frames(length) == count
-
-
-def test_headers_of_blocks():
-    assert [block_header(index, 3) for index in range(3)] == [0x01, 0x00, 0x02]
-    assert block_header(0, 1) == 0x03
-
-
-@given(st.binary(max_size=200))
-def test_blocks_hold_the_message(message):
-    found = blocks(message)
-    assert b"".join(block[1:] for block in found) == message
-    assert len(found) == frames(len(message))
-    assert all(len(block) <= 8 for block in found)
 
 
 def test_bus_time_of_a_message():

@@ -16,7 +16,7 @@ from amalthea_uros.timing.clocks import controller_of_core
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnresolvedError
-from amalthea_uros.timing.dataflow.links import GAPS
+from amalthea_uros.timing.dataflow.links import GAPS, LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, routes
 
 
@@ -117,6 +117,11 @@ class ChainEvaluator:
         return stages(route, self.context.settings.communication)
 
     def _methods(self, route: Route) -> RouteLatencies:
+        for link in route.links:
+            if link.kind is LinkKind.TOPIC:
+                raise UnboundedStageError(
+                    f"the message {link.names[0]!r} leaves the system and comes back, and nobody stated how long that takes"
+                )
         parts: list[list[TimedStage]] = []
         before = None
         for group, follower in _with_followers(_groups(self._stages(route))):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.bridge.codecs import Codec, reference, references, same_names
+from amalthea_uros.bridge.codecs import reference, references, same_names
 from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.entries import Entry, Field, Table
 from amalthea_uros.bridge.kinds import Kind
@@ -135,6 +135,3 @@ class _Chains(Entry):
 
 
 CHAINS = Table(_Chains(perf.EventChain, am.EventChain))
-
-#: For other files: the name of a chain, and those of several.
-CHAIN: Codec = _CHAIN

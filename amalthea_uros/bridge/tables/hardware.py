@@ -6,7 +6,7 @@ join ports. Definitions and ports are made as they are needed, one for each modu
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 from amalthea_uros.bridge.codecs import FREQUENCY, RATE, SIZE, enumeration, reference, references, same_names
 from amalthea_uros.bridge.context import Building, Extracting
@@ -16,6 +16,8 @@ from amalthea_uros.bridge.tables.distributions import TICKS
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import hardware as perf
+
+M = TypeVar("M", bound=am.HwModule)
 
 _CORE_KIND = same_names(perf.CoreKind, am.PuType)
 _MEMORY_KIND = same_names(perf.MemoryKind, am.MemoryType)
@@ -118,21 +120,15 @@ class HardwareBuilder:
 
     def core(self, core: perf.Core) -> am.HwModule:
         """A core with its caches; what it accesses is not known yet."""
-        element = am.ProcessingUnit(name=core.name)
-        self.context.register(core, element)
-        self.context.at(core)
+        element = self._module(am.ProcessingUnit, core)
         if core.type is not None:
             element.definition = _CORE_TYPE.build(core.type, self.context)
-        self._set_clock(element, core.clock)
         element.caches = [self.cache(cache) for cache in core.caches]
         return element
 
     def memory(self, memory: perf.Memory) -> am.HwModule:
         """A memory with a definition of its own."""
-        element = am.Memory(name=memory.name)
-        self.context.register(memory, element)
-        self.context.at(memory)
-        self._set_clock(element, memory.clock)
+        element = self._module(am.Memory, memory)
         if (memory.size, memory.kind, memory.latency, memory.rate) != (None, None, None, None):
             element.definition = am.MemoryDefinition(
                 name=memory.name,
@@ -146,10 +142,7 @@ class HardwareBuilder:
 
     def cache(self, cache: perf.Cache) -> am.Cache:
         """A cache with a definition of its own."""
-        element = am.Cache(name=cache.name)
-        self.context.register(cache, element)
-        self.context.at(cache)
-        self._set_clock(element, cache.clock)
+        element = self._module(am.Cache, cache)
         element.definition = am.CacheDefinition(
             name=cache.name,
             size=SIZE.build(cache.size, self.context),
@@ -161,10 +154,7 @@ class HardwareBuilder:
 
     def interconnect(self, interconnect: perf.Interconnect) -> am.HwModule:
         """An interconnect with a definition of its own."""
-        element = am.ConnectionHandler(name=interconnect.name)
-        self.context.register(interconnect, element)
-        self.context.at(interconnect)
-        self._set_clock(element, interconnect.clock)
+        element = self._module(am.ConnectionHandler, interconnect)
         definition = am.ConnectionHandlerDefinition(name=interconnect.name)
         if interconnect.arbitration is not None:
             definition.policy = _ARBITRATION.build(interconnect.arbitration, self.context)
@@ -173,9 +163,13 @@ class HardwareBuilder:
         self.definitions.append(definition)
         return element
 
-    def _set_clock(self, element: am.HwModule, clock: str | None) -> None:
-        if clock is not None:
-            element.frequency_domain = _CLOCK.build(clock, self.context)
+    def _module(self, kind: type[M], item: perf.Core | perf.Memory | perf.Cache | perf.Interconnect) -> M:
+        element = kind(name=item.name)
+        self.context.register(item, element)
+        self.context.at(item)
+        if item.clock is not None:
+            element.frequency_domain = _CLOCK.build(item.clock, self.context)
+        return element
 
     def join(self, connection: perf.Connection) -> None:
         """Give a connection its ports: it initiates at its source and is responded to at its target."""

@@ -10,7 +10,8 @@ KINDS = (
         id="APP001",
         title="undefined name",
         severity=Severity.ERROR,
-        rationale="The platform, core, memory, label, process, runnable, callback, publisher, client or chain of that name is not defined.",
+        rationale="The platform, core, memory, label, process, runnable, callback, publisher, client or chain of that name is not "
+        "defined.",
         remedy="Correct the name, or define it.",
         fails="""
 amuros: 1

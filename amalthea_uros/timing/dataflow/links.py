@@ -32,6 +32,8 @@ from amalthea_uros.timing.dataflow.positions import ActivityPosition
 
 #: The names of the objects that an activity accesses in one way; empty for most activities.
 NamesOf = Callable[[ActivityPosition], tuple[str, ...]]
+#: Accesses by the names of the data.
+_Accesses = dict[str, list[ActivityPosition]]
 
 
 class LinkKind(StrEnum):
@@ -41,6 +43,7 @@ class LinkKind(StrEnum):
     NEXT_JOB = "the next job"
     TRIGGER = "a trigger"
     DATA = "data"
+    TOPIC = "a topic"
     OS_EVENT = "an OS event"
     SERVER_CALL = "a server call"
     NOTHING = "no link"
@@ -48,8 +51,8 @@ class LinkKind(StrEnum):
 
 #: Without a link, a chain is evaluated as if there were a variable.
 GAPS = (LinkKind.NOTHING, LinkKind.NEXT_JOB)
-#: Links for which the time of the effect in the jobs is unknown.
-UNTIMED = (*GAPS, LinkKind.OS_EVENT, LinkKind.SERVER_CALL)
+#: Links for which the time of the effect in the jobs is unknown, or the time that a message takes.
+UNTIMED = (*GAPS, LinkKind.OS_EVENT, LinkKind.SERVER_CALL, LinkKind.TOPIC)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +77,7 @@ class Dataflow:
 
     system: System
     events: EventLocator = field(init=False)
-    _named: dict[tuple[str, NamesOf], dict[str, list[ActivityPosition]]] = field(default_factory=dict)
+    _named: dict[tuple[str, NamesOf], _Accesses] = field(default_factory=dict)
     _fired: dict[str, list[tuple[str, ActivityPosition]]] | None = None
 
     def __post_init__(self) -> None:
@@ -84,7 +87,7 @@ class Dataflow:
         """The link from one event to another."""
         if first.process.name == then.process.name:
             if first.order <= then.order:
-                return Link(LinkKind.JOB)
+                return self._returning(first, then) or Link(LinkKind.JOB)
             return self.data(first, then) or Link(LinkKind.NEXT_JOB)
         is_activation = then.when is JobPhase.ACTIVATION and first.when is JobPhase.ACTIVATION
         # An activation cannot cause another activation: only a job can trigger.
@@ -98,12 +101,30 @@ class Dataflow:
 
     def data(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
         """The data written at one event and read at the other one; None if there are none."""
-        written, read = self._accesses(first, writes), self._accesses(then, reads)
-        names = tuple(name for name in written if name in read)
+        return self._shared(self._accesses(first, writes), self._accesses(then, reads))
+
+    def _returning(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
+        """The topic of a message that a job sends to a later job of its own process."""
+        if first.position is None or then.position is None:
+            return None
+        link = self._shared(self._own_accesses(first, writes), self._own_accesses(then, reads))
+        return link if link is not None and link.kind is LinkKind.TOPIC else None
+
+    def _shared(self, written: _Accesses, read: _Accesses) -> Link | None:
+        """The data that are both written and read; topics only if there are no others, because they take longest."""
+        shared = tuple(name for name in written if name in read)
+        inside = tuple(name for name in shared if not self.is_topic(name))
+        names = inside or shared
         if not names:
             return None
+        kind = LinkKind.DATA if inside else LinkKind.TOPIC
         # The last write counts, and the first read after which the data are there.
-        return Link(LinkKind.DATA, names, written[names[0]][-1], read[names[0]][0])
+        return Link(kind, names, written[names[0]][-1], read[names[0]][0])
+
+    def is_topic(self, name: str) -> bool:
+        """Whether a name is a channel whose messages leave the system."""
+        channel = self.system.channels.get(name)
+        return channel is not None and channel.external
 
     def direct(self) -> Iterator[tuple[str, str, str]]:
         """All links between different processes, as (process, name of the link, process)."""
@@ -124,7 +145,7 @@ class Dataflow:
             for stimulus, _ in self._triggers(process):
                 yield from ((process, stimulus, other) for other in activated.get(stimulus, ()) if other != process)
 
-    def by_name(self, process: str, names_of: NamesOf) -> dict[str, list[ActivityPosition]]:
+    def by_name(self, process: str, names_of: NamesOf) -> _Accesses:
         """The accesses of a process, by the names of the data."""
         key = (process, names_of)
         if key not in self._named:
@@ -165,17 +186,19 @@ class Dataflow:
                 return Link(kind, names)
         return None
 
-    def _accesses(self, occurrence: EventOccurrence, names_of: NamesOf) -> dict[str, list[ActivityPosition]]:
-        """The data written or read at an event: by the access itself, in its runnable, or anywhere in the process."""
-        everything = self.by_name(occurrence.process.name, names_of)
+    def _accesses(self, occurrence: EventOccurrence, names_of: NamesOf) -> _Accesses:
+        """The data written or read at an event, or else anywhere in its process."""
+        return self._own_accesses(occurrence, names_of) or self.by_name(occurrence.process.name, names_of)
+
+    def _own_accesses(self, occurrence: EventOccurrence, names_of: NamesOf) -> _Accesses:
+        """The data written or read at an event: by the access itself, or in its runnable."""
         position = occurrence.position
         if position is None:
-            return everything
+            return {}
         if own := names_of(position):
             return {name: [position] for name in own}
         runnable = position.activity.runnable if isinstance(position.activity, Call) else position.runnable
-        within = [p for p in self.events.positions(occurrence.process.name) if p.runnable == runnable]
-        return _grouped(within, names_of) or everything
+        return _grouped((p for p in self.events.positions(occurrence.process.name) if p.runnable == runnable), names_of)
 
 
 def writes(position: ActivityPosition) -> tuple[str, ...]:
@@ -243,8 +266,8 @@ def _is_start(event: Event) -> bool:
     return isinstance(event, RunnableEvent) and event.change is not RunnableChange.TERMINATE
 
 
-def _grouped(within: Iterable[ActivityPosition], names_of: NamesOf) -> dict[str, list[ActivityPosition]]:
-    found: dict[str, list[ActivityPosition]] = {}
+def _grouped(within: Iterable[ActivityPosition], names_of: NamesOf) -> _Accesses:
+    found: _Accesses = {}
     for position in within:
         for name in names_of(position):
             found.setdefault(name, []).append(position)

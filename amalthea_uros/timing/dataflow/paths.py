@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import pairwise, product
 
 import networkx as nx
 
@@ -21,7 +21,8 @@ from amalthea_uros.perf.events import (
 )
 from amalthea_uros.perf.software import Call
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.links import Dataflow, NamesOf, reads, writes
+from amalthea_uros.timing.dataflow.links import Dataflow, LinkKind, NamesOf, reads, writes
+from amalthea_uros.timing.dataflow.routes import is_linked
 
 #: More paths, or longer ones, are not listed.
 MAX_PATHS = 100
@@ -38,24 +39,20 @@ class Path:
 
     Attributes
     ----------
+    processes : contains a process twice in a row if it sends a message to itself
     links : names of the data and triggers between each process and the next
-    start, end : the runnables with which it starts and ends; None: the processes as a whole
+    events : from the start of the first process or runnable to the end of the last one
     """
 
     processes: tuple[str, ...]
     links: tuple[tuple[str, ...], ...]
-    start: str | None = None
-    end: str | None = None
+    events: tuple[Event, ...]
 
     def chain(self, name: str) -> tuple[EventChain, tuple[Event, ...]]:
         """The path as an event chain, and its events."""
-        first, *others = self.processes
-        events = [_end(first, self.start, is_start=True)]
-        events += [_end(process, None, is_start=False) for process in others[:-1]]
-        events.append(_end(self.processes[-1], self.end, is_start=False))
-        segments = tuple(Segment(stimulus=one.name, response=then.name) for one, then in pairwise(events))
+        segments = tuple(Segment(stimulus=one.name, response=then.name) for one, then in pairwise(self.events))
         items = Sequence(segments) if len(segments) > 1 else None
-        return EventChain(name=name, stimulus=events[0].name, response=events[-1].name, items=items), tuple(events)
+        return EventChain(name=name, stimulus=self.events[0].name, response=self.events[-1].name, items=items), self.events
 
 
 def _end(process: str, runnable: str | None, is_start: bool) -> Event:
@@ -78,11 +75,43 @@ def paths(system: System, start: str, end: str) -> list[Path]:
     graph = _graph(dataflow)
     found = []
     for first, first_runnable in _ends(start, dataflow, writes):
+        begin = _end(first, first_runnable, is_start=True)
+        returning = list(_returning(first, first_runnable, dataflow))
         for last, last_runnable in _ends(end, dataflow, reads):
+            finish = _end(last, last_runnable, is_start=False)
             for nodes in _ways(graph, first, last):
                 links = tuple(tuple(sorted(graph.edges[edge]["links"])) for edge in pairwise(nodes))
-                found.append(Path(tuple(nodes), links, first_runnable, last_runnable))
+                rest = (*(_end(process, None, is_start=False) for process in nodes[1:-1]), finish)
+                if events := _connected(begin, rest, dataflow):
+                    found.append(Path(tuple(nodes), links, (begin, *events)))
+                for channel, taken_by in returning:
+                    taken = _end(first, taken_by, is_start=False)
+                    if events := _connected(taken, rest, dataflow):
+                        found.append(Path((first, *nodes), ((channel,), *links), (begin, taken, *events)))
     return sorted(dict.fromkeys(found), key=lambda path: (len(path.processes), path.processes))[:MAX_PATHS]
+
+
+def _returning(process: str, runnable: str | None, dataflow: Dataflow) -> Iterator[tuple[str, str]]:
+    """The topics by which a runnable sends messages to its own process, with the runnables that take them."""
+    if runnable is None:
+        return
+    here = dataflow.events.positions(process)
+    sent = {name for position in here if position.runnable == runnable for name in writes(position) if dataflow.is_topic(name)}
+    for position in here:
+        if position.runnable is not None:
+            yield from ((name, position.runnable) for name in reads(position) if name in sent)
+
+
+def _connected(first: Event, rest: tuple[Event, ...], dataflow: Dataflow) -> tuple[Event, ...]:
+    """The events after the first one; none if its runnable passes nothing on to them, directly or by the rest of its job."""
+    if is_linked(first, rest[0], dataflow):
+        return rest
+    (process,) = {occurrence.process.name for occurrence in dataflow.events.of(first)}
+    job_end = _end(process, None, is_start=False)
+    if len(rest) == 1 and dataflow.events.of(rest[0])[0].process.name == process:
+        return ()
+    passed_on = (dataflow.data(one, then) for one, then in product(dataflow.events.of(first), dataflow.events.of(job_end)))
+    return (job_end, *rest) if any(link is not None and link.kind is LinkKind.DATA for link in passed_on) else ()
 
 
 def _ways(graph: nx.DiGraph, first: str, last: str) -> Iterator[list[str]]:

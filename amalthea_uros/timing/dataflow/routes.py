@@ -38,6 +38,14 @@ class Route:
         return not any(link.kind in UNTIMED for link in self.links)
 
 
+def is_linked(first: Event, then: Event, dataflow: Dataflow) -> bool:
+    """Whether something takes the effect from one event to another; so it is if nobody knows where they occur."""
+    try:
+        return routes([first, then], dataflow)[0].gaps == 0
+    except UnresolvedError:
+        return True
+
+
 def routes(events: Sequence[Event], dataflow: Dataflow) -> list[Route]:
     """The possible routes of a sequence of events, reduced to those with the fewest gaps.
 

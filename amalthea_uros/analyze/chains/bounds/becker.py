@@ -8,7 +8,6 @@ next one has ended; the last reachable job of each task gives the longest path.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask, first_releases
@@ -27,8 +26,3 @@ def reduced_data_age(tasks: Sequence[ChainTask]) -> Time | None:
         overwritten = release + task.period + task.response - (reader.offset or 0)
         release = (reader.offset or 0) + (-(-overwritten // reader.period) - 1) * reader.period
     return int((release - first).max()) + tasks[-1].response
-
-
-def reduced_data_age_without_information(tasks: Sequence[ChainTask]) -> Time | None:
-    """The same bound if jobs are only known to end within their periods."""
-    return reduced_data_age([replace(task, response=task.period) for task in tasks])

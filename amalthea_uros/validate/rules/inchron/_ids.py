@@ -5,18 +5,14 @@ from __future__ import annotations
 from amalthea_uros.metamodel.classes import INamespaceMember
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.naming import TYPE_MARK, encode, name_of
-from amalthea_uros.metamodel.source import attributes_of_tag
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rules.inchron._tags import tag_of
 
 
 def has_id(element: Element) -> bool:
     """Whether an object has an `xmi:id` in its file. An object that was not read from a file will be written with one."""
-    document = element.document
-    source = document.source if document is not None else None
-    place = source.index.get(element) if source is not None else None
-    if source is None or place is None:
-        return True
-    return any(attribute["name"] == source.prefixes.xmi_id for attribute in attributes_of_tag(source.text, source.start(place)))
+    tag = tag_of(element)
+    return tag is None or tag[0].prefixes.xmi_id in tag[1]
 
 
 def without_namespace(context: Context) -> dict[Element, str]:

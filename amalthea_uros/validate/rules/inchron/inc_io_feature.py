@@ -11,11 +11,12 @@ from amalthea_uros.metamodel import classes
 from amalthea_uros.metamodel.element import Element, extras_if_any
 from amalthea_uros.metamodel.factfile import Kind
 from amalthea_uros.metamodel.features import containments_of, features_of
-from amalthea_uros.metamodel.source import Prefixes, attributes_of_tag
+from amalthea_uros.metamodel.source import Prefixes
 from amalthea_uros.metamodel.versions import Facts, facts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.inchron._importer import metamodel_of
+from amalthea_uros.validate.rules.inchron._tags import attributes_at, tag_of
 
 _TAG = re.compile(r"<(?P<name>[^\s/>!?]+)").match
 
@@ -71,17 +72,8 @@ def _holds(value: object, element: Element) -> bool:
 
 def _xsi_type(element: Element) -> str | None:
     """The `xsi:type` of an object in its file, with its prefix; None if it has none."""
-    document = element.document
-    source = document.source if document is not None else None
-    place = source.index.get(element) if source is not None else None
-    if source is None or place is None:
-        return None
-    return _attributes(source.text, source.start(place)).get(source.prefixes.xsi_type)
-
-
-def _attributes(text: str, start: int = 0) -> dict[str, str]:
-    """The attributes of the tag at an offset."""
-    return {attribute["name"]: attribute["quoted"][1:-1] for attribute in attributes_of_tag(text, start)}
+    tag = tag_of(element)
+    return None if tag is None else tag[1].get(tag[0].prefixes.xsi_type)
 
 
 def _not_read(element: Element, class_name: str, known: Facts) -> Iterator[str]:
@@ -100,7 +92,7 @@ def _not_read(element: Element, class_name: str, known: Facts) -> Iterator[str]:
     for _, raw in extras.content:
         tag = _TAG(raw)
         if tag is not None:
-            given = _attributes(raw).get(prefixes.xsi_type, "").removeprefix(prefixes.type_prefix)
+            given = attributes_at(raw).get(prefixes.xsi_type, "").removeprefix(prefixes.type_prefix)
             yield from _misplaced(class_name, tag["name"], given, known)
 
 

@@ -1,0 +1,46 @@
+"""The paths that callers give: what each of them names, and which of them belong to one model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from os import PathLike
+from pathlib import Path
+
+StrPath = str | PathLike[str]
+
+_DESCRIPTION_SUFFIXES = (".yaml", ".yml")
+
+
+def is_description(path: StrPath) -> bool:
+    """Whether a file is an `app.yaml`, by its name."""
+    return Path(path).suffix in _DESCRIPTION_SUFFIXES
+
+
+def as_paths(paths: StrPath | Iterable[StrPath]) -> tuple[Path, ...]:
+    """One path or several, as a tuple.
+
+    Raises
+    ------
+    ValueError : there is none.
+    """
+    found = (Path(paths),) if isinstance(paths, str | PathLike) else tuple(map(Path, paths))
+    if not found:
+        raise ValueError("no path given; expected at least one file or folder")
+    return found
+
+
+def by_model(paths: Iterable[Path], each: bool = False) -> Iterator[tuple[Path, ...]]:
+    """The paths that make one model together: all models, but each description on its own.
+
+    Parameters
+    ----------
+    each : every path is a model of its own
+    """
+    models = []
+    for path in paths:
+        if each or is_description(path):
+            yield (path,)
+        else:
+            models.append(path)
+    if models:
+        yield tuple(models)

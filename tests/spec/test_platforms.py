@@ -1,0 +1,25 @@
+"""The platforms that come with amuros."""
+
+import pytest
+from support import ROOT
+
+from amalthea_uros import build
+from amalthea_uros._internal.resources import PLATFORMS
+from amalthea_uros.spec.hardware import Hardware, Platform
+from amalthea_uros.spec.platforms import known_platforms
+from amalthea_uros.spec.read import read_section
+
+
+@pytest.mark.parametrize("name", known_platforms())
+class TestPlatform:
+    def test_it_has_the_name_of_its_file(self, name):
+        assert read_section(PLATFORMS / f"{name}.yaml", Platform).platform == name
+
+    def test_an_application_can_be_built_for_it(self, name):
+        system = build(ROOT / "samples" / "bodas-test-advanced.yaml", platform=name).assembly.system
+        assert system.cores
+        assert all(clock.frequency for clock in system.hardware.clocks)
+
+    def test_it_is_documented(self, name):
+        assert f"`{name}`" in Hardware.model_fields["platform"].description
+        assert f"`{name}`" in (ROOT / "docs" / "app-yaml.md").read_text()
