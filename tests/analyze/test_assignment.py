@@ -57,7 +57,7 @@ def test_deadline_monotonic_order_is_not_best_with_jitter():
 
 
 @pytest.mark.parametrize("sample", ["bodas-test-advanced", "drive-and-lift"])
-def test_the_greatest_scale_is_where_a_verdict_changes(sample):
+def test_the_maximum_scale_is_where_a_verdict_changes(sample):
     described = describe(ROOT / "samples" / f"{sample}.yaml").system
     scale = max_scale(analyze_system(described))
     assert not analyze_system(described, Settings(scale=scale)).misses
@@ -117,6 +117,6 @@ def test_priorities_are_proposed_in_the_order_that_fits():
         ([("A", 100, 60, 100), ("B", 100, 60, 100)], "no assignment of priorities meets all deadlines"),
     ],
 )
-def test_why_nothing_is_proposed(rows, reason):
+def test_reasons_without_a_proposal(rows, reason):
     (proposal,) = propose_priorities(analyze_system(tasks_on_a_core(*rows)))
     assert (proposal.priorities, proposal.reason) == (None, reason)

@@ -44,21 +44,21 @@ MODELS = st.one_of(
 
 
 @given(MODELS, st.integers(1, 200))
-def test_as_many_arrivals_as_fit(model, window):
+def test_eta_plus_and_delta_min_are_consistent(model, window):
     count = model.eta_plus(window)
     # They span less than the window, and one more would not.
     assert model.delta_min(count) < window <= model.delta_min(count + 1)
 
 
 @given(MODELS)
-def test_more_arrivals_never_span_less(model):
+def test_delta_min_is_monotonic(model):
     spans = [model.delta_min(count) for count in range(12)]
     assert spans == sorted(spans)
     assert spans[:2] == [0, 0]
 
 
 @given(st.integers(1, 10), st.integers(0, 25), st.lists(st.integers(0, 25), min_size=12, max_size=12))
-def test_no_jittering_arrivals_are_denser_than_their_model(period, jitter, delays):
+def test_no_jittering_events_are_denser_than_their_model(period, jitter, delays):
     times = sorted(index * period + min(delay, jitter) for index, delay in enumerate(delays))
     model = Periodic(period, jitter)
     for first in range(12):
@@ -74,7 +74,7 @@ def test_a_pattern_is_as_dense_as_its_densest_place(pattern):
         assert pattern.delta_min(count) == densest
 
 
-def test_several_arrivals_for_each_of_others():
+def test_several_events_for_each_one():
     repeated = Multiplied(Periodic(10), 3)
     assert [repeated.delta_min(count) for count in range(1, 8)] == [0, 0, 0, 10, 10, 10, 20]
     assert (repeated.eta_plus(11), repeated.rate) == (6, Fraction(3, 10))

@@ -124,7 +124,7 @@ class TestPolicies:
         # A needs three slices, and B gets one before each: 5 + 3 * 2, and 3 above; B waits for all of A.
         assert worst(system([root(Policy.PRIORITY_BASED_ROUND_ROBIN)], tasks)) == {"A": 14, "B": 28, "high": 3}
 
-    def test_equal_priorities_are_served_in_the_order_of_arrival(self):
+    def test_equal_priorities_are_served_in_the_order_of_activation(self):
         tasks = [(name, 100, [ticks(5)], {"scheduler": "root", "priority": 1}) for name in ("A", "B")]
         tasks.append(("often", 8, [ticks(2)], {"scheduler": "root", "priority": 1}))
         # Jobs that are activated later wait: each of the other tasks interferes only once.
@@ -158,7 +158,7 @@ class TestSchedulersBelowEachOther:
         built = system([root(), under("child", Policy.OSEK, priority)], self.TASKS)
         assert tuple(worst(built).values()) == expected
 
-    def test_a_grouping_decides_nothing(self):
+    def test_a_grouping_delegates_to_its_parent(self):
         built = system([root(), under("child", Policy.GROUPING)], self.TASKS)
         assert worst(built) == {"urgent": 12, "main": 9, "urgent too": 4}
 
@@ -208,7 +208,7 @@ class TestSchedulersBelowEachOther:
 class TestCosts:
     ONE = (("T", 100, [ticks(5)], {"scheduler": "root", "priority": 1}),)
 
-    def test_scheduling_decisions_at_arrival_and_end(self):
+    def test_scheduling_decisions_at_activation_and_end(self):
         tasks = [*self.ONE, ("low", 100, [ticks(10)], {"scheduler": "root", "priority": 0})]
         # Of each task one decision in its own demand, and one when it arrives, whoever is running.
         assert worst(system([root(overhead=(ticks(1),))], tasks)) == {"T": 5 + 1 + 2, "low": 10 + 1 + 2 + 6}
@@ -283,7 +283,7 @@ class TestCosts:
             mapping=replace(built.mapping, placements=placements),
         )
 
-    def test_labels_in_no_memory_are_told(self):
+    def test_labels_in_no_memory_are_reported(self):
         built = system([root()], [("T", 100, [LabelAccess(label="L", kind=AccessKind.READ), ticks(1)], self.ONE[0][3])])
         analysis = analyze_system(built, Settings(memory=Memory.EXPLICIT))
         assert [finding.rule for finding in analysis.findings] == ["ANA008"]
@@ -343,7 +343,7 @@ class TestEventsThatActivate:
     def test_events_from_outside(self):
         assert "no activity in the model raises" in self.respond(CustomEvent(name="event"))
 
-    def test_who_is_triggered_by_something_unknown_is_unknown_too(self):
+    def test_a_process_triggered_by_an_unknown_one_is_unknown(self):
         assert "could not be analysed" in self.respond(
             CustomEvent(name="event"), RaiseEvent(event="event"), WaitEvent(events=("e",))
         )

@@ -275,7 +275,7 @@ class TestTriggers:
         # The ends of jobs of 1 to 50 us come closer together than those of jobs of 50 us.
         assert worst(1) >= worst(50)
 
-    def test_a_circle_has_no_bound(self):
+    def test_a_cycle_of_triggers_has_no_bound(self):
         built = one_core(
             ("one", None, [ticks(1), Trigger(stimulus="trigger two")]),
             ("two", None, [ticks(1), Trigger(stimulus="trigger one")]),
@@ -313,7 +313,7 @@ class TestWhatIsNotKnown:
         built = one_core(("low", 1000, [ticks(1)]))
         assert analyze_system(replace(built, **change)).processes[0].reason == reason
 
-    def test_who_comes_behind_something_unknown_is_unknown_too(self):
+    def test_lower_priorities_than_an_unknown_process_are_unknown(self):
         built = one_core(("loop", 1000, [Loop(activities=())]), ("lower", 1000, [ticks(1)]))
         found = by_name(analyze_system(built))
         assert found["lower"].response is None
@@ -419,7 +419,7 @@ class TestRequirements:
         assert self.value_of(TimeMetric.ACTIVATE_TO_ACTIVATE, Bound.LOWER, "high") == 90
         assert self.value_of(TimeMetric.ACTIVATE_TO_ACTIVATE, process="high") == 110
 
-    def test_limits_of_something_else_are_told(self):
+    def test_other_limits_are_reported(self):
         limit = CountLimit(metric=CountMetric.PREEMPTIONS, value=3)
         built = one_core(
             ("low", 100, [ticks(1)]), constraints=Constraints(requirements=(Requirement(name="R", process="low", limit=limit),))

@@ -65,7 +65,7 @@ class JobChains:
     starts : reads at which backward chains start
     writes : of the jobs at which they end
     next_writes : of the jobs after those
-    inputs : reads of which the data reach the end
+    inputs : jobs whose data reach the end
     """
 
     reads: Numbers

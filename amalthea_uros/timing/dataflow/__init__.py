@@ -1,1 +1,1 @@
-"""Where jobs do what, which events that makes, and what links one event to another."""
+"""Data flow: positions of activities in jobs, occurrences of events, links between them, chains and paths."""

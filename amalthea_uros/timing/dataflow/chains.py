@@ -44,7 +44,7 @@ Unfolded = tuple["str | Fork", ...]
 
 
 def unfold(chain: EventChain, system: System) -> tuple[Unfolded, tuple[str, ...]]:
-    """The events of a chain, and those that were left out because the chain starts or ends elsewhere.
+    """The events of a chain, and those that were ignored because the chain starts or ends with others.
 
     Raises
     ------

@@ -141,7 +141,7 @@ class EventLocator:
             case CustomEvent() | LabelEvent() | ModeLabelEvent() | ChannelEvent() | SemaphoreEvent():
                 process = None if isinstance(event, CustomEvent) else event.process
                 return [EventOccurrence(p.process, JobPhase.AFTER, p) for p in self._within(process) if raises(p, event)]
-        raise UnresolvedError(f"events such as {event.name!r} cannot be analysed")
+        raise UnresolvedError(f"the kind of the event {event.name!r} cannot be analysed")
 
     def _guess(self, event: Event) -> list[EventOccurrence]:
         """Where an access is assumed if the model contains only its event."""

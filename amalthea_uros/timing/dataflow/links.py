@@ -30,7 +30,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import EventLocator, EventOccurrence, JobPhase, raises
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 
-#: The names of what an activity accesses in one way; mostly none.
+#: The names of the objects that an activity accesses in one way; empty for most activities.
 NamesOf = Callable[[ActivityPosition], tuple[str, ...]]
 #: Accesses by the names of the data.
 _Accesses = dict[str, list[ActivityPosition]]
@@ -100,18 +100,18 @@ class Dataflow:
         return Link(LinkKind.TRIGGER, (found[0][0],), found[0][1]) if found else None
 
     def data(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
-        """The data written where one event occurs and read where the other one does; None if there are none."""
+        """The data written at one event and read at the other one; None if there are none."""
         return self._shared(self._accesses(first, writes), self._accesses(then, reads))
 
     def _returning(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
-        """The topic of a message that a job sends and that comes back to its own process, in whichever job that is."""
+        """The topic of a message that a job sends to a later job of its own process."""
         if first.position is None or then.position is None:
             return None
         link = self._shared(self._own_accesses(first, writes), self._own_accesses(then, reads))
         return link if link is not None and link.kind is LinkKind.TOPIC else None
 
     def _shared(self, written: _Accesses, read: _Accesses) -> Link | None:
-        """What is both written and read; a topic only if nothing else is, as it takes longest."""
+        """The data that are both written and read; topics only if there are no others, because they take longest."""
         shared = tuple(name for name in written if name in read)
         inside = tuple(name for name in shared if not self.is_topic(name))
         names = inside or shared
@@ -122,12 +122,12 @@ class Dataflow:
         return Link(kind, names, written[names[0]][-1], read[names[0]][0])
 
     def is_topic(self, name: str) -> bool:
-        """Whether what is sent under a name leaves the system on its way."""
+        """Whether a name is a channel whose messages leave the system."""
         channel = self.system.channels.get(name)
         return channel is not None and channel.external
 
     def direct(self) -> Iterator[tuple[str, str, str]]:
-        """All links between different processes, as (process, name of what links them, process)."""
+        """All links between different processes, as (process, name of the link, process)."""
         ways = ((writes, reads), *((source, target) for _, source, target in _SYNCHRONISATION))
         for source, target in ways:
             consumers: dict[str, list[str]] = {}
@@ -178,7 +178,7 @@ class Dataflow:
         return [(name, event) for name, event in found if not _is_start(event)]
 
     def _synchronisation(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
-        """How a process lets another one continue: by OS events, or by calling it as a server and getting its result."""
+        """The synchronisation of two processes by OS events, or by calls of server runnables and their results."""
         for kind, source, target in _SYNCHRONISATION:
             written, read = self.by_name(first.process.name, source), self.by_name(then.process.name, target)
             names = tuple(name for name in written if name in read)
@@ -187,11 +187,11 @@ class Dataflow:
         return None
 
     def _accesses(self, occurrence: EventOccurrence, names_of: NamesOf) -> _Accesses:
-        """What is written or read where an event occurs, or else anywhere in its process."""
+        """The data written or read at an event, or else anywhere in its process."""
         return self._own_accesses(occurrence, names_of) or self.by_name(occurrence.process.name, names_of)
 
     def _own_accesses(self, occurrence: EventOccurrence, names_of: NamesOf) -> _Accesses:
-        """What is written or read where an event occurs: by the access itself, or in its runnable."""
+        """The data written or read at an event: by the access itself, or in its runnable."""
         position = occurrence.position
         if position is None:
             return {}
@@ -254,7 +254,7 @@ def _serves(position: ActivityPosition) -> tuple[str, ...]:
     return ()
 
 
-#: How processes wait for each other: what one does, and what the other one does.
+#: Synchronisation of processes: kind of link, activity of the first process, activity of the second one.
 _SYNCHRONISATION: tuple[tuple[LinkKind, NamesOf, NamesOf], ...] = (
     (LinkKind.OS_EVENT, _sets, _awaits),
     (LinkKind.SERVER_CALL, _requests, _serves),

@@ -39,8 +39,8 @@ class Path:
 
     Attributes
     ----------
-    processes : the same one twice in a row, if it sends a message to itself
-    links : names of what links each process to the next
+    processes : contains a process twice in a row if it sends a message to itself
+    links : names of the data and triggers between each process and the next
     events : from the start of the first process or runnable to the end of the last one
     """
 
@@ -138,7 +138,7 @@ def _ends(name: str, dataflow: Dataflow, accesses: NamesOf) -> list[tuple[str, s
 
 
 def _graph(dataflow: Dataflow) -> nx.DiGraph:
-    """Processes, and what links them."""
+    """The graph of processes and their links."""
     graph: nx.DiGraph = nx.DiGraph()
     graph.add_nodes_from(dataflow.system.processes)
     for process, name, target in dataflow.direct():
@@ -149,7 +149,7 @@ def _graph(dataflow: Dataflow) -> nx.DiGraph:
 
 
 def with_chains(system: System, found: list[Path]) -> System:
-    """A system of which the chains are these paths, by their numbers."""
+    """The system with these paths as its chains, named by their numbers."""
     events: dict[str, Event] = dict(system.events_by_name)
     chains = []
     for number, path in enumerate(found, start=1):

@@ -280,7 +280,7 @@ class TestWhatCarries:
         ("change", "kind", "value"),
         [(RunnableChange.TERMINATE, "the same job", 4), (RunnableChange.START, "the next job", 8)],
     )
-    def test_what_a_runnable_does_comes_before_its_end(self, change, kind, value):
+    def test_the_accesses_of_a_runnable_precede_its_end(self, change, kind, value):
         # The write comes 2 us after the start of the job, which takes 6 us.
         runnables = [
             Runnable(name="outer", activities=(ticks(1), Call(runnable="inner"), ticks(1))),
@@ -297,7 +297,7 @@ class TestWhatCarries:
         assert values["max_reduced_reaction_time"] >= value
         assert rules == (["CHN002"] if kind == "the next job" else [])
 
-    def test_the_end_of_a_runnable_comes_behind_that_of_one_that_it_calls(self):
+    def test_the_end_of_a_runnable_follows_that_of_one_that_it_calls(self):
         runnables = [
             Runnable(name="outer", activities=(Call(runnable="inner"),)),
             Runnable(name="inner", activities=(ticks(1),)),
@@ -307,7 +307,7 @@ class TestWhatCarries:
         chain, *_ = evaluate(built)
         assert chain.routes == ("inner -[the same job]-> outer",)
 
-    def test_a_runnable_that_comes_earlier_needs_the_next_job(self):
+    def test_an_earlier_runnable_needs_the_next_job(self):
         # As in the first chain of the challenge of 2017.
         runnables = [
             Runnable(name="first", activities=(read("L"), ticks(1))),
@@ -326,7 +326,7 @@ class TestWhatCarries:
         _, values, _, _ = evaluate(built, communication=Communication.LET)
         assert (values["max_reduced_reaction_time"], values["max_reaction_time"]) == (20, 30)
 
-    def test_a_label_in_between_tells_who_reads_and_writes(self):
+    def test_a_label_event_determines_reader_and_writer(self):
         events = (
             at("producer", START),
             LabelEvent(name="written", label="L", change=LabelChange.WRITE),
@@ -420,7 +420,7 @@ class TestWhatCarries:
         assert chain.routes == ("locked -[the same job]-> unlocked",)
         assert 2 <= values["max_reduced_reaction_time"] <= 3
 
-    def test_nothing(self):
+    def test_no_link(self):
         tasks = [("A", 10, [ticks(1)]), ("B", 10, [ticks(1)])]
         chain, values, claims, rules = evaluate(system(tasks, [at("A", START), at("B", END)]))
         assert rules == ["CHN002"]
@@ -474,7 +474,7 @@ class TestForms:
     def names(self):
         return "producer start", "producer terminate", "consumer terminate"
 
-    def test_a_single_step(self):
+    def test_a_single_task(self):
         start, _, end = self.names()
         _, values, _, _ = self.evaluate(EventChain(name="c", stimulus=start, response=end))
         assert values["max_reduced_reaction_time"] == 20
@@ -495,7 +495,7 @@ class TestForms:
         assert chain.routes == (f"{start} -[the same job]-> {middle} -[data L]-> {end}",)
         assert values["max_reduced_reaction_time"] == 20
 
-    def test_a_circle(self):
+    def test_a_cycle(self):
         start, _, end = self.names()
         chains = (
             EventChain(name="c", stimulus=start, response=end, items=Sequence((ChainReference(chain="d"),))),
@@ -549,7 +549,7 @@ class TestForms:
         assert chain.routes == (f"{start} -[the same job]-> {middle} -[data L]-> {end}",)
 
     @pytest.mark.parametrize("missing", [{"stimulus": None}, {"response": None}, {"response": "unknown"}])
-    def test_what_is_missing_is_told(self, missing):
+    def test_missing_elements_are_reported(self, missing):
         start, _, end = self.names()
         chain, values, _, rules = self.evaluate(replace(EventChain(name="c", stimulus=start, response=end), **missing))
         assert rules == ["CHN001"]

@@ -74,7 +74,7 @@ def test_repetition():
     assert evaluate(repetition) == [("repetition", 45, "missed"), ("repetition", 35, "met"), ("jitter", 5, "met")]
 
 
-def test_repetition_of_what_comes_at_any_moment():
+def test_repetition_of_sporadic_events():
     sporadic = RelativePeriodic(name="A", distance=Boundaries(lower=20 * US, upper=50 * US))
     built = system([("A", None, [ticks(1)])], [at("A", START), at("A", END)], stimuli=[sporadic])
     repetition = RepetitionConstraint(name="R", event="A start", lower=20 * US, upper=50 * US, jitter=US)
