@@ -46,7 +46,7 @@ class LinkKind(StrEnum):
     TOPIC = "a topic"
     OS_EVENT = "an OS event"
     SERVER_CALL = "a server call"
-    NOTHING = "no link"
+    NOTHING = "nothing"
 
 
 #: Without a link, a chain is evaluated as if there were a variable.

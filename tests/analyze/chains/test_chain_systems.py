@@ -424,7 +424,7 @@ class TestWhatCarries:
         tasks = [("A", 10, [ticks(1)]), ("B", 10, [ticks(1)])]
         chain, values, claims, rules = evaluate(system(tasks, [at("A", START), at("B", END)]))
         assert rules == ["CHN002"]
-        assert chain.routes == ("A start -[no link]-> B terminate",)
+        assert chain.routes == ("A start -[nothing]-> B terminate",)
         assert claims == {"bound"}
         assert values["max_reduced_reaction_time"] == 2
 
