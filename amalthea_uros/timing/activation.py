@@ -49,6 +49,8 @@ class Activations:
     _triggers: dict[str, list[Cause]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        if not any(isinstance(stimulus, InterProcess | EventTriggered) for stimulus in self.system.stimuli.stimuli):
+            return
         for name in self.system.processes:
             try:
                 self._positions += [position for position in self.dataflow.events.positions(name) if position.times > 0]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import ceil
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.perf.software import (
@@ -14,6 +14,7 @@ from amalthea_uros.perf.software import (
     Group,
     LabelAccess,
     Loop,
+    ProbabilitySwitch,
     Process,
     Runnable,
     Switch,
@@ -26,6 +27,10 @@ from amalthea_uros.perf.system import System
 MAX_POSITIONS = 200_000
 MAX_CALL_DEPTH = 100
 
+#: Most activities are accesses: what only these classes need is not looked for in the others.
+_WITH_PARTS = (Group, Loop, Switch, ProbabilitySwitch)
+_WITH_CONDITIONS = (Call, Loop, Switch)
+
 #: Lists of activities, from the process inwards, each with an index into it.
 Nesting: TypeAlias = tuple[tuple[tuple[Activity, ...], int], ...]
 
@@ -34,8 +39,7 @@ class TooComplexError(Exception):
     """A process executes too many activities to be analysed; the text says which."""
 
 
-@dataclass(frozen=True, slots=True)
-class ActivityPosition:
+class ActivityPosition(NamedTuple):
     """An activity in the jobs of a process.
 
     Attributes
@@ -105,7 +109,6 @@ class _Walk:
                 times *= _max_times(activity.times)
             if isinstance(activity, Call) and activity.counter is not None:
                 counters = (*counters, activity.counter)
-            conditions = _conditions(activity, self.system)
             place = len(self.found)
             if place >= MAX_POSITIONS or len(branch.above) > MAX_CALL_DEPTH:
                 raise TooComplexError(f"{self.process.name!r} has too many calls, or too deeply nested calls, to be analysed")
@@ -115,13 +118,11 @@ class _Walk:
                 called = self.system.runnables.get(activity.runnable)
                 if called is not None and called.name not in branch.above:
                     self.through(called.activities, _of_call(activity, called, branch, outer, counters, times))
-            else:
-                inner = inner_activities(activity)
-                if inner:
-                    is_certain = branch.is_certain and isinstance(activity, Group) and activity.ordered
-                    within = _Branch(branch.runnable, outer, counters, is_certain, times, branch.above)
-                    for each in inner:
-                        self.through(each, within)
+            elif isinstance(activity, _WITH_PARTS):
+                is_certain = branch.is_certain and isinstance(activity, Group) and activity.ordered
+                within = _Branch(branch.runnable, outer, counters, is_certain, times, branch.above)
+                for each in inner_activities(activity):
+                    self.through(each, within)
             self.found[place] = ActivityPosition(
                 self.process,
                 place + 1,
@@ -132,7 +133,7 @@ class _Walk:
                 counters,
                 branch.is_certain,
                 times,
-                conditions,
+                _conditions(activity, self.system) if isinstance(activity, _WITH_CONDITIONS) else (),
             )
 
 
