@@ -97,6 +97,13 @@ def test_sensitivity_of_single_processes():
     assert float(found.processes["high"]) == pytest.approx(3, rel=1e-3)
 
 
+def test_the_largest_factor_of_an_application_with_chains_is_the_last_one_that_holds():
+    built = describe(ROOT / "samples" / "drive-and-lift.yaml").system
+    factor = max_scale(analyze_system(built))
+    assert not analyze_system(built, Settings(scale=factor)).misses
+    assert analyze_system(built, Settings(scale=factor * Fraction(101, 100))).misses
+
+
 def test_what_is_missed_is_met_again_with_less():
     found = sensitivity(analyze_system(tasks_on_a_core(("low", 100, 20, 15), ("high", 100, 10, 30))))
     # The lower one takes 20 alone, whatever the higher one does.

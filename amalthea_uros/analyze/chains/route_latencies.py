@@ -110,9 +110,15 @@ class RouteLatencies:
     def _minima(self, value: _Make) -> Iterator[Value]:
         """Lower bounds by latest reads and earliest writes."""
         chains = _job_chains(self.parts[0], pessimistic=False)
-        if chains is not None:
-            yield value(Quantity.MIN_FIRST_TO_FIRST, max(0, int(chains.first_to_first.min())))
-            yield value(Quantity.MIN_LAST_TO_LAST, max(0, int(chains.last_to_last.min())))
+        if chains is None:
+            return
+        for quantity, times in (
+            (Quantity.MIN_FIRST_TO_FIRST, chains.first_to_first),
+            (Quantity.MIN_LAST_TO_LAST, chains.last_to_last),
+        ):
+            # With a long time between reading and writing, no job of the cycle has to pass anything on.
+            if times.size:
+                yield value(quantity, max(0, int(times.min())))
 
     def _summed(self, found: Sequence[JobChains]) -> Iterator[Value]:
         """The sum over controllers without a common clock (theorem 5.8 of RTAS 2021)."""
