@@ -34,6 +34,16 @@ class Policy(StrEnum):
     GROUPING = "Grouping"
 
 
+#: Policies that grant a budget in each period.
+SERVERS = (
+    Policy.DEFERRABLE_SERVER,
+    Policy.POLLING_SERVER,
+    Policy.SPORADIC_SERVER,
+    Policy.CONSTANT_BANDWIDTH_SERVER,
+    Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH,
+)
+
+
 @dataclass(frozen=True, slots=True)
 class Duration:
     """A time as the value of a parameter, which could also be a number."""

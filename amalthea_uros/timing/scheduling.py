@@ -12,25 +12,18 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from amalthea_uros.perf.mapping import TaskAllocation
-from amalthea_uros.perf.os import Duration, Parameter, ParameterValue, Policy, Scheduler
+from amalthea_uros.perf.os import SERVERS, Duration, Parameter, ParameterValue, Policy, Scheduler
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.notes import Notes
 from amalthea_uros.units import Time
 
-#: Policies that serve the highest priority first.
-BY_PRIORITY = {Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN}
-#: Policies that grant a budget in each period.
-SERVERS = {
-    Policy.DEFERRABLE_SERVER,
-    Policy.POLLING_SERVER,
-    Policy.SPORADIC_SERVER,
-    Policy.CONSTANT_BANDWIDTH_SERVER,
-    Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH,
-}
+#: Policies that serve the highest priority first, as far as there is an analysis for them.
+_BY_PRIORITY = {Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN}
 #: Other names of policies, in lower case; since AMALTHEA 2.0 only the name identifies a policy.
-ALIASES = {
+_ALIASES = {
+    **{policy.lower(): policy for policy in Policy},
     "fpp": Policy.FIXED_PRIORITY_PREEMPTIVE,
     "fixed priority preemptive": Policy.FIXED_PRIORITY_PREEMPTIVE,
     "autosar": Policy.OSEK,
@@ -44,6 +37,16 @@ PERIOD = ("period", "replenishment")
 
 #: Order of service, compared from left to right: interrupts before tasks, then the priorities from the outermost scheduler inwards.
 Rank = tuple[int, ...]
+
+
+def standard_policy(name: str | None) -> str | None:
+    """The standard name of a policy; that of the model if it is none of these."""
+    return _ALIASES.get((name or "").lower(), name)
+
+
+def is_by_priority(name: str | None) -> bool:
+    """Whether a policy serves the highest priority first."""
+    return standard_policy(name) in _BY_PRIORITY | {Policy.FIXED_PRIORITY_WITH_BUDGETS}
 
 
 class EqualPriority(StrEnum):
@@ -200,9 +203,9 @@ class Scheduling:
 
     def _policy(self, scheduler: Scheduler) -> str | None:
         """The standard name of the policy of a scheduler."""
-        standard = ALIASES.get((scheduler.policy or "").lower())
-        if standard is None:
-            return scheduler.policy
+        standard = standard_policy(scheduler.policy)
+        if standard == scheduler.policy:
+            return standard
         self.notes.assume(f"the policy {scheduler.policy!r} is interpreted as {standard}")
         return standard
 
@@ -242,7 +245,8 @@ class Scheduling:
 
     def _is_shared(self, parent: Scheduler, priority: int | None) -> bool:
         """Whether several schedulers or tasks have a priority, under a policy that uses it."""
-        if parent.policy not in BY_PRIORITY | SERVERS:
+        policy = standard_policy(parent.policy)
+        if policy not in _BY_PRIORITY and policy not in SERVERS:
             return False
         children = [s for s in self.system.schedulers.values() if s.parent is not None and s.parent.scheduler == parent.name]
         priorities = [child.parent.priority for child in children if child.parent is not None]

@@ -8,7 +8,7 @@ from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.allocation import deciding_scheduler, effective_priority
-from amalthea_uros.timing.scheduling import ALIASES, BY_PRIORITY
+from amalthea_uros.timing.scheduling import is_by_priority, standard_policy
 
 #: Scheduler, cores and priority.
 _Level = tuple[str, frozenset[str], int]
@@ -39,8 +39,7 @@ def _level(allocation: TaskAllocation, system: System, cores: Mapping[str, froze
     priority = effective_priority(allocation, system)
     if scheduler is None or priority is None:
         return None
-    policy = ALIASES.get((scheduler.policy or "").lower(), scheduler.policy)
     # Under round robin it is intended that tasks share a priority.
-    if policy not in BY_PRIORITY | {Policy.FIXED_PRIORITY_WITH_BUDGETS} or policy == Policy.PRIORITY_BASED_ROUND_ROBIN:
+    if not is_by_priority(scheduler.policy) or standard_policy(scheduler.policy) == Policy.PRIORITY_BASED_ROUND_ROBIN:
         return None
     return scheduler.name, cores.get(allocation.task, frozenset()), priority

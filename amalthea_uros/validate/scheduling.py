@@ -41,18 +41,6 @@ def policy(scheduler: Scheduler | None) -> str | None:
 GROUPING = "Grouping"
 
 
-def is_by_priority(scheduler: Scheduler | None) -> bool:
-    """Whether a scheduler serves the highest priority first."""
-    return (policy(scheduler) or "").lower() in _BY_PRIORITY
-
-
-#: Names of such policies, in small letters; since 2.0 they are known by nothing else.
-_BY_PRIORITY = {
-    *("fixedprioritypreemptive", "fixed priority preemptive", "fpp", "osek", "autosar"),
-    *("fixedprioritypreemptivewithbudgetenforcement", "prioritybasedroundrobin"),
-}
-
-
 def deciding(scheduler: TaskScheduler | None) -> TaskScheduler | None:
     """The scheduler that decides for those below another one: a grouping leaves that to its parent."""
     return next((one for one in _upwards(scheduler) if policy(one) != GROUPING), None)

@@ -172,8 +172,9 @@ class TestSchedulersBelowEachOther:
         # `long` is held up by one job of `first` and two of `short`.
         assert worst(built) == {"first": 2, "short": 3, "long": 7}
 
-    def test_two_children_of_one_priority_are_not_analysed(self):
-        built = system([root(), under("child", Policy.OSEK, 5)], self.TASKS)
+    @pytest.mark.parametrize("policy", [Policy.OSEK, "AUTOSAR", "osek", "FPP"])
+    def test_two_children_of_one_priority_are_not_analysed(self, policy):
+        built = system([root(policy), under("child", Policy.OSEK, 5)], self.TASKS)
         assert "share a priority" in worst(built)["urgent"]
 
     @pytest.mark.parametrize(

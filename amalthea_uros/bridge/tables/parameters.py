@@ -14,7 +14,7 @@ from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.magnitudes import picoseconds
 from amalthea_uros.perf.named import Named
-from amalthea_uros.perf.os import Duration, Parameter, ParameterValue, Policy
+from amalthea_uros.perf.os import SERVERS, Duration, Parameter, ParameterValue, Policy
 
 PRIORITY, DEADLINE = "priority", "deadline"
 
@@ -28,16 +28,9 @@ _OF_PROCESSES: dict[str, tuple[str, ...]] = {
     Policy.EARLIEST_DEADLINE_FIRST: (DEADLINE,),
     Policy.PRIORITY_BASED_ROUND_ROBIN: (PRIORITY, "timeSliceLength"),
 }
-_SERVERS = (
-    Policy.DEFERRABLE_SERVER,
-    Policy.POLLING_SERVER,
-    Policy.SPORADIC_SERVER,
-    Policy.CONSTANT_BANDWIDTH_SERVER,
-    Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH,
-)
 _FAIR = (Policy.PFAIR, Policy.PARTLY_PFAIR, Policy.EARLY_RELEASE_FAIR, Policy.PARTLY_EARLY_RELEASE_FAIR)
 _OF_POLICIES: dict[str, tuple[str, ...]] = {
-    **dict.fromkeys(_SERVERS, ("capacity", "period")),
+    **dict.fromkeys(SERVERS, ("capacity", "period")),
     **dict.fromkeys(_FAIR, ("quantSize",)),
 }
 

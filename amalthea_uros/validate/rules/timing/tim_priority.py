@@ -6,13 +6,14 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import TaskAllocation
+from amalthea_uros.timing.scheduling import is_by_priority
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.scheduling import deciding, is_by_priority, priority
+from amalthea_uros.validate.scheduling import deciding, policy, priority
 
 
 def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
-    if element.task is not None and is_by_priority(deciding(element.scheduler)) and priority(element) is None:
+    if element.task is not None and is_by_priority(policy(deciding(element.scheduler))) and priority(element) is None:
         yield f"task {element.task.name!r} has no priority"
 
 
