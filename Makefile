@@ -38,7 +38,7 @@ gen: $(READY)
 	for sample in samples/*.yaml; do $(BIN)/amuros build $$sample --output json=/dev/null; done
 	$(BIN)/python tools/draw_terminal.py docs/images/info.svg info executor.amxmi
 	$(BIN)/python tools/draw_terminal.py docs/images/build.svg build bodas-test-advanced.yaml
-	$(BIN)/python tools/draw_terminal.py docs/images/check.svg check bodas-test-hardware.yaml
+	$(BIN)/python tools/draw_terminal.py docs/images/check.svg check --profile inchron bodas-test-hardware.yaml
 	$(BIN)/python tools/draw_quantities.py docs/images
 	$(BIN)/python tools/draw_rooms.py
 

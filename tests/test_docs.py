@@ -73,7 +73,7 @@ def test_the_sample_is_what_its_script_builds(tmp_path):
     [
         ("info.svg", ["info", "executor.amxmi"]),
         ("build.svg", ["build", "bodas-test-advanced.yaml"]),
-        ("check.svg", ["check", "bodas-test-hardware.yaml"]),
+        ("check.svg", ["check", "--profile", "inchron", "bodas-test-hardware.yaml"]),
     ],
 )
 def test_the_picture_shows_what_is_printed(picture, command, tmp_path):

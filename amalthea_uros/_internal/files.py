@@ -84,7 +84,7 @@ def read_text(path: Path, max_size: int = MAX_SIZE) -> str:
 
 
 def write_bytes(path: Path, data: bytes) -> None:
-    """Write a file whole or not at all: beside the target first, then renamed.
+    """Write a file whole or not at all: beside the target first, then renamed; write to a pipe or a device itself.
 
     Raises
     ------
@@ -93,6 +93,9 @@ def write_bytes(path: Path, data: bytes) -> None:
     temporary = None
     try:
         target = path.resolve()  # a symbolic link remains one: the file that it points to is replaced
+        if target.exists() and not target.is_file() and not target.is_dir():
+            target.write_bytes(data)  # a device or a pipe must not become a file
+            return
         mode = target.stat().st_mode & 0o777 if target.exists() else 0o666 & ~_umask()
         descriptor, temporary = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
         with os.fdopen(descriptor, "wb") as stream:

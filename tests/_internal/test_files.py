@@ -80,3 +80,13 @@ def test_bytes_that_would_not_come_back_are_refused():
     assert decode(b"a+AOQ-", "utf-7") == "aä"
     with pytest.raises(UnicodeError):
         decode(b"+AGE-", "utf-7")
+
+
+def test_a_pipe_or_a_device_is_written_to_and_stays_what_it_is(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    write_bytes(pipe, b"content")
+    assert os.read(reader, 100) == b"content"
+    os.close(reader)
+    assert pipe.is_fifo()
