@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
 
 from amalthea_uros.analyze.chains import counter_phases
@@ -12,6 +13,7 @@ from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.requirements import evaluate_requirements
 from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessorResult, ProcessResult, Response, Results, Verdict
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.context import TimingContext
@@ -55,10 +57,20 @@ def _chains(evaluation: ChainEvaluator) -> Iterator[ChainResult]:
     for chain in context.system.events.chains:
         found = evaluation.chain(chain)
         if context.settings.all_phases and found.values:
-            variants = [TimingContext.of(system, context.settings) for system in counter_phases.variants(chain, context)]
-            results = [ChainEvaluator(solve(variant)).chain(chain) for variant in variants]
-            found = counter_phases.merged(results) if results else found
+            found = _over_all_phases(found, chain, context)
         yield found
+
+
+def _over_all_phases(found: ChainResult, chain: EventChain, context: TimingContext) -> ChainResult:
+    """The result of a chain over all phases of the counter at which it starts; no values if these are too many."""
+    try:
+        variants = [TimingContext.of(system, context.settings) for system in counter_phases.variants(chain, context)]
+    except counter_phases.TooManyPhasesError as error:
+        # The modelled phase must not stand for all of them.
+        context.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {error}", chain)
+        return replace(found, values=(), all_values=(), reason=str(error))
+    results = [ChainEvaluator(solve(variant)).chain(chain) for variant in variants]
+    return counter_phases.merged(results) if results else found
 
 
 def _note_ignored(solution: Solution) -> None:

@@ -143,7 +143,7 @@ CONSEQUENCES = (
     Consequence(Source("DOC-Feature-Single"), _sources("AM-HW-Definition")),
     Consequence(Source("AM-HW-Module-Definition"), _sources("INC-HW-MEM-SIZE")),
     Consequence(Source("TIM-ALLOCATION"), _sources("DOC-Task-Single-Scheduler"), in_file=True, same_name=True),
-    # A scheduler without a core runs none of its tasks; a stimulus that is not converted activates nothing.
+    # Tasks of a scheduler without a core are never executed; a stimulus that is not converted never activates a process.
     Consequence(
         Source("AM-Mapping-Scheduler-ProcessingUnit"),
         _sources("DOC-Task-Affinity-Intersection"),

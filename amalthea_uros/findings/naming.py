@@ -8,7 +8,7 @@ from amalthea_uros.diagnostics import Finding
 
 _QUOTED = re.compile(r"""['"<]([^'"<>]+)['">]""")
 
-#: What stands in a reference between the name of an object and its class.
+#: The separator between the name and the class of an object in a reference.
 _TYPE = "?type="
 
 

@@ -19,7 +19,7 @@ class BuildResult:
     Attributes
     ----------
     description : the file
-    assembly : the system behind the model, and what was decided on the way
+    assembly : the system of the model, with the decisions and findings of its assembly
     """
 
     description: Path

@@ -31,7 +31,7 @@ def test_a_sample(sample, version):
     found = [problem for problem in problems(built.model) if problem[1] != "I"]
     assert [problem for problem in found if problem[1] == "E"] == []
     assert {rule for rule, _, _ in found} == WISHES[sample.stem]
-    # The author of the description is told the same.
+    # The findings on the description agree.
     (groups,) = summaries(built.model, ["inchron"]).values()
     assert {group.shown.rule for group in groups if group.shown.severity is not Severity.INFO} == WISHES[sample.stem]
 

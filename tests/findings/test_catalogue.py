@@ -20,7 +20,7 @@ ID = re.compile(r"[A-Z]{2,}\d{3}|(?:INC|TIM|AM|EMF|TA|DOC)-[A-Za-z/.-]+")
 
 
 def emitted():
-    """The ids in calls of the source, each with the severities that stand beside them."""
+    """The ids in calls of the source, each with the severities in the same call."""
     found = defaultdict(set)
     for path in (ROOT / "amalthea_uros").rglob("*.py"):
         if "rules" in path.parts or "findings" in path.parts:

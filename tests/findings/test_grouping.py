@@ -139,7 +139,7 @@ def test_no_finding_is_the_cause_of_its_cause():
 
 def test_names_that_only_start_alike_are_different():
     scheduler = finding("AM-Mapping-Scheduler-ProcessingUnit", "no scheduler allocation refers to 'S'", "S")
-    task = finding("DOC-Task-Affinity-Intersection", "'T' runs nowhere: 'S_1' decides for none of its cores", "T", 2)
+    task = finding("DOC-Task-Affinity-Intersection", "task 'T' cannot run: 'S_1' is responsible for no processing unit", "T", 2)
     assert len(shown(scheduler, task)) == 2
 
 

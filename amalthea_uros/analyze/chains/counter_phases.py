@@ -20,18 +20,31 @@ from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.routes import routes
 
-#: Chains with more phases are evaluated for the modelled phase only.
+#: Chains with more phases are not evaluated for all of them.
 MAX_PHASES = 1000
 
 
+class TooManyPhasesError(Exception):
+    """A counter has more phases than are evaluated; the text says which."""
+
+
 def variants(chain: EventChain, context: TimingContext) -> Iterator[System]:
-    """The system with each phase of the counter at which a chain starts; nothing if there is no such counter."""
+    """The system with each phase of the counter at which a chain starts; nothing if there is no such counter.
+
+    Raises
+    ------
+    TooManyPhasesError : the counter has more than `MAX_PHASES`.
+    """
     position = _counted_start(chain, context)
     if position is None:
         return
     call = position.process.activities[position.outer[0][1]]
     assert isinstance(call, Call)
     assert call.counter is not None
+    if call.counter.prescaler > MAX_PHASES:
+        raise TooManyPhasesError(
+            f"the counter of {call.runnable!r} has {call.counter.prescaler} phases, and at most {MAX_PHASES} are evaluated"
+        )
     for offset in range(1, call.counter.prescaler + 1):
         changed = replace(call, counter=replace(call.counter, offset=offset))
         yield _with(context.system, position.process, position.outer[0][1], changed)
@@ -47,7 +60,7 @@ def _counted_start(chain: EventChain, context: TimingContext) -> ActivityPositio
         return None
     for position in first.positions:
         call = position.process.activities[position.outer[0][1]]
-        if isinstance(call, Call) and call.counter is not None and 1 < call.counter.prescaler <= MAX_PHASES:
+        if isinstance(call, Call) and call.counter is not None and call.counter.prescaler > 1:
             return position
     return None
 

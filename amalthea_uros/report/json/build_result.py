@@ -1,4 +1,4 @@
-"""What was built, and what was decided on the way, for programs."""
+"""A built model with the decisions of its assembly, for programs."""
 
 from __future__ import annotations
 

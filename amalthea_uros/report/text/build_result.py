@@ -1,4 +1,4 @@
-"""What was built, and what was decided on the way, for people."""
+"""A built model with the decisions of its assembly, for people."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ from support import ROOT, SHARED
 from test_methods import cases
 
 from amalthea_uros import Settings, analyze_system, describe, extract, load
+from amalthea_uros.analyze.chains import counter_phases
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.perf.distributions import Boundaries, Constant
 from amalthea_uros.perf.events import (
@@ -181,6 +182,14 @@ class TestTheThesis:
         # Ticks 0 to 19 after Message_Factor: 20 in steps of one, each of which ends at 16 or, where it meets a message, at 29.
         assert values["mean_first_to_first"] == pytest.approx(sum(range(1, 21)) * 1000 / 20 + 16 + 13 / 20)
         assert (values["min_last_to_last"], values["max_reduced_data_age"]) == (1016, 39016)
+
+    def test_more_phases_than_are_evaluated_give_no_value(self, monkeypatch):
+        monkeypatch.setattr(counter_phases, "MAX_PHASES", 19)
+        analysis = analyze_system(describe(self.SAMPLE).system, Settings(all_phases=True))
+        (chain,) = analysis.chains
+        assert (chain.values, chain.all_values) == ((), ())
+        assert "has 20 phases, and at most 19 are evaluated" in chain.reason
+        assert [finding.rule for finding in analysis.findings] == ["CHN003"]
 
     @pytest.mark.parametrize(
         ("start", "end", "minimum", "maximum"),
