@@ -6,6 +6,7 @@ event at its end does not count.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from fractions import Fraction
 
 from amalthea_uros.units import Time
@@ -14,17 +15,17 @@ from amalthea_uros.units import Time
 NEVER: Time = 2**62
 
 
-class EventModel:
-    """Events whose density is bounded; subclasses implement `delta_min` and `rate`."""
+class EventModel(ABC):
+    """Events whose density is bounded."""
 
+    @abstractmethod
     def delta_min(self, count: int) -> Time:
         """Minimum time from the first to the last of `count` consecutive events (delta-)."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def rate(self) -> Fraction:
         """Maximum number of events per time in the long run."""
-        raise NotImplementedError
 
     @property
     def max_interarrival(self) -> Time | None:
