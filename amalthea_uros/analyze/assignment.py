@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import response_time
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.results import Analysis, require_analysis
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.timing.critical_sections import Protection
 from amalthea_uros.timing.event_models import rescaled
 from amalthea_uros.timing.preemption import is_preemptive
 from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
@@ -103,7 +103,7 @@ def _obstacle(item: ScheduledProcess, solution: Solution) -> str:
         return f"{name!r} has no deadline"
     if item.server is not None or item.equal_priority is not EqualPriority.FIFO or len(item.rank) != len((0, item.priority)):
         return f"{name!r} is not scheduled by a single fixed priority"
-    if not is_preemptive(item) or Blocking([item], solution.context.demand_model).ceilings:
+    if not is_preemptive(item) or solution.context.protection[item.name] != Protection():
         return f"{name!r} can block other tasks, which depends on the priorities"
     return ""
 

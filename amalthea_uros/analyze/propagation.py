@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from amalthea_uros.analyze.response_times.core import responses_on
+from amalthea_uros.analyze.response_times.known_offsets import tightened
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.software import Process
@@ -31,6 +32,8 @@ def solve(context: TimingContext) -> Solution:
     while True:
         changing = _iterate(solution, diverging)
         if not changing:
+            for core in context.system.cores:
+                solution.responses |= tightened(core, solution)
             return solution
         # Without the diverging processes and those that depend on them, the others can converge.
         diverging |= changing

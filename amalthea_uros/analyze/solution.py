@@ -33,6 +33,10 @@ class Solution:
         """Whether demand and activations of a process are known."""
         return name in self.context.demands and name in self.event_models
 
+    def is_analysable(self, name: str) -> bool:
+        """Whether also the critical sections of a process are known."""
+        return self.is_known(name) and name not in self.context.unclear_locks
+
     def bcet(self, name: str) -> Time:
         """Best-case execution time of a process, in picoseconds; 0 if it is unknown."""
         demand = self.context.demands.get(name)

@@ -9,7 +9,7 @@ from functools import cached_property
 from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation import Activations
-from amalthea_uros.timing.critical_sections import semaphores_of
+from amalthea_uros.timing.critical_sections import Locks, Protection, protection_of
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.limits import MAX_INPUT
@@ -18,6 +18,7 @@ from amalthea_uros.timing.notes import Notes, UnknownDemandError
 from amalthea_uros.timing.releases import response_time_limits
 from amalthea_uros.timing.scheduling import NotSchedulableError, ScheduledProcess, Scheduling, Server
 from amalthea_uros.timing.settings import Memory, Settings
+from amalthea_uros.timing.stretches import KeptOff, StretchWalk, UnclearLocksError
 
 
 @dataclass
@@ -31,6 +32,8 @@ class TimingContext:
     decisions : demand of scheduler decisions at activations, if the model specifies it
     reasons : why the response time of a process is unknown
     unanalysable_cores : (core, whether by an ISR) -> a process that can run there and cannot be analysed
+    unclear_locks : why the critical sections of a process are unknown
+    open_semaphores : those without a ceiling, or held while waiting for one without: others than the holder delay who waits
     """
 
     system: System
@@ -42,6 +45,8 @@ class TimingContext:
     decisions: dict[str, MultiframeDemand] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     unanalysable_cores: dict[tuple[str, bool], str] = field(default_factory=dict)
+    unclear_locks: dict[str, str] = field(default_factory=dict)
+    open_semaphores: frozenset[str] = frozenset()
 
     @classmethod
     def of(cls, system: System, settings: Settings | None = None) -> TimingContext:
@@ -50,7 +55,7 @@ class TimingContext:
         context._note_settings()
         context._schedule()
         context._find_demands()
-        context._exclude_remote_semaphores()
+        context._find_locks()
         return context
 
     @cached_property
@@ -161,16 +166,45 @@ class TimingContext:
             return None
         return scheduler
 
-    def _exclude_remote_semaphores(self) -> None:
-        """Exclude processes that can wait for other cores or servers at a semaphore."""
+    @cached_property
+    def protection(self) -> dict[str, Protection]:
+        """What each process uses to keep others off."""
+        return {name: protection_of(scheduled.process, self.system) for name, scheduled in self.scheduled.items()}
+
+    def _find_locks(self) -> None:
+        """Find the processes whose critical sections are unknown, and the semaphores at which others than the holder delay."""
+        requests: dict[str, set[str]] = {}
+        for name, uses in self.protection.items():
+            if uses.semaphores and name in self.demands:
+                walk = StretchWalk(self.system, KeptOff(), lambda _: 0, self.demand_model.possible_branches, requests)
+                try:
+                    walk.of(self.scheduled[name].process.activities)
+                except UnclearLocksError as error:
+                    self._mark_unclear(name, str(error))
+        locks = Locks(self.system, self.protection, requests)
+        self.open_semaphores = locks.open_semaphores
+        for name in self.open_semaphores:
+            self.notes.assume(
+                f"the semaphore {name!r} has no priority ceiling and no inheritance: whoever waits for it is also delayed by all "
+                "processes above its lowest user"
+            )
+        for name, reason in locks.unclear():
+            self._mark_unclear(name, reason)
+        self._find_remote_semaphores()
+
+    def _mark_unclear(self, name: str, reason: str) -> None:
+        scheduled = self.scheduled[name]
+        self.unclear_locks.setdefault(name, reason)
+        self.notes.warning("ANA003", f"the critical sections of {name!r} cannot be analysed: {reason}", scheduled.process)
+        self.mark_unknown(name, reason)
+
+    def _find_remote_semaphores(self) -> None:
+        """Find processes that can wait for other cores or servers at a semaphore."""
         users: dict[str, list[ScheduledProcess]] = {}
-        for scheduled in self.scheduled.values():
-            for name in semaphores_of(scheduled.process, self.system):
-                users.setdefault(name, []).append(scheduled)
-        for name, here in users.items():
+        for name, uses in self.protection.items():
+            for semaphore in uses.semaphores:
+                users.setdefault(semaphore, []).append(self.scheduled[name])
+        for semaphore, here in users.items():
             if len({(scheduled.core, scheduled.server) for scheduled in here}) > 1:
                 for scheduled in here:
-                    message = f"{scheduled.name!r} shares {name!r} with other cores or servers, which cannot be analysed"
-                    self.notes.warning("ANA003", message, scheduled.process)
-                    self.mark_unknown(scheduled.name, f"it shares the semaphore {name!r} with other cores or servers")
-                    self.demands.pop(scheduled.name, None)
+                    self._mark_unclear(scheduled.name, f"it shares the semaphore {semaphore!r} with other cores or servers")

@@ -1,49 +1,47 @@
-"""Critical sections of processes: the semaphores, and the activities executed while they are held."""
+"""The semaphores that processes use: in which order they request them, and where they hold them exclusively."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
-from amalthea_uros.perf.software import Activity, Call, Process, SemaphoreAccess, SemaphoreOperation
+from amalthea_uros.perf.os import SemaphoreKind
+from amalthea_uros.perf.software import Group, Process, SemaphoreAccess, SemaphoreOperation, Waiting
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.stretches import executed
 
 
-def critical_sections(process: Process, system: System) -> Iterator[tuple[str, Sequence[Activity]]]:
-    """The critical sections of a process: semaphore, and the activities executed while it is held."""
-    held: dict[str, list[Activity]] = {}
-    for activity in _flat(process.activities, system):
-        if isinstance(activity, SemaphoreAccess):
-            if activity.operation is not SemaphoreOperation.RELEASE:
-                held.setdefault(activity.semaphore, [])
-            elif activity.semaphore in held:
-                yield activity.semaphore, held.pop(activity.semaphore)
-        else:
-            for inside in held.values():
-                inside.append(activity)
-    for name in held:
-        # Never released: held until the end of the job.
-        yield name, process.activities
+@dataclass(frozen=True, slots=True)
+class Protection:
+    """What keeps others off during the jobs of a process, at any depth.
+
+    Attributes
+    ----------
+    semaphores : that it uses
+    awaited_actively : those for which it waits without giving the core away
+    has_non_interruptible_group : whether it can execute one
+    """
+
+    semaphores: frozenset[str] = frozenset()
+    awaited_actively: frozenset[str] = frozenset()
+    has_non_interruptible_group: bool = False
 
 
-def semaphores_of(process: Process, system: System) -> set[str]:
-    """The semaphores that a process uses."""
-    found = _flat(process.activities, system)
-    return {activity.semaphore for activity in found if isinstance(activity, SemaphoreAccess)}
-
-
-def _flat(activities: Sequence[Activity], system: System, above: tuple[str, ...] = ()) -> Iterator[Activity]:
-    """The activities of a process; calls of runnables that use semaphores are replaced by their activities."""
-    for activity in activities:
-        runnable = system.runnables.get(activity.runnable) if isinstance(activity, Call) else None
-        if runnable is not None and runnable.name not in above and _locks(runnable.activities):
-            yield from _flat(runnable.activities, system, (*above, runnable.name))
-        else:
-            yield activity
-
-
-def _locks(activities: Sequence[Activity]) -> bool:
-    return any(isinstance(activity, SemaphoreAccess) for activity in activities)
+def protection_of(process: Process, system: System) -> Protection:
+    """What a process uses to keep others off."""
+    spinlocks = {semaphore.name for semaphore in system.os.semaphores if semaphore.kind is SemaphoreKind.SPINLOCK}
+    semaphores, actively, has_group = set[str](), set[str](), False
+    for activity in executed(process.activities, system):
+        match activity:
+            case SemaphoreAccess(semaphore=name, operation=operation, waiting=waiting):
+                semaphores.add(name)
+                is_active = waiting is Waiting.ACTIVE or (waiting is None and name in spinlocks)
+                if is_active and operation is not SemaphoreOperation.RELEASE:
+                    actively.add(name)
+            case Group(interruptible=False):
+                has_group = True
+    return Protection(frozenset(semaphores), frozenset(actively), has_group)
 
 
 def exclusively_held(positions: Sequence[ActivityPosition], system: System) -> Iterator[frozenset[str]]:
@@ -62,3 +60,58 @@ def exclusively_held(positions: Sequence[ActivityPosition], system: System) -> I
             # A semaphore for several users excludes nobody unless it is requested exclusively.
             elif access.operation is SemaphoreOperation.EXCLUSIVE or users.get(access.semaphore, 1) <= 1:
                 held |= {access.semaphore}
+
+
+@dataclass(frozen=True, slots=True)
+class Locks:
+    """How processes wait at semaphores.
+
+    Attributes
+    ----------
+    protection : of each process
+    requests : for each semaphore, those that somebody requests while holding it
+    """
+
+    system: System
+    protection: Mapping[str, Protection]
+    requests: Mapping[str, set[str]]
+
+    @property
+    def open_semaphores(self) -> frozenset[str]:
+        """Those without a ceiling that somebody uses, and those that somebody holds while requesting such a one."""
+        used = {name for uses in self.protection.values() for name in uses.semaphores}
+        found = used - {semaphore.name for semaphore in self.system.os.semaphores if semaphore.ceiling}
+        while more := {name for name, inner in self.requests.items() if name not in found and not inner.isdisjoint(found)}:
+            found |= more
+        return frozenset(found)
+
+    def unclear(self) -> Iterator[tuple[str, str]]:
+        """The processes that can wait for an unknown time, and why."""
+        open_semaphores = self.open_semaphores
+        held_at_start = {semaphore.name for semaphore in self.system.os.semaphores if semaphore.initial_users > 0}
+        circular = set(_in_circles(self.requests)) & open_semaphores
+        for name, uses in self.protection.items():
+            for semaphore in sorted(uses.semaphores & held_at_start):
+                yield name, f"the semaphore {semaphore!r} is already held when the system starts"
+            for semaphore in sorted(uses.semaphores & circular):
+                yield name, f"it can wait forever for the semaphore {semaphore!r}: semaphores are requested in different orders"
+            for semaphore in sorted(uses.awaited_actively & open_semaphores):
+                if sum(semaphore in other.semaphores for other in self.protection.values()) > 1:
+                    yield (
+                        name,
+                        f"it waits actively for the semaphore {semaphore!r}, so that a holder of lower priority never runs",
+                    )
+
+
+def _in_circles(requests: Mapping[str, set[str]]) -> Iterator[str]:
+    """The semaphores that somebody can request while holding them, directly or by others."""
+    for start in requests:
+        reached: set[str] = set()
+        pending = list(requests[start])
+        while pending:
+            name = pending.pop()
+            if name not in reached:
+                reached.add(name)
+                pending += requests.get(name, ())
+        if start in reached:
+            yield start

@@ -145,7 +145,7 @@ class DemandModel:
                 weights = [branch.weight for branch in branches]
                 return _one_of([self._frames(branch.activities, core, above) for branch in branches], weights)
             case Switch():
-                alternatives = [self._frames(inner, core, above) for inner in self._possible(activity)]
+                alternatives = [self._frames(inner, core, above) for inner in self.possible_branches(activity)]
                 return _one_of(alternatives, [1.0] * len(alternatives))
             case Loop(condition=condition):
                 if holds(condition, self.settings.modes) is False:
@@ -160,7 +160,7 @@ class DemandModel:
                 raise UnknownDemandError("it migrates to another scheduler, which cannot be analysed")
         return []
 
-    def _possible(self, switch: Switch) -> list[tuple[Activity, ...]]:
+    def possible_branches(self, switch: Switch) -> list[tuple[Activity, ...]]:
         """The branches that can be taken, given the known modes."""
         found: list[tuple[Activity, ...]] = []
         for case in switch.cases:

@@ -1,8 +1,8 @@
-"""Where a process can be preempted: anywhere, between activities, or nowhere."""
+"""When a process can be preempted: always, at some points, or never."""
 
 from __future__ import annotations
 
-from amalthea_uros.perf.software import Activity, Preemption, SchedulePoint, Task
+from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.timing.scheduling import ScheduledProcess
 
 
@@ -14,17 +14,3 @@ def preemption(item: ScheduledProcess) -> Preemption:
 def is_preemptive(item: ScheduledProcess) -> bool:
     """Whether every process of higher rank can preempt a process immediately."""
     return preemption(item) is Preemption.PREEMPTIVE and item.group is None
-
-
-def regions(item: ScheduledProcess) -> list[tuple[Activity, ...]]:
-    """The activities between the preemption points of a task: each activity, or for groups all between schedule points."""
-    activities = item.process.activities
-    if preemption(item) is Preemption.COOPERATIVE and item.group is None:
-        return [(activity,) for activity in activities]
-    found: list[tuple[Activity, ...]] = [()]
-    for activity in activities:
-        if isinstance(activity, SchedulePoint):
-            found.append(())
-        else:
-            found[-1] += (activity,)
-    return found

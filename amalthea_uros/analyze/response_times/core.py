@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
-from amalthea_uros.analyze.response_times import non_preemptive, priority_levels, schedule
+from amalthea_uros.analyze.response_times import priority_levels, schedule
+from amalthea_uros.analyze.response_times.blocked_window import BlockedWindow
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.supply import FULL, Budget, Supply
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.results import Claim, Response
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.os import Policy
-from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel, Periodic, rescaled
 from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.preemption import is_preemptive, preemption
+from amalthea_uros.timing.preemption import is_preemptive
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.timing.scheduling import EqualPriority, Rank, ScheduledProcess, Server
-from amalthea_uros.units import Time
 
 
 def responses_on(core: str, solution: Solution) -> dict[str, Response]:
@@ -74,10 +73,18 @@ class _CoreAnalysis:
             else:
                 for item in level:
                     self._mark_unknown(item, f"depends on {unknown!r}, which could not be analysed")
-        return found
+        blocking = Blocking.of([item for item in here if isinstance(item, ScheduledProcess)], self.solution)
+        return [item for item in found if not self._is_blocked_for_unknown_time(item, blocking)]
+
+    def _is_blocked_for_unknown_time(self, item: ScheduledProcess | Server, blocking: Blocking) -> bool:
+        """Whether an unknown process of lower priority can block an item, which is marked unknown then."""
+        obstacle = blocking.obstacle(item) if isinstance(item, ScheduledProcess) and blocking.unknown else ""
+        if obstacle:
+            self._mark_unknown(item, f"{obstacle!r}, which could not be analysed, can block it")
+        return bool(obstacle)
 
     def _is_known(self, item: ScheduledProcess | Server) -> bool:
-        return isinstance(item, Server) or self.solution.is_known(item.name)
+        return isinstance(item, Server) or self.solution.is_analysable(item.name)
 
     def _mark_unknown(self, item: ScheduledProcess | Server, reason: str) -> None:
         """Record why a process, or all processes in the budget of a server, cannot be analysed."""
@@ -109,7 +116,7 @@ class _CoreAnalysis:
 
     def released(self, here: Sequence[ScheduledProcess]) -> list[schedule.PeriodicTask]:
         """The processes, if all releases are known and there is no blocking; otherwise nothing."""
-        if len({item.rank for item in here}) < len(here) or Blocking(here, self.context.demand_model).ceilings:
+        if len({item.rank for item in here}) < len(here) or Blocking.of(here, self.solution).is_possible:
             return []
         found = [self._released(item, rank) for rank, item in enumerate(reversed(here))]
         return [] if None in found else [task for task in reversed(found) if task is not None]
@@ -132,29 +139,21 @@ class _CoreAnalysis:
     def bounds(
         self, usable: Sequence[ScheduledProcess | Server], here: Sequence[ScheduledProcess], supply: Supply
     ) -> list[Response]:
-        """Bounds by busy windows; processes of lower priority with known demand can block."""
+        """Bounds by busy windows; processes of lower priority can block."""
         notes = self.context.notes
         ranks = sorted({item.rank for item in usable})
         tasks = [self._task(item, ranks) for item in usable]
-        blocking = Blocking([item for item in here if item.name in self.context.demands], self.context.demand_model)
-        blocking.note_protocols(notes)
-        waits = blocking.times()
+        blocking = Blocking.of(here, self.solution)
+        waits = [blocking.time(item) if isinstance(item, ScheduledProcess) else 0 for item in usable]
         if tasks:
             notes.assume("if not all releases on a core are known, all tasks can be released together at the worst moment")
             notes.assume("best cases on such cores hold once all tasks have been released")
         decisions = self._decisions(len(ranks)) if supply is FULL else []
-        found = priority_levels.response_times(
-            [*tasks, *decisions], [*(waits.get(item.name, 0) for item in usable), *[0] * len(decisions)], supply
-        )
+        found = priority_levels.response_times([*tasks, *decisions], [*waits, *[0] * len(decisions)], supply)
         for index, item in enumerate(usable):
-            # Under EDF and in servers, the busy window is also valid for non-preemptive tasks.
-            if (
-                isinstance(item, ScheduledProcess)
-                and not is_preemptive(item)
-                and item.equal_priority is EqualPriority.FIFO
-                and supply is FULL
-            ):
-                found[index] = self._non_preemptive(index, usable, [*tasks, *decisions], blocking, waits)
+            if isinstance(item, ScheduledProcess):
+                window = BlockedWindow(notes, self.time_base, blocking, usable, [*tasks, *decisions], waits[index], supply)
+                found[index] = window.response(index, item, found[index])
         # The methods are exact for independent activations; offsets can make the worst case impossible.
         return [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
 
@@ -164,7 +163,8 @@ class _CoreAnalysis:
             # A deferred budget can be used at the end of one period and again at the start of the next one.
             jitter = item.period - item.budget if item.scheduler.policy == Policy.DEFERRABLE_SERVER else 0
             events: EventModel = Periodic(item.period, jitter)
-            demand = MultiframeDemand.constant(item.budget * self.time_base)
+            # It need not use its budget.
+            demand = MultiframeDemand.constant(item.budget * self.time_base, best=0)
         else:
             events, demand = self.solution.event_models[item.name], self.context.demands[item.name]
         return Task(
@@ -190,36 +190,13 @@ class _CoreAnalysis:
             if scheduled.name in self.context.decisions and scheduled.name in self.solution.event_models
         ]
 
-    def _non_preemptive(
-        self,
-        index: int,
-        here: Sequence[ScheduledProcess | Server],
-        tasks: Sequence[Task],
-        blocking: Blocking,
-        waits: Mapping[str, Time],
-    ) -> Response:
-        """The response time of a task that only some tasks can preempt in its last region."""
-        item, task = here[index], tasks[index]
-        assert isinstance(item, ScheduledProcess)
-        if preemption(item) is Preemption.COOPERATIVE:
-            sentence = "preemptive tasks preempt cooperative ones immediately, cooperative tasks only between runnables"
-            self.context.notes.assume(sentence)
-        higher = [other for other in tasks if other is not task and other.priority >= task.priority]
-        always_preempting = [
-            tasks[number]
-            for number, other in enumerate(here)
-            if (tasks[number].priority > task.priority if isinstance(other, Server) else blocking.preempts(other, item))
-        ]
-        always_preempting += tasks[len(here) :]
-        return non_preemptive.response_time(task, higher, waits[item.name], 1, blocking.last_region(item), always_preempting)
-
 
 def periodic_tasks(core: str, solution: Solution) -> list[schedule.PeriodicTask]:
     """The tasks of a core whose schedule is known apart from execution times; otherwise none."""
     context = solution.context
     here = context.served(core, None)
     processes = [item for item in here if isinstance(item, ScheduledProcess)]
-    if len(processes) < len(here) or not all(solution.is_known(item.name) for item in processes):
+    if len(processes) < len(here) or not all(solution.is_analysable(item.name) for item in processes):
         return []
     if (core, True) in context.unanalysable_cores or (core, False) in context.unanalysable_cores:
         return []

@@ -10,7 +10,7 @@ the earliest of its own task.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
@@ -25,28 +25,40 @@ SOURCE = "Spuri 1996"
 
 
 def response_time(
-    task: Task, others: Sequence[Task], higher: Interference, blocking: Time = 0, method: str = METHOD
+    task: Task,
+    others: Sequence[Task],
+    higher: Interference,
+    blocking: Time = 0,
+    method: str = METHOD,
+    blocking_before: Callable[[Time], Time] = lambda _: 0,
 ) -> Response:
     """The response time of a task among others of its priority.
 
     Parameters
     ----------
     higher : tasks of higher priority
+    blocking : by tasks of lower priority
+    blocking_before : blocking by jobs whose deadline is later than a time after the start of the busy window
     """
     level = [task, *others]
     together = Interference.of([*higher.tasks, *others], higher.supply)
     if together.overloads_with(task):
         return unbounded(task.demand.best, together, task, method, SOURCE)
-    window = Interference.of([*higher.tasks, *level], higher.supply).window(blocking, 0)
+    longest_blocking = max(blocking, *(blocking_before(each.deadline) for each in level))
+    window = Interference.of([*higher.tasks, *level], higher.supply).window(longest_blocking, 0)
     limit = max_jobs(*level)
     candidates = sorted(set(_candidates(task, level, window, limit))) if window is not None else []
     if not candidates or len(candidates) > limit:
         reason = f"its busy window has more than {limit:,} activations: the tasks need nearly all of the core"
         return Response(worst=None, best=task.demand.best, method=method, source=SOURCE, reason=reason)
-    ends = [(_end(task, activation, others, higher, blocking), activation) for activation in candidates]
-    if any(end > LIMIT for end, _ in ends):
+    blocked = [max(blocking, blocking_before(activation + task.deadline)) for activation in candidates]
+    ends = [
+        (_end(task, activation, others, higher, wait), activation, wait)
+        for activation, wait in zip(candidates, blocked, strict=True)
+    ]
+    if any(end > LIMIT for end, _, _ in ends):
         return Response(worst=None, best=task.demand.best, method=method, source=SOURCE, reason="its busy window does not end")
-    end, activation = max(ends, key=lambda pair: pair[0] - pair[1])
+    end, activation, waiting = max(ends, key=lambda found: found[0] - found[1])
     # If the window ends before the job is activated, nothing delays the job.
     worst = max(end - activation, higher.supply.time_for(task.demand.worst))
     return Response(
@@ -57,7 +69,7 @@ def response_time(
         claim=Claim.BOUND,
         jobs=len(candidates),
         window=end,
-        terms={"own": task.demand.worst, "interference": worst - task.demand.worst - blocking, "blocking": blocking},
+        terms={"own": task.demand.worst, "interference": worst - task.demand.worst - waiting, "blocking": waiting},
     )
 
 

@@ -1,0 +1,118 @@
+"""The busy window of a process that others of lower priority block, or that keeps others off itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from amalthea_uros.analyze.response_times import edf, fixed_priority, non_preemptive
+from amalthea_uros.analyze.response_times.best_case import best_response
+from amalthea_uros.analyze.response_times.blocking import Blocking
+from amalthea_uros.analyze.response_times.busy_window import Interference
+from amalthea_uros.analyze.response_times.supply import FULL, Supply
+from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.results import Response
+from amalthea_uros.perf.software import Preemption
+from amalthea_uros.timing.notes import Notes
+from amalthea_uros.timing.preemption import is_preemptive, preemption
+from amalthea_uros.timing.scheduling import EqualPriority, Rank, ScheduledProcess, Server
+from amalthea_uros.units import Time
+
+
+@dataclass(frozen=True, slots=True)
+class BlockedWindow:
+    """The busy window of a process that others block, or that blocks others itself.
+
+    Attributes
+    ----------
+    time_base : time units per picosecond
+    items, tasks : those on the core or in the server; decisions of schedulers follow in `tasks`
+    wait : blocking by processes below its level
+    """
+
+    notes: Notes
+    time_base: int
+    blocking: Blocking
+    items: Sequence[ScheduledProcess | Server]
+    tasks: Sequence[Task]
+    wait: Time
+    supply: Supply
+
+    def response(self, index: int, item: ScheduledProcess, plain: Response) -> Response:
+        """The response time; `plain` where each process is preempted at once."""
+        if not self.blocking.is_possible:
+            return plain
+        level = self.blocking.level(item)
+        task = self.tasks[index]
+        higher = self._of_level(index, level.rank)
+        if level.is_flat or (level.rank < item.rank and self.supply is not FULL):
+            found = fixed_priority.response_time(task, Interference.of(higher, self.supply), self.wait)[0]
+        elif item.equal_priority is EqualPriority.EDF:
+            found = self._under_deadlines(index, item, plain)
+        elif not is_preemptive(item) and item.equal_priority is EqualPriority.FIFO and self.supply is FULL:
+            # In servers, the busy window is also valid for non-preemptive tasks.
+            found = self._non_preemptive(index, item, higher)
+        elif level.rank < item.rank:
+            found = fixed_priority.response_time(task, Interference.of(higher, self.supply), self.wait)[0]
+        else:
+            found = plain
+        return replace(found, best=self._best(index, item, found.best))
+
+    def _of_level(self, index: int, rank: Rank) -> list[Task]:
+        """The other tasks of at least a rank, and the decisions of schedulers."""
+        found = [self.tasks[number] for number, other in enumerate(self.items) if number != index and other.rank >= rank]
+        return [*found, *self.tasks[len(self.items) :]]
+
+    def _best(self, index: int, item: ScheduledProcess, best: Time) -> Time:
+        """The best case: where a job keeps others off, these need not delay it."""
+        if not self.blocking.keeps_off_others(item) and not self._any_waits(item):
+            return best
+        unavoidable = [
+            self.tasks[number]
+            for number, other in enumerate(self.items)
+            if isinstance(other, ScheduledProcess) and self.blocking.always_preempts(other, item)
+        ]
+        if item.equal_priority is not EqualPriority.FIFO:
+            return self.tasks[index].demand.best
+        return best_response(self.tasks[index], Interference.of(unavoidable))
+
+    def _any_waits(self, item: ScheduledProcess) -> bool:
+        """Whether a process of higher priority can wait for others, so that a lower one runs while it is pending."""
+        return any(
+            isinstance(other, ScheduledProcess) and other.rank > item.rank and not self.blocking.always_preempts(other, item)
+            for other in self.items
+        )
+
+    def _under_deadlines(self, index: int, item: ScheduledProcess, plain: Response) -> Response:
+        by_deadline = self.blocking.under_deadlines(item)
+        if by_deadline.is_empty:
+            return plain
+        others = [self.tasks[number] for number, other in enumerate(self.items) if number != index and other.rank == item.rank]
+        above = [self.tasks[number] for number, other in enumerate(self.items) if other.rank > item.rank]
+        higher = Interference.of([*above, *self.tasks[len(self.items) :]], self.supply)
+        return edf.response_time(
+            self.tasks[index],
+            others,
+            higher,
+            self.wait,
+            blocking_before=lambda deadline: by_deadline.before(deadline // self.time_base),
+        )
+
+    def _non_preemptive(self, index: int, item: ScheduledProcess, higher: Sequence[Task]) -> Response:
+        """The response time of a task that only some tasks can preempt in its last region."""
+        if preemption(item) is Preemption.COOPERATIVE:
+            self.notes.assume(
+                "preemptive tasks preempt cooperative ones immediately, cooperative tasks only at schedule points and after the calls "
+                "of runnables"
+            )
+        task, last_region = self.tasks[index], self.blocking.last_region(item)
+        if not last_region:
+            # It yields after its last activity.
+            return fixed_priority.response_time(task, Interference.of(higher), self.wait)[0]
+        always_preempting = [
+            self.tasks[number]
+            for number, other in enumerate(self.items)
+            if (other.rank > item.rank if isinstance(other, Server) else self.blocking.preempts(other, item))
+        ]
+        always_preempting += self.tasks[len(self.items) :]
+        return non_preemptive.response_time(task, higher, self.wait, 1, last_region, always_preempting)
