@@ -25,13 +25,13 @@ KINDS = (
     ),
     FindingKind(
         id="ANA003",
-        title="semaphore with an unsupported protocol",
+        title="critical sections that cannot be analysed",
         severity=Severity.WARNING,
         rationale=(
-            "A semaphore without a priority ceiling is analysed as if it had one. The response times of tasks that share "
-            "a semaphore with other cores or servers are unknown."
+            "A process shares a semaphore with other cores or servers, does not release it on every way through its activities, "
+            "or can wait for it forever. Its response time is unknown, and so are those of processes that it can delay."
         ),
-        remedy="Use a priority ceiling protocol, and use the semaphore on one core only.",
+        remedy="Release each semaphore on every way, use a priority ceiling, and use the semaphore on one core only.",
     ),
     FindingKind(
         id="ANA004",
