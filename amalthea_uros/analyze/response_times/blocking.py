@@ -15,7 +15,7 @@ execute in it for two more reasons, and then the level is lowered until they bel
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from amalthea_uros.analyze.solution import Solution
@@ -41,6 +41,24 @@ class Level:
     is_flat: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class _Above:
+    """What matters of the processes of a level to those below.
+
+    Attributes
+    ----------
+    lowest : their lowest rank
+    has_task : whether they include tasks, which wait for non-preemptive ones
+    has_waiting : whether they include tasks that wait for cooperative ones
+    semaphores : that they use
+    """
+
+    lowest: Rank
+    has_task: bool
+    has_waiting: bool
+    semaphores: frozenset[str]
+
+
 @dataclass(slots=True)
 class Blocking:
     """The processes of a core, or of a server, that may block each other.
@@ -50,6 +68,7 @@ class Blocking:
     protection : what each process uses to keep others off
     unknown : processes whose demand or locks are unknown
     open_semaphores : those whose users can wait for somebody who does not run at the ceiling
+    is_possible : whether any process is not preempted in some part of its jobs
     """
 
     processes: Sequence[ScheduledProcess]
@@ -57,9 +76,11 @@ class Blocking:
     protection: Mapping[str, Protection]
     unknown: frozenset[str] = frozenset()
     open_semaphores: frozenset[str] = frozenset()
+    is_possible: bool = field(init=False)
     _ceilings: dict[str, Rank] = field(default_factory=dict)
     _stretches: dict[tuple[str, KeptOff], Stretches] = field(default_factory=dict)
-    _levels: dict[str, Level] = field(default_factory=dict)
+    _levels: dict[Rank, Level] = field(default_factory=dict)
+    _of_ranks: dict[Rank, _Above] = field(default_factory=dict)
 
     @classmethod
     def of(cls, processes: Sequence[ScheduledProcess], solution: Solution) -> Blocking:
@@ -69,6 +90,7 @@ class Blocking:
         return cls(processes, context.demand_model, context.protection, unknown, context.open_semaphores)
 
     def __post_init__(self) -> None:
+        self.is_possible = any(map(self.keeps_off_others, self.processes))
         for item in self.processes:
             for name in self._exclusions(item):
                 self._ceilings[name] = max(self._ceilings.get(name, item.rank), item.rank)
@@ -79,11 +101,6 @@ class Blocking:
         if item.group is not None:
             yield item.group
 
-    @property
-    def is_possible(self) -> bool:
-        """Whether any process can keep another one off that it does not precede."""
-        return any(map(self.keeps_off_others, self.processes))
-
     def keeps_off_others(self, item: ScheduledProcess) -> bool:
         """Whether a process is not preempted in some part of its jobs."""
         uses = self.protection[item.name]
@@ -92,46 +109,55 @@ class Blocking:
 
     def level(self, item: ScheduledProcess) -> Level:
         """The level of the busy window of a process."""
-        if item.name not in self._levels:
-            self._levels[item.name] = self._level(item)
-        return self._levels[item.name]
+        if item.rank not in self._levels:
+            self._levels[item.rank] = self._level(item) if self.is_possible else Level(item.rank)
+        return self._levels[item.rank]
 
     def _level(self, item: ScheduledProcess) -> Level:
         rank = item.rank
         while True:
-            above = [other for other in self.processes if other.rank >= rank]
-            lowest = min([rank, *self._holders(above), *self._between(above, rank)])
+            above = self._above(rank)
+            lowest = min([rank, *self._holders(above), *self._between(above)])
             if lowest == rank:
                 return Level(rank, self._is_flat(item, rank, above))
             rank = lowest
 
-    def _holders(self, above: Sequence[ScheduledProcess]) -> Iterator[Rank]:
-        """The ranks of processes for which some others wait at a semaphore without a ceiling."""
-        awaited = self._awaited(above)
-        return (other.rank for other in self.processes if not awaited.isdisjoint(self.protection[other.name].semaphores))
+    def _above(self, rank: Rank) -> _Above:
+        """The processes of at least a rank."""
+        if rank not in self._of_ranks:
+            self._of_ranks[rank] = self._summary(other for other in self.processes if other.rank >= rank)
+        return self._of_ranks[rank]
 
-    def _awaited(self, items: Sequence[ScheduledProcess]) -> frozenset[str]:
-        used = {name for item in items for name in self.protection[item.name].semaphores}
-        return self.open_semaphores & used
-
-    def _between(self, above: Sequence[ScheduledProcess], rank: Rank) -> Iterator[Rank]:
-        """The ranks of tasks that preempt a cooperative one of lower rank while it keeps off one of a higher rank."""
-        blocking = [
-            other.rank
-            for other in self.processes
-            if other.rank < rank and self._throughout(other, above) and _can_be_preempted(other)
-        ]
-        if not blocking:
-            return iter(())
-        lowest = min(blocking)
-        return (
-            other.rank
-            for other in self.processes
-            if lowest < other.rank < rank and preemption(other) is not Preemption.COOPERATIVE
+    def _summary(self, processes: Iterable[ScheduledProcess]) -> _Above:
+        found = list(processes)
+        tasks = [item for item in found if not item.is_isr]
+        return _Above(
+            lowest=min(item.rank for item in found),
+            has_task=bool(tasks),
+            has_waiting=any(preemption(item) is not Preemption.PREEMPTIVE for item in tasks),
+            semaphores=frozenset(name for item in found for name in self.protection[item.name].semaphores),
         )
 
-    def _is_flat(self, item: ScheduledProcess, rank: Rank, above: Sequence[ScheduledProcess]) -> bool:
-        if self._awaited(above):
+    def _holders(self, above: _Above) -> Iterator[Rank]:
+        """The ranks of processes for which some others wait at a semaphore without a ceiling."""
+        awaited = self.open_semaphores & above.semaphores
+        if awaited:
+            yield from (
+                other.rank for other in self.processes if not awaited.isdisjoint(self.protection[other.name].semaphores)
+            )
+
+    def _between(self, above: _Above) -> Iterator[Rank]:
+        """The ranks of tasks that preempt a cooperative one of lower rank while it keeps off one of a higher rank."""
+        below = [other for other in self.processes if other.rank < above.lowest]
+        blocking = [other.rank for other in below if _can_be_preempted(other) and self._throughout(other, above)]
+        if blocking:
+            lowest = min(blocking)
+            yield from (
+                other.rank for other in below if other.rank > lowest and preemption(other) is not Preemption.COOPERATIVE
+            )
+
+    def _is_flat(self, item: ScheduledProcess, rank: Rank, above: _Above) -> bool:
+        if not self.open_semaphores.isdisjoint(above.semaphores):
             return True
         together = [other for other in self.processes if other.rank == item.rank]
         if len(together) < 2:
@@ -147,61 +173,56 @@ class Blocking:
 
     def time(self, item: ScheduledProcess) -> Time:
         """The maximum time for which a process below the level of another one keeps it off."""
-        level = self.level(item)
-        above = [other for other in self.processes if other.rank >= level.rank]
-        return max((length for _, length in self.stretches_below(level, above)), default=0)
+        return max((length for _, length in self.stretches_below(self.level(item))), default=0) if self.is_possible else 0
 
-    def stretches_below(self, level: Level, above: Sequence[ScheduledProcess]) -> Iterator[tuple[ScheduledProcess, Time]]:
+    def stretches_below(self, level: Level) -> Iterator[tuple[ScheduledProcess, Time]]:
         """The longest stretch of each process below a level in which it keeps off one of the level."""
+        above = self._above(level.rank)
         for other in self.processes:
             if other.rank < level.rank and other.name not in self.unknown:
-                yield other, self.longest_stretch(other, above)
+                yield other, self._longest_stretch(other, above, self._up_to_ceiling(other, above))
 
     def obstacle(self, item: ScheduledProcess) -> str:
-        """The process of lower priority that can block for an unknown time; "" if there is none."""
+        """A process of lower priority that can delay another one for an unknown time; "" if there is none."""
         level = self.level(item)
-        above = [other for other in self.processes if other.rank >= level.rank]
-        for other in self.processes:
-            if other.name in self.unknown and other.rank < level.rank and self._may_keep_off(other, above):
-                return other.name
-        return ""
+        above = self._above(level.rank)
+        below = (other for other in self.processes if other.name in self.unknown and other.rank < item.rank)
+        return next((other.name for other in below if other.rank >= level.rank or self._may_keep_off(other, above)), "")
 
-    def _may_keep_off(self, other: ScheduledProcess, items: Sequence[ScheduledProcess]) -> bool:
-        uses = self.protection[other.name]
-        shared = {name for item in items for name in self._exclusions(item)}
+    def _may_keep_off(self, other: ScheduledProcess, above: _Above) -> bool:
         return (
-            uses.has_non_interruptible_group or self._throughout(other, items) or not shared.isdisjoint(self._exclusions(other))
+            self.protection[other.name].has_non_interruptible_group
+            or self._throughout(other, above)
+            or any(self._ceilings[name] >= above.lowest for name in self._exclusions(other))
         )
 
-    def longest_stretch(self, other: ScheduledProcess, items: Sequence[ScheduledProcess]) -> Time:
-        """The longest stretch of a process in which it keeps off one of others that precede it."""
-        if preemption(other) is Preemption.NON_PREEMPTIVE and self._throughout(other, items):
-            return self.demand_model.of_process(other.process, other.core).worst
+    def _up_to_ceiling(self, other: ScheduledProcess, above: _Above) -> Iterable[str]:
+        """The semaphores with which a process keeps off others: all up to the ceiling, also those that do not use it."""
+        return (name for name in self.protection[other.name].semaphores if self._ceilings[name] >= above.lowest)
+
+    def _longest_stretch(self, other: ScheduledProcess, above: _Above, semaphores: Iterable[str]) -> Time:
+        """The longest stretch of a process in which it keeps off one of others, among others by semaphores."""
         if not self.keeps_off_others(other):
             return 0
-        shared = {name for item in items for name in self.protection[item.name].semaphores}
-        # A semaphore keeps off all processes up to its ceiling, also those that do not use it.
-        lowest = min(item.rank for item in items)
-        ceilings = {name for name in self.protection[other.name].semaphores if self._ceilings[name] >= lowest}
-        is_edf = any(item.equal_priority is EqualPriority.EDF for item in items) and other.rank == lowest
-        semaphores = frozenset(shared & ceilings if is_edf else ceilings) - self.open_semaphores
-        in_group = other.group is not None and self._ceilings[other.group] >= lowest
+        if preemption(other) is Preemption.NON_PREEMPTIVE and self._throughout(other, above):
+            return self.demand_model.of_process(other.process, other.core).worst
+        in_group = other.group is not None and self._ceilings[other.group] >= above.lowest
         kept_off = KeptOff(
-            semaphores,
-            throughout=self._throughout(other, items),
+            frozenset(semaphores) - self.open_semaphores,
+            throughout=self._throughout(other, above),
             yields_after_calls=not in_group and preemption(other) is Preemption.COOPERATIVE,
         )
         return self._of(other, kept_off).longest
 
-    def _throughout(self, other: ScheduledProcess, items: Sequence[ScheduledProcess]) -> bool:
+    def _throughout(self, other: ScheduledProcess, above: _Above) -> bool:
         """Whether a process keeps off one of others everywhere, apart from points at which it yields."""
-        if other.group is not None and any(item.rank <= self._ceilings[other.group] for item in items):
+        if other.group is not None and above.lowest <= self._ceilings[other.group]:
             return True
         match preemption(other):
             case Preemption.NON_PREEMPTIVE:
-                return any(not item.is_isr for item in items)
+                return above.has_task
             case Preemption.COOPERATIVE:
-                return any(not item.is_isr and preemption(item) is not Preemption.PREEMPTIVE for item in items)
+                return above.has_waiting
         return False
 
     def preempts(self, other: ScheduledProcess, item: ScheduledProcess) -> bool:
@@ -234,23 +255,20 @@ class Blocking:
 
     def under_deadlines(self, item: ScheduledProcess) -> BlockingByDeadline:
         """The blocking of a process by others of its rank and below, under earliest deadline first."""
-        level = self.level(item)
+        others = [other for other in self.processes if other is not item and other.rank <= item.rank]
+        others = [other for other in others if other.name not in self.unknown]
         together = [other for other in self.processes if other.rank == item.rank]
-        deadlines = sorted({other.deadline or 0 for other in together})
+        higher = [other for other in self.processes if other.rank > item.rank]
         steps = []
-        for deadline in deadlines:
-            above = [other for other in self.processes if other.rank > level.rank]
-            above += [other for other in together if (other.deadline or 0) <= deadline]
-            steps.append(
-                (
-                    deadline,
-                    tuple(
-                        (other.deadline if other.rank == item.rank else None, self.longest_stretch(other, above))
-                        for other in self.processes
-                        if other is not item and other.rank <= item.rank and other.name not in self.unknown
-                    ),
-                )
+        for deadline in sorted({other.deadline or 0 for other in together}):
+            above = self._summary([*higher, *(other for other in together if (other.deadline or 0) <= deadline)])
+            stretches = tuple(
+                (other.deadline, self._longest_stretch(other, above, above.semaphores & self.protection[other.name].semaphores))
+                if other.rank == item.rank
+                else (None, self._longest_stretch(other, above, self._up_to_ceiling(other, above)))
+                for other in others
             )
+            steps.append((deadline, stretches))
         return BlockingByDeadline(tuple(steps))
 
     def _of(self, item: ScheduledProcess, kept_off: KeptOff) -> Stretches:

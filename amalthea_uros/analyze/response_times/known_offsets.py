@@ -159,7 +159,7 @@ class _OffsetWindows:
             last_region=0 if is_preemptive(item) or level.is_flat else self.blocking.last_region(item),
             limit=2 * self.hyperperiod + self.bounds[item.name],
         )
-        below = list(self.blocking.stretches_below(level, above))
+        below = list(self.blocking.stretches_below(level))
         found: _Worst | None = None
         for start in self._starts(above):
             for worst in window.jobs_from(start, self._blocking_at(start, below)):
