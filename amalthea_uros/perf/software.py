@@ -346,6 +346,20 @@ class Migrate(AbstractActivity):
     scheduler: str
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Incomplete(AbstractActivity):
+    """Something that a model contains without stating what it is: it may take any time.
+
+    Attributes
+    ----------
+    reason : what is not stated
+    is_access : whether it is at least known to be an access to data, which takes the time of a memory access only
+    """
+
+    reason: str
+    is_access: bool = False
+
+
 Activity: TypeAlias = (
     Execute
     | ExecutionNeed
@@ -369,6 +383,7 @@ Activity: TypeAlias = (
     | SchedulePoint
     | Terminate
     | Migrate
+    | Incomplete
 )
 
 

@@ -25,6 +25,7 @@ from amalthea_uros.perf.software import (
     Execute,
     ExecutionNeed,
     Group,
+    Incomplete,
     Isr,
     LabelAccess,
     Loop,
@@ -156,6 +157,8 @@ class DemandModel:
                 self.notes.warning("ANA006", message, self.system.runnables.get(name))
             case WaitEvent():
                 raise UnknownDemandError("it waits for events without a timeout, so there is no upper bound")
+            case Incomplete(reason=reason, is_access=is_access) if not is_access or self.settings.memory is not Memory.NONE:
+                raise UnknownDemandError(f"it contains {reason}")
             case Migrate():
                 raise UnknownDemandError("it migrates to another scheduler, which cannot be analysed")
         return []
