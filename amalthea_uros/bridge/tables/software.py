@@ -249,7 +249,8 @@ def _build_server_call(call: perf.ServerCall, context: Building) -> Element:
             )
         case perf.ServerCallKind.ASYNCHRONOUS:
             return am.AsynchronousServerCall(server_runnable=server, result_runnable=_RUNNABLE.build(call.result, context))
-    return am.GetResultServerCall(server_runnable=server)
+    blocking = am.BlockingType.NON_BLOCKING if not call.waits else _BLOCKING.get(call.waiting)
+    return am.GetResultServerCall(server_runnable=server, blocking_type=blocking)
 
 
 def _extract_server_call(element: Any, context: Extracting) -> perf.ServerCall | None:
@@ -257,19 +258,32 @@ def _extract_server_call(element: Any, context: Extracting) -> perf.ServerCall |
     if server is None:
         context.note("EXT004", f"{type(element).__name__} is incomplete: it has no serverRunnable", element)
         return None
-    waiting = element.waiting_behaviour if isinstance(element, am.SynchronousServerCall) else None
     result = element.result_runnable if isinstance(element, am.AsynchronousServerCall) else None
     return perf.ServerCall(
         runnable=server,
         kind=_SERVER_CALLS[type(element)],
         result=_RUNNABLE.extract(result, context, element),
-        waiting=None if waiting is None else _WAITING_CODEC.extract(waiting, context, element),
+        waits=getattr(element, "blocking_type", None) is not am.BlockingType.NON_BLOCKING,
+        waiting=_waiting(element, context),
         locate=partial(context.location, element),
     )
 
 
+def _waiting(element: Any, context: Extracting) -> perf.Waiting | None:
+    """How the client of a call waits."""
+    if isinstance(element, am.GetResultServerCall):
+        return next((waiting for waiting, blocking in _BLOCKING.items() if blocking is element.blocking_type), None)
+    stated = element.waiting_behaviour if isinstance(element, am.SynchronousServerCall) else None
+    found: perf.Waiting | None = None if stated is None else _WAITING_CODEC.extract(stated, context, element)
+    return found
+
+
 _LABEL, _RUNNABLE, _RUNNABLES = reference(Kind.DATA), reference(Kind.RUNNABLE), references(Kind.RUNNABLE)
 _WAITING_CODEC = same_names(perf.Waiting, am.WaitingBehaviour)
+_BLOCKING: dict[perf.Waiting | None, am.BlockingType] = {
+    perf.Waiting.ACTIVE: am.BlockingType.ACTIVE_WAIT,
+    perf.Waiting.PASSIVE: am.BlockingType.PASSIVE_WAIT,
+}
 _SERVER_CALLS: dict[type[Element], perf.ServerCallKind] = {
     am.SynchronousServerCall: perf.ServerCallKind.SYNCHRONOUS,
     am.AsynchronousServerCall: perf.ServerCallKind.ASYNCHRONOUS,
