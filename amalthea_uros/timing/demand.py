@@ -31,9 +31,12 @@ from amalthea_uros.perf.software import (
     LabelAccess,
     Loop,
     Migrate,
+    ModeAccess,
     ProbabilitySwitch,
     Process,
+    Receive,
     Runnable,
+    Send,
     SenderReceiverAccess,
     ServerCall,
     Switch,
@@ -158,6 +161,13 @@ class DemandModel:
                 return [self._time(need, self._ticks_per_unit(name, core) * scale, core) for name, need in needs]
             case LabelAccess(label=label, kind=kind, times=times) if self.settings.memory is not Memory.NONE:
                 return [self._access(core, label, kind, times)]
+            case Send(channel=channel, elements=elements) if self.settings.memory is not Memory.NONE:
+                return [self._access(core, channel, AccessKind.WRITE, max(1, elements))]
+            case Receive(channel=channel, elements=elements, at_least=least) if self.settings.memory is not Memory.NONE:
+                most = max(1, elements)
+                return [self._access(core, channel, AccessKind.READ, Count(least=min(least, most), mean=most, most=most))]
+            case ModeAccess() if self.settings.memory is not Memory.NONE:
+                self.notes.assume("accesses to mode labels take no time")
             case Call():
                 return self._call(activity, core, above)
             case Group(activities=inner):
