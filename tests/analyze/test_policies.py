@@ -124,8 +124,9 @@ class TestPolicies:
             ("B", 100, [ticks(20)], {"scheduler": "root", "priority": 1, "parameters": slices}),
             ("high", 100, [ticks(3)], {"scheduler": "root", "priority": 2, "parameters": slices}),
         ]
-        # A needs three slices, and B gets one before each: 5 + 3 * 2, and 3 above; B waits for all of A.
-        assert worst(system([root(Policy.PRIORITY_BASED_ROUND_ROBIN)], tasks)) == {"A": 14, "B": 28, "high": 3}
+        # A needs three slices, and B gets one before each, and another one if `high` preempts it: 5 + 3 * 2 + 2, and 3 above; B waits
+        # for all of A.
+        assert worst(system([root(Policy.PRIORITY_BASED_ROUND_ROBIN)], tasks)) == {"A": 16, "B": 28, "high": 3}
 
     def test_equal_priorities_are_served_in_the_order_of_activation(self):
         tasks = [(name, 100, [ticks(5)], {"scheduler": "root", "priority": 1}) for name in ("A", "B")]
