@@ -164,7 +164,9 @@ class Drawing:
         if cls is software.ServerCall:
             # Only some kinds of calls have a result runnable, or wait.
             values["result"] = values["result"] if values["kind"] is software.ServerCallKind.ASYNCHRONOUS else None
-            values["waiting"] = values["waiting"] if values["kind"] is software.ServerCallKind.SYNCHRONOUS else None
+            values["waits"] = values["waits"] or values["kind"] is not software.ServerCallKind.GET_RESULT
+            is_stated = values["kind"] is not software.ServerCallKind.ASYNCHRONOUS and values["waits"]
+            values["waiting"] = values["waiting"] if is_stated else None
         return cls(**values)
 
     def value(self, cls, name, hint, depth):

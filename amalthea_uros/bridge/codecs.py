@@ -105,10 +105,32 @@ TIME = Codec(lambda value, _: build_time(value), lambda value, _context, _elemen
 FREQUENCY = Codec(_build_frequency, lambda value, _context, _element: hertz(value))
 SIZE = Codec(_build_size, lambda value, _context, _element: bits(value))
 RATE = Codec(_build_rate, lambda value, _context, _element: bits_per_second(value))
-TIMES = Codec(
-    lambda values, _: [build_time(value) for value in values],
-    lambda values, _context, _element: tuple(time for time in map(picoseconds, values) if time is not None),
-)
+
+
+def _extract_times(values: list[am.Time], _context: Extracting, _element: Element) -> tuple[int, ...] | None:
+    times = [picoseconds(value) for value in values]
+    return None if None in times else tuple(time for time in times if time is not None)
+
+
+#: All of them, or none if one is unknown.
+TIMES = Codec(lambda values, _: [build_time(value) for value in values], _extract_times)
+
+
+# What a model does not state
+
+#: AMALTHEA has no class for what is incomplete; the reason is a property of an empty object.
+_INCOMPLETE = "incomplete"
+
+
+def build_reason(reason: str) -> list[am.CustomProperty]:
+    """Why an object is incomplete, as its properties."""
+    return [am.CustomProperty(key=_INCOMPLETE, value=am.StringObject(value=reason))]
+
+
+def extract_reason(element: am.IAnnotatable) -> str | None:
+    """Why an object is incomplete; None if no property says so."""
+    values = (item.value for item in element.custom_properties if item.key == _INCOMPLETE)
+    return next((value.value or "" for value in values if isinstance(value, am.StringObject)), None)
 
 
 # References
@@ -133,6 +155,17 @@ def references(kind: Kind) -> Codec:
         return tuple(name for value in values if (name := _name_of(value, context, element)) is not None)
 
     return Codec(build, extract)
+
+
+def all_references(kind: Kind) -> Codec:
+    """The names of objects, in order; if one of them is not taken into account, all are unknown."""
+    some = references(kind)
+
+    def extract(values: list[Element], context: Extracting, element: Element) -> tuple[str, ...] | None:
+        found: tuple[str, ...] = some.extract(values, context, element)
+        return found if len(found) == len(values) else None
+
+    return Codec(some.build, extract)
 
 
 def _name_of(value: Element | None, context: Extracting, element: Element) -> str | None:

@@ -97,6 +97,7 @@ class Extracting:
     names : unique within each kind
     dropped : named objects that have no counterpart in perf
     findings : what could not be extracted
+    unresolved_stimuli : names of stimuli that are not part of the model, but activate processes
     """
 
     def __init__(self, model: Model, dropped: frozenset[Element] = frozenset()) -> None:
@@ -104,6 +105,7 @@ class Extracting:
         self.names: dict[Element, str] = {}
         self.dropped = set(dropped)
         self.findings: list[Finding] = []
+        self.unresolved_stimuli: dict[str, None] = {}
         self._left_out: dict[str, tuple[int, Element]] = {}
 
     def name(self) -> None:
@@ -154,6 +156,12 @@ class Extracting:
         while holder is not None and holder not in self.names:
             holder = holder.container
         return self.names[holder] if holder is not None else ""
+
+    def unresolved_stimulus(self, element: Element) -> str:
+        """The name in the results of a stimulus that is not part of the model."""
+        name = f"{getattr(element, 'name', None) or element.unresolved} (unresolved)"
+        self.unresolved_stimuli[name] = None
+        return name
 
     def leave_out(self, element: Element) -> None:
         """Count an object that the generic performance model cannot represent."""

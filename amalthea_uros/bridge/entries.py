@@ -31,8 +31,8 @@ class Field:
 class Entry:
     """A class of perf and the corresponding class of AMALTHEA.
 
-    A value that is not given in AMALTHEA becomes the default of the field; if there is no default, the object is incomplete and is
-    left out with a finding.
+    A value that is not given in AMALTHEA becomes the default of the field; if there is no default, the object is incomplete, which is
+    a finding.
     """
 
     def __init__(self, model_class: type[Any], amalthea_class: type[Element], *columns: Field) -> None:
@@ -73,17 +73,28 @@ class Entry:
 
     def extract(self, element: Element, context: Extracting) -> Any:
         """The object of perf; None, with a finding, if a required value is missing."""
+        found = self.complete(element, context)
+        if found is None:
+            context.drop(element)
+        return found
+
+    def complete(self, element: Element, context: Extracting, *, strictly: bool = False) -> Any:
+        """The object of perf; None, with a finding, if a required value is missing.
+
+        Parameters
+        ----------
+        strictly : a value that is given but cannot be read is not replaced by the default
+        """
         values: dict[str, Any] = {}
         for column in self.columns:
-            value = getattr(element, column.feature)
-            if value is not None:
-                value = column.codec.extract(value, context, element)
+            given = getattr(element, column.feature)
+            value = None if given is None else column.codec.extract(given, context, element)
             if value is None:
                 value = self._defaults[column.name]
-                if value is MISSING:
+                if value is MISSING or (strictly and given is not None):
+                    flaw = "has no" if given is None else "has an incomplete"
                     what = self._xml_names[column.feature]
-                    context.note("EXT004", f"{type(element).__name__} ignored: it has no {what}", element)
-                    context.drop(element)
+                    context.note("EXT004", f"{type(element).__name__} is incomplete: it {flaw} {what}", element)
                     return None
             values[column.name] = value
         if self.is_named:
@@ -132,6 +143,11 @@ class Table:
         """The objects of perf; those without counterpart are left out."""
         return tuple(item for element in elements if (item := self.extract(element, context)) is not None)
 
+    def extract_each(self, elements: Iterable[Element], context: Extracting) -> tuple[Any, ...] | None:
+        """The objects of perf; None if one of them is incomplete."""
+        found = tuple(self.extract(element, context) for element in elements)
+        return None if None in found else found
+
 
 def part(table: Table) -> Codec:
     """An object within another one."""
@@ -139,8 +155,13 @@ def part(table: Table) -> Codec:
 
 
 def parts(table: Table) -> Codec:
-    """Objects within another one, in order."""
+    """Objects within another one, in order; those that are incomplete are left out."""
     return Codec(
         lambda items, context: [table.build(item, context) for item in items],
         lambda values, context, _element: table.extract_all(values, context),
     )
+
+
+def all_parts(table: Table) -> Codec:
+    """Objects within another one, in order; if one of them is incomplete, all are unknown."""
+    return Codec(parts(table).build, lambda values, context, _element: table.extract_each(values, context))

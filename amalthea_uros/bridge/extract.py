@@ -35,7 +35,7 @@ from amalthea_uros.perf.hardware import Hardware
 from amalthea_uros.perf.mapping import Mapping
 from amalthea_uros.perf.os import Os
 from amalthea_uros.perf.software import Software
-from amalthea_uros.perf.stimuli import Stimuli
+from amalthea_uros.perf.stimuli import Custom, Stimuli
 from amalthea_uros.perf.system import System
 
 E = TypeVar("E", bound=Element)
@@ -84,14 +84,12 @@ class _Extract:
     def system(self) -> System:
         """The whole."""
         context = self.context
+        software = self.software()
         return System(
             hardware=self.hardware(),
             os=self.os(),
-            stimuli=Stimuli(
-                stimuli=STIMULI.extract_all(self.parts(am.StimuliModel, "stimuli"), context),
-                clocks=CLOCKS.extract_all(self.parts(am.StimuliModel, "clocks"), context),
-            ),
-            software=self.software(),
+            stimuli=self.stimuli(),
+            software=software,
             mapping=self.mapping(),
             events=Events(
                 events=EVENTS.extract_all(self.parts(am.EventModel, "events"), context),
@@ -119,6 +117,15 @@ class _Extract:
             ),
             overheads=tuple(extract_overhead(overhead, context) for overhead in self.parts(am.OSModel, "os_overheads")),
             semaphores=SEMAPHORES.extract_all(self.parts(am.OSModel, "semaphores"), context),
+        )
+
+    def stimuli(self) -> Stimuli:
+        """The stimuli of all files, and those that processes refer to in vain."""
+        context = self.context
+        unresolved = (Custom(name=name, description="not part of the model") for name in context.unresolved_stimuli)
+        return Stimuli(
+            stimuli=(*STIMULI.extract_all(self.parts(am.StimuliModel, "stimuli"), context), *unresolved),
+            clocks=CLOCKS.extract_all(self.parts(am.StimuliModel, "clocks"), context),
         )
 
     def software(self) -> Software:

@@ -12,6 +12,7 @@ from amalthea_uros.perf.conditions import (
     ModeLabelsAre,
     ModeValueIs,
     Relation,
+    Undecided,
 )
 from amalthea_uros.perf.constraints import (
     Bound,
@@ -130,6 +131,7 @@ from amalthea_uros.perf.software import (
     Execute,
     ExecutionNeed,
     Group,
+    Incomplete,
     Isr,
     IsrCategory,
     Label,
@@ -253,6 +255,7 @@ __all__ = [
     "Group",
     "Hardware",
     "Histogram",
+    "Incomplete",
     "InterProcess",
     "Interconnect",
     "InterruptController",
@@ -350,6 +353,7 @@ __all__ = [
     "TimeLimit",
     "TimeMetric",
     "Trigger",
+    "Undecided",
     "Uniform",
     "VariableRate",
     "WaitEvent",

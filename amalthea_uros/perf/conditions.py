@@ -45,7 +45,19 @@ class ChannelFillIs:
     level: int
 
 
-Comparison: TypeAlias = ModeValueIs | ModeLabelsAre | ChannelFillIs
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Undecided:
+    """A comparison that can be true or false, because a model does not state it completely.
+
+    Attributes
+    ----------
+    reason : what is not stated, or not supported
+    """
+
+    reason: str
+
+
+Comparison: TypeAlias = ModeValueIs | ModeLabelsAre | ChannelFillIs | Undecided
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +78,8 @@ def read_by(condition: Condition) -> tuple[str, ...]:
                 found += (first, second)
             case ChannelFillIs(channel=channel):
                 found.append(channel)
+            case Undecided():
+                pass
     return tuple(dict.fromkeys(found))
 
 

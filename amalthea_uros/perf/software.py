@@ -144,16 +144,19 @@ class ServerCallKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerCall(AbstractActivity):
-    """Call of a runnable that another process executes.
+    """Call of a runnable of a server.
 
     Attributes
     ----------
     result : runnable that is executed when the result of an asynchronous call has arrived
+    waits : whether a client waits for a result that has not arrived yet
+    waiting : how it waits; None: not stated
     """
 
     runnable: str
     kind: ServerCallKind = ServerCallKind.SYNCHRONOUS
     result: str | None = None
+    waits: bool = True
     waiting: Waiting | None = None
 
 
@@ -346,6 +349,20 @@ class Migrate(AbstractActivity):
     scheduler: str
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Incomplete(AbstractActivity):
+    """Something that a model contains without stating what it is: it may take any time.
+
+    Attributes
+    ----------
+    reason : what is not stated
+    is_access : whether it is at least known to be an access to data, which takes the time of a memory access only
+    """
+
+    reason: str
+    is_access: bool = False
+
+
 Activity: TypeAlias = (
     Execute
     | ExecutionNeed
@@ -369,6 +386,7 @@ Activity: TypeAlias = (
     | SchedulePoint
     | Terminate
     | Migrate
+    | Incomplete
 )
 
 
@@ -508,3 +526,10 @@ class Software:
     os_events: tuple[OsEvent, ...] = ()
     modes: tuple[Mode, ...] = ()
     mode_labels: tuple[ModeLabel, ...] = ()
+
+    @property
+    def bodies(self) -> Iterator[tuple[Activity, ...]]:
+        """The activities of each process and of each runnable."""
+        yield from (task.activities for task in self.tasks)
+        yield from (isr.activities for isr in self.isrs)
+        yield from (runnable.activities for runnable in self.runnables)

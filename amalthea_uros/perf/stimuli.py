@@ -79,7 +79,7 @@ class Burst(AbstractStimulus):
 
     Attributes
     ----------
-    length : of a burst; occurrences that would lie behind it do not happen
+    length : of a burst; occurrences that would be after it do not happen
     distance : of the occurrences in a burst
     count : occurrences in a burst
     """

@@ -13,7 +13,7 @@ from amalthea_uros.perf.hardware import Cache, Clock, Connection, Core, Hardware
 from amalthea_uros.perf.mapping import Mapping as SystemMapping
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.os import InterruptController, Os, Scheduler
-from amalthea_uros.perf.software import Channel, Label, Process, Runnable, Software
+from amalthea_uros.perf.software import Channel, Label, Process, Runnable, ServerCall, Software, walk
 from amalthea_uros.perf.stimuli import Stimuli, Stimulus
 
 N = TypeVar("N", bound=Named)
@@ -87,6 +87,12 @@ class System:
     def runnables(self) -> Mapping[str, Runnable]:
         """The runnables."""
         return _by_name(self.software.runnables)
+
+    @cached_property
+    def server_calls(self) -> tuple[ServerCall, ...]:
+        """The server calls in processes and runnables."""
+        activities = (activity for body in self.software.bodies for activity in walk(body))
+        return tuple(activity for activity in activities if isinstance(activity, ServerCall))
 
     @cached_property
     def labels(self) -> Mapping[str, Label]:

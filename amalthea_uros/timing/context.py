@@ -17,6 +17,7 @@ from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
 from amalthea_uros.timing.releases import response_time_limits
 from amalthea_uros.timing.scheduling import NotSchedulableError, ScheduledProcess, Scheduling, Server
+from amalthea_uros.timing.server_calls import with_direct_calls
 from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.timing.stretches import KeptOff, StretchWalk, UnclearLocksError
 
@@ -51,7 +52,9 @@ class TimingContext:
     @classmethod
     def of(cls, system: System, settings: Settings | None = None) -> TimingContext:
         """The timing context of a system."""
-        context = cls(system, settings or Settings())
+        context = cls(with_direct_calls(system), settings or Settings())
+        if context.system is not system:
+            context.notes.assume("clients execute the runnables of synchronous servers that no process calls")
         context._note_settings()
         context._schedule()
         context._find_demands()

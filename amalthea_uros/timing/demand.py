@@ -8,7 +8,7 @@ it does not increase the demand of jobs without it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -18,6 +18,7 @@ from amalthea_uros._internal.graphs import bottom_up
 from amalthea_uros.perf.distributions import Distribution, highest, lowest
 from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import (
+    AccessKind,
     Activity,
     Call,
     Count,
@@ -25,13 +26,18 @@ from amalthea_uros.perf.software import (
     Execute,
     ExecutionNeed,
     Group,
+    Incomplete,
     Isr,
     LabelAccess,
     Loop,
     Migrate,
+    ModeAccess,
     ProbabilitySwitch,
     Process,
+    Receive,
     Runnable,
+    Send,
+    SenderReceiverAccess,
     ServerCall,
     Switch,
     WaitEvent,
@@ -47,6 +53,7 @@ from amalthea_uros.timing.modes import holds
 from amalthea_uros.timing.multiframe import Frame, MultiframeDemand
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
 from amalthea_uros.timing.overheads import Overheads
+from amalthea_uros.timing.server_calls import obstacle, servers, with_direct_calls
 from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.units import Frequency, time_of_ticks
 
@@ -63,10 +70,12 @@ class DemandModel:
     settings: Settings = field(default_factory=Settings)
     memory: MemoryAccess = field(init=False)
     overheads: Overheads = field(init=False)
+    _servers: Mapping[str, tuple[str, ...]] | None = None
     _of_runnables: dict[tuple[str, str], tuple[Frame, ...]] = field(default_factory=dict)
     _in_preparation: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
+        self.system = with_direct_calls(self.system)
         self.memory = MemoryAccess(self.system, self.notes, self.frequency)
         self.overheads = Overheads(self.system)
 
@@ -107,16 +116,31 @@ class DemandModel:
         """Demand of one decision of a scheduler; raises as `of_process`."""
         return MultiframeDemand(_summed(self._frames(scheduler.overhead, core, ())))
 
+    def _access(self, core: str, label: str, kind: AccessKind, times: Count | float | None) -> Frame:
+        """The demand of an access to a label, or to its copy, which can be anywhere on the way to the label."""
+        found = self.memory.frame(core, label, kind, count_of(times), self.settings.scale * self.time_base(core))
+        return replace(found, best=0) if self.settings.memory is Memory.IMPLICIT else found
+
     def _copies(self, process: Process, core: str) -> list[Frame]:
-        """Copies of the labels that a process reads, at its start, and of those that it writes, at its end."""
+        """Copies of the labels that a process accesses, at its start, and of those that it writes, at its end.
+
+        Also a label that is only written is copied at the start, because a job need not write it, or all of it.
+        """
         try:
-            here = [position.activity for position in positions(process, self.system)]
+            here = positions(process, self.system)
         except TooComplexError as error:
             raise UnknownDemandError(str(error)) from None
-        found = dict.fromkeys((access.label, access.kind) for access in here if isinstance(access, LabelAccess))
-        self.notes.assume("each label is copied once at the start and once at the end of a job that reads or writes it")
+        self.notes.assume("each label that a job accesses is copied at its start, and each one that it writes also at its end")
+        self.notes.assume("an access to the copy of a label takes no longer than one to the label")
+        certain: dict[tuple[str, AccessKind], bool] = {}
+        for position in here:
+            if isinstance(position.activity, LabelAccess | SenderReceiverAccess):
+                for kind in {AccessKind.READ, position.activity.kind}:
+                    key = (position.activity.label, kind)
+                    certain[key] = certain.get(key, False) or (position.is_certain and not position.counters)
         time_base = self.settings.scale * self.time_base(core)
-        return [self.memory.frame(core, label, kind, count_of(1), time_base) for label, kind in found]
+        frames = [(self.memory.frame(core, *key, count_of(1), time_base), is_certain) for key, is_certain in certain.items()]
+        return [frame if is_certain else replace(frame, best=0) for frame, is_certain in frames]
 
     def _frames(self, activities: Iterable[Activity], core: str, above: tuple[str, ...]) -> list[Frame]:
         return [frame for activity in activities for frame in self._with_services(activity, core, above)]
@@ -135,8 +159,15 @@ class DemandModel:
             case ExecutionNeed(needs=needs):
                 scale = self.settings.scale
                 return [self._time(need, self._ticks_per_unit(name, core) * scale, core) for name, need in needs]
-            case LabelAccess(label=label, kind=kind, times=times) if self.settings.memory is Memory.EXPLICIT:
-                return [self.memory.frame(core, label, kind, count_of(times), self.settings.scale * self.time_base(core))]
+            case LabelAccess(label=label, kind=kind, times=times) if self.settings.memory is not Memory.NONE:
+                return [self._access(core, label, kind, times)]
+            case Send(channel=channel, elements=elements) if self.settings.memory is not Memory.NONE:
+                return [self._access(core, channel, AccessKind.WRITE, max(1, elements))]
+            case Receive(channel=channel, elements=elements, at_least=least) if self.settings.memory is not Memory.NONE:
+                most = max(1, elements)
+                return [self._access(core, channel, AccessKind.READ, Count(least=min(least, most), mean=most, most=most))]
+            case ModeAccess() if self.settings.memory is not Memory.NONE:
+                self.notes.assume("accesses to mode labels take no time")
             case Call():
                 return self._call(activity, core, above)
             case Group(activities=inner):
@@ -151,14 +182,23 @@ class DemandModel:
                 if holds(condition, self.settings.modes) is False:
                     return []
                 raise UnknownDemandError("it contains a loop without an upper bound on the number of iterations")
-            case ServerCall(runnable=name):
-                message = f"the execution time of the call of the server runnable {name!r} is ignored"
-                self.notes.warning("ANA006", message, self.system.runnables.get(name))
+            case ServerCall() | SenderReceiverAccess() if reason := self._obstacle(activity):
+                raise UnknownDemandError(reason)
+            case SenderReceiverAccess(label=label, kind=kind) if self.settings.memory is not Memory.NONE:
+                return [self._access(core, label, kind, None)]
             case WaitEvent():
                 raise UnknownDemandError("it waits for events without a timeout, so there is no upper bound")
+            case Incomplete(reason=reason, is_access=is_access) if not is_access or self.settings.memory is not Memory.NONE:
+                raise UnknownDemandError(f"it contains {reason}")
             case Migrate():
                 raise UnknownDemandError("it migrates to another scheduler, which cannot be analysed")
         return []
+
+    def _obstacle(self, activity: ServerCall | SenderReceiverAccess) -> str:
+        """Why the time that a server call or a notifying access takes is unknown."""
+        if self._servers is None:
+            self._servers = servers(self.system)
+        return obstacle(activity, self._servers)
 
     def possible_branches(self, switch: Switch) -> list[tuple[Activity, ...]]:
         """The branches that can be taken, given the known modes."""

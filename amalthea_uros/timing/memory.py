@@ -1,8 +1,9 @@
-"""The latency of label accesses, by the memory of the label and the access path.
+"""The latency of accesses to labels and channels, by their memory and the access path.
 
 Each element of a path takes cycles of its own clock, and a connection those of the element before it; without a path, the access
 element gives the cycles of the core. The latency of the memory is added (help of APP4MC on the hardware model). If there is only a
-data rate, the size of the label is divided by the minimum rate. Accesses do not wait for those of other cores.
+data rate, the size of the data is divided by the minimum rate. Accesses do not wait for those of other cores. If something of this is
+not stated, the demand of the process is unknown.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from fractions import Fraction
 
 from amalthea_uros.perf.distributions import Distribution, highest, lowest
 from amalthea_uros.perf.hardware import Access, Cache, Connection, Interconnect, Latency
+from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.software import AccessKind, Count
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.means import mean
@@ -44,8 +46,13 @@ class MemoryAccess:
 
         Parameters
         ----------
+        label : or a channel, whose elements are accessed one by one
         count : minimum, mean and maximum number of accesses
         time_base : time units per picosecond
+
+        Raises
+        ------
+        UnknownDemandError : the latency is unknown.
         """
         key = (core, label, kind)
         if key not in self._found:
@@ -60,39 +67,42 @@ class MemoryAccess:
     def _times(self, core: str, label: str, kind: AccessKind) -> Times:
         memory = self.system.memories.get(self.system.memory_of.get(label) or "")
         if memory is None:
-            item = self.system.labels.get(label)
-            self.notes.warning(
-                "ANA008", f"the label {label!r} is not mapped to a memory; assuming that accesses take no time", item
-            )
-            return ZERO
+            item = self.system.labels.get(label) or self.system.channels.get(label)
+            raise self._unknown(f"{label!r} is not mapped to a memory", item)
         accesses = [access for access in self.system.cores[core].accesses if access.memory == memory.name]
         if not accesses:
-            message = (
-                f"the core {core!r} has no access element for the memory {memory.name!r}; assuming that accesses take no time"
-            )
-            self.notes.warning("ANA008", message, memory)
-            return ZERO
-        size = self.system.labels[label].size or 0 if label in self.system.labels else 0
-        # The slowest of several paths.
-        path = max((self._path(core, access, kind, size) for access in accesses), key=lambda times: times[2])
-        return _sum(path, _cycles(memory.latency, self._clock(memory.clock)))
+            raise self._unknown(f"the core {core!r} has no access element for the memory {memory.name!r}", memory)
+        paths = [self._path(core, access, kind, self._size(label)) for access in accesses]
+        # Any of several paths can be used.
+        path = (min(times[0] for times in paths), max(paths, key=lambda times: times[2])[1], max(times[2] for times in paths))
+        return _sum(path, _cycles(memory.latency, self._clock(memory.clock), memory.name))
 
-    def _path(self, core: str, access: Access, kind: AccessKind, size: int) -> Times:
+    def _unknown(self, reason: str, item: Named | None) -> UnknownDemandError:
+        """An error, which is also a finding about an object."""
+        self.notes.warning("ANA008", reason, item)
+        return UnknownDemandError(reason)
+
+    def _size(self, name: str) -> int | None:
+        """The size of a label, or of an element of a channel."""
+        label, channel = self.system.labels.get(name), self.system.channels.get(name)
+        return label.size if label is not None else channel.element_size if channel is not None else None
+
+    def _path(self, core: str, access: Access, kind: AccessKind, size: int | None) -> Times:
         frequency = self.frequency(core)
         if not access.path:
-            return _latency(access.latency, kind, frequency, size)
+            return _latency(access.latency, kind, frequency, size, core)
         total = ZERO
         before = frequency
         for name in access.path:
             match self.system.modules.get(name):
                 case Cache(latency=latency, clock=clock):
                     before = self._clock(clock)
-                    total = _sum(total, _cycles(latency, before))
+                    total = _sum(total, _cycles(latency, before, name))
                 case Interconnect(latency=between, clock=clock):
                     before = self._clock(clock)
-                    total = _sum(total, _latency(between, kind, before, size))
+                    total = _sum(total, _latency(between, kind, before, size, name))
                 case Connection(latency=between):
-                    total = _sum(total, _latency(between, kind, before, size))
+                    total = _sum(total, _latency(between, kind, before, size, name))
         return total
 
     def _clock(self, name: str | None) -> Frequency | None:
@@ -100,20 +110,24 @@ class MemoryAccess:
         return clock.frequency if clock is not None else None
 
 
-def _latency(latency: Latency, kind: AccessKind, frequency: Frequency | None, size: int) -> Times:
+def _latency(latency: Latency, kind: AccessKind, frequency: Frequency | None, size: int | None, where: str) -> Times:
     cycles = latency.read if kind is AccessKind.READ else latency.write
     if cycles is None and latency.rate:
+        if size is None:
+            raise UnknownDemandError(f"the size of data that pass {where!r} is unknown")
         time = Fraction(size * SECOND, latency.rate)
         return (time, time, time)
-    return _cycles(cycles, frequency)
+    return _cycles(cycles, frequency, where)
 
 
-def _cycles(cycles: Distribution[int] | None, frequency: Frequency | None) -> Times:
-    if cycles is None or frequency is None:
+def _cycles(cycles: Distribution[int] | None, frequency: Frequency | None, where: str) -> Times:
+    if cycles is None:
         return ZERO
+    if frequency is None:
+        raise UnknownDemandError(f"the clock frequency of {where!r} is unknown")
     minimum, maximum = lowest(cycles), highest(cycles)
     if minimum is None or maximum is None:
-        raise UnknownDemandError("a memory latency has no bounds")
+        raise UnknownDemandError(f"the memory latency of {where!r} has no bounds")
     one = time_of_ticks(1, frequency)
     return (minimum * one, mean(cycles) * one, maximum * one)
 

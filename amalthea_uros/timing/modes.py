@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.perf.conditions import ChannelFillIs, Comparison, Condition, ModeLabelsAre, ModeValueIs, Relation
+from amalthea_uros.perf.conditions import ChannelFillIs, Comparison, Condition, ModeLabelsAre, ModeValueIs, Relation, Undecided
 
 _COMPARE: dict[Relation, Callable[[Any, Any], bool]] = {
     Relation.EQUAL: operator.eq,
@@ -20,13 +20,13 @@ _COMPARE: dict[Relation, Callable[[Any, Any], bool]] = {
 
 
 def holds(condition: Condition | None, modes: Mapping[str, str]) -> bool | None:
-    """Whether a condition is true; None if that depends on an unknown mode."""
-    if condition is None:
+    """Whether a condition is true; None if that depends on an unknown mode, or if nothing is compared."""
+    if condition is None or not all(condition.alternatives):
         return None
     found = [_all_of([_compared(comparison, modes) for comparison in every]) for every in condition.alternatives]
     if True in found:
         return True
-    return None if None in found else False
+    return None if None in found or not found else False
 
 
 def _all_of(values: list[bool | None]) -> bool | None:
@@ -41,7 +41,7 @@ def _compared(comparison: Comparison, modes: Mapping[str, str]) -> bool | None:
             return _related(modes.get(label), relation, value)
         case ModeLabelsAre(first=first, relation=relation, second=second):
             return _related(modes.get(first), relation, modes.get(second))
-        case ChannelFillIs():
+        case ChannelFillIs() | Undecided():
             return None
 
 

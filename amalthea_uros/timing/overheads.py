@@ -8,6 +8,7 @@ from functools import cached_property
 
 from amalthea_uros.perf.os import Overhead, SemaphoreKind, Service
 from amalthea_uros.perf.software import (
+    AccessKind,
     Activity,
     ClearEvent,
     Demand,
@@ -17,6 +18,9 @@ from amalthea_uros.perf.software import (
     SchedulePoint,
     SemaphoreAccess,
     SemaphoreOperation,
+    SenderReceiverAccess,
+    ServerCall,
+    ServerCallKind,
     SetEvent,
     Terminate,
     Trigger,
@@ -32,6 +36,7 @@ _OF_ACTIVITIES: dict[type, tuple[Service, ...]] = {
     WaitEvent: (Service.WAIT_EVENT,),
     ClearEvent: (Service.CLEAR_EVENT,),
 }
+_OF_ACCESSES = {AccessKind.READ: Service.SENDER_RECEIVER_READ, AccessKind.WRITE: Service.SENDER_RECEIVER_WRITE}
 _OF_SEMAPHORES = {
     (True, True): Service.RELEASE_SPINLOCK,
     (True, False): Service.REQUEST_SPINLOCK,
@@ -39,7 +44,11 @@ _OF_SEMAPHORES = {
     (False, False): Service.REQUEST_RESOURCE,
 }
 #: Services whose calls are known.
-COUNTED = {*(service for services in _OF_ACTIVITIES.values() for service in services), *_OF_SEMAPHORES.values()} | {
+COUNTED = {
+    *(service for services in _OF_ACTIVITIES.values() for service in services),
+    *_OF_SEMAPHORES.values(),
+    *_OF_ACCESSES.values(),
+    Service.SERVER_CALL,
     Service.SUSPEND_INTERRUPTS,
     Service.RESUME_INTERRUPTS,
 }
@@ -77,6 +86,10 @@ class Overheads:
             case SemaphoreAccess(semaphore=name, operation=operation):
                 is_release = operation is SemaphoreOperation.RELEASE
                 return (_OF_SEMAPHORES[self._kinds.get(name) is SemaphoreKind.SPINLOCK, is_release],)
+            case SenderReceiverAccess(kind=kind):
+                return (_OF_ACCESSES[kind],)
+            case ServerCall(kind=ServerCallKind.SYNCHRONOUS):
+                return (Service.SERVER_CALL,)
             case Group(interruptible=False):
                 return (Service.SUSPEND_INTERRUPTS, Service.RESUME_INTERRUPTS)
         return _OF_ACTIVITIES.get(type(activity), ())

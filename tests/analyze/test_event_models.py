@@ -88,8 +88,9 @@ def test_several_events_for_each_one():
         (perf.RelativePeriodic(name="s", distance=Uniform(lower=5, upper=9)), Sporadic(5, longest=9)),
         # Offset 5, period 10, length 5, distance 2, count 3: 5, 7, 9, 15, 17, 19 ...
         (perf.Burst(name="s", offset=5, period=10, length=5, distance=2, count=3), Pattern(10, (0, 2, 4))),
-        # The third occurrence would be after the burst.
-        (perf.Burst(name="s", period=10, length=4, distance=2, count=3), Pattern(10, (0, 2))),
+        # The fourth occurrence would be after the burst; the third one, at exactly its end, counts.
+        (perf.Burst(name="s", period=10, length=4, distance=2, count=4), Pattern(10, (0, 2, 4))),
+        (perf.Burst(name="s", period=10, length=0, distance=2, count=4), Pattern(10, (0,))),
         (perf.Synthetic(name="s", period=10, times=(7, 1)), Pattern(10, (1, 7))),
         (perf.Single(name="s", time=4), Single()),
         (
@@ -112,7 +113,7 @@ def test_several_events_for_each_one():
         # Numbers that no analysis could go through.
         (perf.ArrivalCurve(name="s", points=(perf.ArrivalCurvePoint(occurrences=2**40, lower=3),)), None),
         (perf.Burst(name="s", period=2**40, length=2**40, count=2**40), None),
-        (perf.Burst(name="s", period=10, length=4, distance=2, count=2**40), Pattern(10, (0, 2))),
+        (perf.Burst(name="s", period=10, length=4, distance=2, count=2**40), Pattern(10, (0, 2, 4))),
         (perf.RelativePeriodic(name="s", distance=Uniform(lower=0, upper=9)), None),
         (perf.InterProcess(name="s"), None),
         (perf.Custom(name="s"), None),

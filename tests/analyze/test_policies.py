@@ -11,7 +11,7 @@ from system_strategies import systems
 from amalthea_uros.analyze.assignment import propose_priorities
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import conditions, hardware, mapping, os
-from amalthea_uros.perf.distributions import Boundaries, Constant
+from amalthea_uros.perf.distributions import Boundaries, Constant, Gauss
 from amalthea_uros.perf.events import CustomEvent, Events, LabelChange, LabelEvent
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
@@ -20,6 +20,7 @@ from amalthea_uros.perf.software import (
     AccessKind,
     Call,
     Case,
+    Channel,
     Count,
     Demand,
     Execute,
@@ -28,10 +29,12 @@ from amalthea_uros.perf.software import (
     Label,
     LabelAccess,
     RaiseEvent,
+    Receive,
     Runnable,
     SchedulePoint,
     SemaphoreAccess,
     SemaphoreOperation,
+    Send,
     Software,
     Switch,
     Task,
@@ -121,8 +124,9 @@ class TestPolicies:
             ("B", 100, [ticks(20)], {"scheduler": "root", "priority": 1, "parameters": slices}),
             ("high", 100, [ticks(3)], {"scheduler": "root", "priority": 2, "parameters": slices}),
         ]
-        # A needs three slices, and B gets one before each: 5 + 3 * 2, and 3 above; B waits for all of A.
-        assert worst(system([root(Policy.PRIORITY_BASED_ROUND_ROBIN)], tasks)) == {"A": 14, "B": 28, "high": 3}
+        # A needs three slices, and B gets one before each, and another one if `high` preempts it: 5 + 3 * 2 + 2, and 3 above; B waits
+        # for all of A.
+        assert worst(system([root(Policy.PRIORITY_BASED_ROUND_ROBIN)], tasks)) == {"A": 16, "B": 28, "high": 3}
 
     def test_equal_priorities_are_served_in_the_order_of_activation(self):
         tasks = [(name, 100, [ticks(5)], {"scheduler": "root", "priority": 1}) for name in ("A", "B")]
@@ -243,7 +247,13 @@ class TestCosts:
         assert worst(built) == {"T": 1 + 5 + 2 + 8, "I": 3 + 1 + 4}
 
     @pytest.mark.parametrize(
-        ("memory", "expected"), [(Memory.NONE, 1), (Memory.EXPLICIT, 1 + 4 * 9 + 2), (Memory.IMPLICIT, 1 + 9 + 2)]
+        ("memory", "expected"),
+        [
+            (Memory.NONE, 1),
+            (Memory.EXPLICIT, 1 + 4 * 9 + 2),
+            # Copies of both labels at the start, of the one that is written at the end, and the accesses to them.
+            (Memory.IMPLICIT, 1 + 4 * 9 + 2 + 9 + 2 + 2),
+        ],
     )
     def test_memory(self, memory, expected):
         built = self.with_memory(
@@ -284,10 +294,56 @@ class TestCosts:
             mapping=replace(built.mapping, placements=placements),
         )
 
-    def test_labels_in_no_memory_are_reported(self):
-        built = system([root()], [("T", 100, [LabelAccess(label="L", kind=AccessKind.READ), ticks(1)], self.ONE[0][3])])
-        analysis = analyze_system(built, Settings(memory=Memory.EXPLICIT))
-        assert [finding.rule for finding in analysis.findings] == ["ANA008"]
+    @pytest.mark.parametrize(
+        ("change", "reason"),
+        [
+            (
+                {"mapping": Mapping(tasks=(TaskAllocation(task="T", scheduler="root", priority=1),))},
+                "'far' is not mapped to a memory",
+            ),
+            ({"accesses": ()}, "the core 'core' has no access element for the memory 'global'"),
+            ({"clock": None}, "the clock frequency of 'bus' is unknown"),
+            ({"latency": hardware.Latency(rate=8)}, "the size of data that pass 'bus' is unknown"),
+            ({"latency": hardware.Latency(read=Gauss(mean=1.0, deviation=1.0))}, "the memory latency of 'bus' has no bounds"),
+        ],
+        ids=["no memory", "no access", "no clock", "no size", "no bounds"],
+    )
+    def test_an_access_of_unknown_latency_takes_an_unknown_time(self, change, reason):
+        built = self.with_memory(LabelAccess(label="far", kind=AccessKind.READ), ticks(1))
+        (structure,) = built.hardware.structures
+        (core,), (bus,) = structure.cores, structure.interconnects
+        structure = replace(
+            structure,
+            cores=(replace(core, accesses=change.get("accesses", core.accesses)),),
+            interconnects=(replace(bus, clock=change.get("clock", bus.clock), latency=change.get("latency", bus.latency)),),
+        )
+        built = replace(
+            built,
+            hardware=replace(built.hardware, structures=(structure,)),
+            software=replace(built.software, labels=(Label(name="far"),)),
+            mapping=change.get("mapping", built.mapping),
+        )
+        assert worst(built, Settings(memory=Memory.EXPLICIT)) == {"T": reason}
+
+    def test_several_ways_to_a_memory(self):
+        built = self.with_memory(LabelAccess(label="far", kind=AccessKind.READ))
+        (structure,) = built.hardware.structures
+        (core,) = structure.cores
+        quick = hardware.Access(memory="global", latency=hardware.Latency(read=Constant(4)))
+        structure = replace(structure, cores=(replace(core, accesses=(*core.accesses, quick)),))
+        (process,) = analyze_system(
+            replace(built, hardware=replace(built.hardware, structures=(structure,))), Settings(memory=Memory.EXPLICIT)
+        ).processes
+        # 9 by the bus, 4 without it and 2 of the memory itself.
+        assert (process.bcet // US, process.wcet // US) == (6, 9)
+
+    def test_elements_of_channels(self):
+        body = (Send(channel="far", elements=3), Receive(channel="far", elements=2, at_least=1), ticks(1))
+        built = self.with_memory(*body)
+        built = replace(built, software=replace(built.software, labels=(), channels=(Channel(name="far", element_size=8),)))
+        (process,) = analyze_system(built, Settings(memory=Memory.EXPLICIT)).processes
+        assert (process.bcet // US, process.wcet // US) == ((3 + 1) * 9 + 1, (3 + 2) * 9 + 1)
+        assert worst(built) == {"T": 1}
 
     def test_factors_of_single_processes(self):
         built = system([root()], self.ONE)

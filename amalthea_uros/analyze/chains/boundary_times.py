@@ -76,6 +76,8 @@ def kind(boundary: Boundary) -> JobPhase | None:
             return JobPhase.BEFORE
         case Read():
             return JobPhase.START
+        case Fire(position=ActivityPosition(), is_before=True):
+            return JobPhase.BEFORE
         case Write(communication=Communication.LET):
             return None
         case Write(communication=Communication.EXPLICIT, position=ActivityPosition()) | Fire(position=ActivityPosition()):

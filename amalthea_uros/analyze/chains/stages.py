@@ -31,9 +31,10 @@ class Write:
 
 @dataclass(frozen=True, slots=True)
 class Fire:
-    """Where a job triggers another process."""
+    """Where a job triggers another process: at the end of an activity, or at its start."""
 
     position: ActivityPosition | None
+    is_before: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +94,9 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
         if link.kind is LinkKind.JOB:
             continue
         leave = (
-            Fire(link.write) if link.kind is LinkKind.TRIGGER else Write(_communication(link.write, communication), link.write)
+            Fire(link.write, link.is_before)
+            if link.kind is LinkKind.TRIGGER
+            else Write(_communication(link.write, communication), link.write)
         )
         found.append(Stage(before.process, enter, leave, is_triggered))
         is_triggered = link.kind is LinkKind.TRIGGER

@@ -2,16 +2,21 @@
 
 After R. Racu, L. Li, R. Henia, A. Hamann and R. Ernst, "Improved response time analysis of tasks scheduled under preemptive
 round-robin", CODES+ISSS 2007: before each slice of a task, every other task of its priority gets at most one slice, and in total
-no more than its demand.
+no more than its demand. Three things are taken into account beyond that. A job need not go on in the slice of the job before it. The
+others can have jobs pending when the task is activated, so that their demand is that of the busy window of all of them. And it is not
+standardised whether a slice that was preempted starts anew, so that each preemption may prolong a slice of another task.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
 
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
+from amalthea_uros.analyze.response_times.supply import FULL
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.results import Claim, Response
 from amalthea_uros.timing.limits import LIMIT
@@ -30,9 +35,11 @@ def response_time(task: Task, others: Sequence[Task], higher: Interference, bloc
     """
     if _overloads(task, others, higher):
         return unbounded(task.demand.best, Interference.of([*higher.tasks, *others], higher.supply), task, METHOD, SOURCE)
+    window = _Window.of(task, others, higher, blocking)
     completions: list[Time] = []
-    for job in range(1, max_jobs(task)):
-        end = _end(task, job, others, higher, blocking)
+    end = 0
+    for job in range(1, max_jobs(task) if window.is_bounded else 1):
+        end = window.end(job, end)
         if end > LIMIT:
             break
         completions.append(end)
@@ -49,19 +56,75 @@ def _overloads(task: Task, others: Sequence[Task], higher: Interference) -> bool
     return sum(map(demand_rate, higher.tasks), between) > higher.supply.rate
 
 
-def _end(task: Task, job: int, others: Sequence[Task], higher: Interference, blocking: Time) -> Time:
-    own = task.demand.max_demand(job)
-    slices = -(-own // task.slice)
-    end = 0
-    for _ in range(MAX_STEPS):
-        between = sum(min(slices * other.slice, other.demand.max_demand(other.events.eta_plus(end))) for other in others)
-        reached = higher.window(blocking + own + between, end)
-        if reached is None:
-            break
-        if reached == end:
-            return end
-        end = reached
-    return LIMIT + 1
+@dataclass(frozen=True, slots=True)
+class _Window:
+    """The busy window of a task.
+
+    Attributes
+    ----------
+    demands : the demand of each other task in the busy window of all of them; None: that does not end
+    """
+
+    task: Task
+    others: Sequence[Task]
+    higher: Interference
+    blocking: Time
+    demands: Sequence[Time] | None
+
+    @classmethod
+    def of(cls, task: Task, others: Sequence[Task], higher: Interference, blocking: Time) -> _Window:
+        """The busy window of a task, given that of all tasks of its priority."""
+        together = Interference.of([*higher.tasks, *others], higher.supply)
+        length = None
+        if not together.overloads_with(task):
+            length = Interference.of([*higher.tasks, *others, task], higher.supply).window(blocking, 1)
+        demands = None if length is None else [other.demand.max_demand(other.events.eta_plus(length)) for other in others]
+        return cls(task, others, higher, blocking, demands)
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether it ends for certain."""
+        if self.demands is not None:
+            return True
+        if self.higher.supply is not FULL:
+            return False
+        task, slices = self.task, [other.slice for other in self.others]
+        per_job = task.demand.mean_worst + (task.demand.mean_worst + task.slice - 1) / task.slice * sum(slices)
+        above = sum((demand_rate(other) + other.events.rate * max(slices) for other in self.higher.tasks), Fraction(0))
+        return task.events.rate * per_job + above < 1
+
+    def end(self, job: int, start: Time) -> Time:
+        """The latest end of a job of the window, which is not before `start`; more than `LIMIT` if it does not end."""
+        own = self.task.demand.max_demand(job)
+        # At most so many slices: sum of ceil(c / slice) over the jobs.
+        slices = (own + job * (self.task.slice - 1)) // self.task.slice
+        end = start
+        for _ in range(MAX_STEPS):
+            between = self._between(slices, end)
+            reached = None if between is None else self.higher.window(self.blocking + own + between, end)
+            if reached is None:
+                break
+            if reached == end:
+                return end
+            end = reached
+        return LIMIT + 1
+
+    def _between(self, slices: int, window: Time) -> Time | None:
+        """What the other tasks execute before the last slice of the task; None if nothing bounds it."""
+        everything = None if self.demands is None else sum(self.demands)
+        if self.higher.supply is not FULL:
+            # The end of a budget interrupts a slice, too.
+            return everything
+        most = [slices * other.slice for other in self.others]
+        if self.demands is not None:
+            most = list(map(min, most, self.demands))
+        prolonged = self._preemptions(window) * max(other.slice for other in self.others)
+        total = sum(most) + prolonged
+        return total if everything is None else min(total, everything)
+
+    def _preemptions(self, window: Time) -> int:
+        """Maximum number of times that tasks of higher priority preempt the others in a window."""
+        return sum(task.events.eta_plus(window) for task in self.higher.tasks)
 
 
 def _response(task: Task, completions: Sequence[Time], blocking: Time) -> Response:

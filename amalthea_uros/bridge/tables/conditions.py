@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.bridge.codecs import Codec, enumeration, reference
+from amalthea_uros.bridge.codecs import Codec, build_reason, enumeration, extract_reason, reference
 from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.entries import Entry, Field, Table, parts
 from amalthea_uros.bridge.kinds import Kind
@@ -27,7 +27,22 @@ _RELATION = enumeration(
 )
 _MODE_LABEL = reference(Kind.MODE_LABEL)
 
-_COMPARISONS = Table(
+
+class _Comparisons(Table):
+    """Comparisons; what is not stated completely, or is of another class, can be true or false."""
+
+    def build(self, item: Any, context: Building) -> Any:
+        if isinstance(item, perf.Undecided):
+            return am.ModeValueCondition(custom_properties=build_reason(item.reason))
+        return super().build(item, context)
+
+    def extract(self, element: Element, context: Extracting) -> Any:
+        reason = extract_reason(element) if isinstance(element, am.ModeValueCondition) else None
+        found = super().extract(element, context) if reason is None else None
+        return found or perf.Undecided(reason=reason or f"a {type(element).__name__} that is incomplete or not supported")
+
+
+_COMPARISONS: Table = _Comparisons(
     Entry(
         perf.ModeValueIs,
         am.ModeValueCondition,

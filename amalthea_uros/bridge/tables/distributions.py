@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.bridge.codecs import PLAIN, TIME, Codec, same_names
-from amalthea_uros.bridge.entries import Entry, Field, Table, part, parts
+from amalthea_uros.bridge.entries import Entry, Field, Table, all_parts, part
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import distributions as perf
@@ -48,7 +48,7 @@ def _table(prefix: str, number: Codec, mean: Codec) -> Table:
             Field("exceeding", "p_remain_promille"),
         ),
         Entry(perf.Beta, amalthea_class("BetaDistribution"), Field("alpha", "alpha"), Field("beta", "beta"), lower, upper),
-        Entry(perf.Histogram, amalthea_class("Histogram"), Field("buckets", "entries", parts(bucket))),
+        Entry(perf.Histogram, amalthea_class("Histogram"), Field("buckets", "entries", all_parts(bucket))),
     )
 
 

@@ -5,7 +5,17 @@ from __future__ import annotations
 from functools import partial
 from typing import Any, cast
 
-from amalthea_uros.bridge.codecs import PLAIN, SIZE, Codec, enumeration, reference, references, same_names
+from amalthea_uros.bridge.codecs import (
+    PLAIN,
+    SIZE,
+    Codec,
+    build_reason,
+    enumeration,
+    extract_reason,
+    reference,
+    references,
+    same_names,
+)
 from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.entries import Entry, Field, Table
 from amalthea_uros.bridge.kinds import Kind
@@ -28,23 +38,24 @@ def _build_demand(demand: perf.Demand, context: Building) -> am.Ticks:
 
 
 def _extract_demand(ticks: Any, context: Extracting, _element: Element) -> perf.Demand | None:
+    by_core_type: list[tuple[str, Any]] = [
+        (name, None if entry.value is None else DISCRETE.extract(entry.value, context))
+        for entry in ticks.extended
+        if (name := _CORE_TYPE.extract(entry.key, context, ticks)) is not None
+    ]
     default = None if ticks.default is None else DISCRETE.extract(ticks.default, context)
-    by_core_type = []
-    for entry in ticks.extended:
-        name = _CORE_TYPE.extract(entry.key, context, ticks)
-        value = None if entry.value is None else DISCRETE.extract(entry.value, context)
-        if name is not None and value is not None:
-            by_core_type.append((name, value))
-    if default is None and not by_core_type:
-        context.note("EXT004", "Ticks ignored: they have no value", ticks)
+    values = [value for _, value in by_core_type]
+    # A core type whose own value is unknown does not take the default.
+    if None in values or (default is None and (ticks.default is not None or not values)):
+        context.note("EXT004", "Ticks are incomplete: a value is missing", ticks)
         return None
     return perf.Demand(default, tuple(by_core_type))
 
 
 _CORE_TYPE = reference(Kind.CORE_TYPE)
 
-#: Demand as Ticks.
-DEMAND = Codec(_build_demand, _extract_demand)
+#: Demand as Ticks; without a value on any core if something is missing.
+DEMAND = Codec(_build_demand, lambda ticks, context, element: _extract_demand(ticks, context, element) or perf.Demand())
 
 
 # Numbers that were measured
@@ -76,6 +87,21 @@ _CALLS = Codec(
 
 # Activities
 
+_ACCESSES_OF_LABELS = (am.LabelAccess, am.SenderReceiverCommunication)
+#: What takes time, or may wait, so that it must not disappear if it is incomplete.
+_TAKING_TIME = (
+    *_ACCESSES_OF_LABELS,
+    am.Ticks,
+    am.ExecutionNeed,
+    am.RunnableCall,
+    am.ServerCall,
+    am.SemaphoreAccess,
+    am.WaitEvent,
+    am.EnforcedMigration,
+)
+#: The name of the group that represents an incomplete access.
+_ACCESS = "access"
+
 
 class _Activities(Table):
     """Everything that can stand in an activity graph; what is shaped differently in AMALTHEA has its own functions."""
@@ -101,19 +127,37 @@ class _Activities(Table):
                 return _build_communication(item, context)
             case perf.ServerCall():
                 return _build_server_call(item, context)
+            case perf.Incomplete(reason=reason, is_access=is_access):
+                return am.Group(name=_ACCESS if is_access else None, custom_properties=build_reason(reason))
         return super().build(item, context)
 
     def extract(self, element: Any, context: Extracting) -> Any:
+        found = self._complete(element, context)
+        if found is not None or not isinstance(element, _TAKING_TIME):
+            return found
+        return perf.Incomplete(
+            reason=f"an incomplete {type(element).__name__}",
+            is_access=isinstance(element, _ACCESSES_OF_LABELS),
+            locate=partial(context.location, element),
+        )
+
+    def _complete(self, element: Any, context: Extracting) -> Any:
+        """The activity; None, with a finding, if something is missing."""
         match element:
+            case am.Group() if (reason := extract_reason(element)) is not None:
+                is_access = element.name == _ACCESS
+                return perf.Incomplete(reason=reason, is_access=is_access, locate=partial(context.location, element))
             case am.Ticks():
                 demand = _extract_demand(element, context, element)
                 return None if demand is None else perf.Execute(demand=demand, locate=partial(context.location, element))
             case am.ExecutionNeed():
-                needs = tuple(
-                    (entry.key or "", need)
+                needs: tuple[tuple[str, Any], ...] = tuple(
+                    (entry.key or "", None if entry.value is None else DISCRETE.extract(entry.value, context))
                     for entry in element.needs
-                    if entry.value is not None and (need := DISCRETE.extract(entry.value, context)) is not None
                 )
+                if any(need is None for _, need in needs):
+                    context.note("EXT004", "ExecutionNeed is incomplete: a value is missing", element)
+                    return None
                 return perf.ExecutionNeed(needs=needs, locate=partial(context.location, element))
             case am.ProbabilitySwitch():
                 return perf.ProbabilitySwitch(
@@ -183,7 +227,7 @@ def _build_communication(access: perf.SenderReceiverAccess, context: Building) -
 def _extract_communication(element: Any, context: Extracting) -> perf.SenderReceiverAccess | None:
     label = _LABEL.extract(element.label, context, element)
     if label is None:
-        context.note("EXT004", f"a {type(element).__name__} without label is left out", element)
+        context.note("EXT004", f"{type(element).__name__} is incomplete: it has no label", element)
         return None
     is_write = isinstance(element, am.SenderReceiverWrite)
     return perf.SenderReceiverAccess(
@@ -205,27 +249,41 @@ def _build_server_call(call: perf.ServerCall, context: Building) -> Element:
             )
         case perf.ServerCallKind.ASYNCHRONOUS:
             return am.AsynchronousServerCall(server_runnable=server, result_runnable=_RUNNABLE.build(call.result, context))
-    return am.GetResultServerCall(server_runnable=server)
+    blocking = am.BlockingType.NON_BLOCKING if not call.waits else _BLOCKING.get(call.waiting)
+    return am.GetResultServerCall(server_runnable=server, blocking_type=blocking)
 
 
 def _extract_server_call(element: Any, context: Extracting) -> perf.ServerCall | None:
     server = _RUNNABLE.extract(element.server_runnable, context, element)
     if server is None:
-        context.note("EXT004", f"a {type(element).__name__} without server runnable is left out", element)
+        context.note("EXT004", f"{type(element).__name__} is incomplete: it has no serverRunnable", element)
         return None
-    waiting = element.waiting_behaviour if isinstance(element, am.SynchronousServerCall) else None
     result = element.result_runnable if isinstance(element, am.AsynchronousServerCall) else None
     return perf.ServerCall(
         runnable=server,
         kind=_SERVER_CALLS[type(element)],
         result=_RUNNABLE.extract(result, context, element),
-        waiting=None if waiting is None else _WAITING_CODEC.extract(waiting, context, element),
+        waits=getattr(element, "blocking_type", None) is not am.BlockingType.NON_BLOCKING,
+        waiting=_waiting(element, context),
         locate=partial(context.location, element),
     )
 
 
+def _waiting(element: Any, context: Extracting) -> perf.Waiting | None:
+    """How the client of a call waits."""
+    if isinstance(element, am.GetResultServerCall):
+        return next((waiting for waiting, blocking in _BLOCKING.items() if blocking is element.blocking_type), None)
+    stated = element.waiting_behaviour if isinstance(element, am.SynchronousServerCall) else None
+    found: perf.Waiting | None = None if stated is None else _WAITING_CODEC.extract(stated, context, element)
+    return found
+
+
 _LABEL, _RUNNABLE, _RUNNABLES = reference(Kind.DATA), reference(Kind.RUNNABLE), references(Kind.RUNNABLE)
 _WAITING_CODEC = same_names(perf.Waiting, am.WaitingBehaviour)
+_BLOCKING: dict[perf.Waiting | None, am.BlockingType] = {
+    perf.Waiting.ACTIVE: am.BlockingType.ACTIVE_WAIT,
+    perf.Waiting.PASSIVE: am.BlockingType.PASSIVE_WAIT,
+}
 _SERVER_CALLS: dict[type[Element], perf.ServerCallKind] = {
     am.SynchronousServerCall: perf.ServerCallKind.SYNCHRONOUS,
     am.AsynchronousServerCall: perf.ServerCallKind.ASYNCHRONOUS,
@@ -345,7 +403,15 @@ _GRAPH = Codec(
     lambda value, context, element: ITEMS.extract(value.items, context, element),
 )
 _ACTIVITIES = Field("activities", "activity_graph", _GRAPH)
-_STIMULI = Field("stimuli", "stimuli", references(Kind.STIMULUS))
+
+
+def _extract_stimuli(values: list[Any], context: Extracting, element: Element) -> tuple[str, ...]:
+    """The names of stimuli; one that is not part of the model activates at an unknown rate."""
+    return tuple(_STIMULUS.extract(value, context, element) or context.unresolved_stimulus(value) for value in values)
+
+
+_STIMULUS = reference(Kind.STIMULUS)
+_STIMULI = Field("stimuli", "stimuli", Codec(references(Kind.STIMULUS).build, _extract_stimuli))
 _SIZE = Field("size", "size", SIZE)
 
 _LIMIT = Codec(

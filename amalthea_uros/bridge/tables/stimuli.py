@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from amalthea_uros.bridge.codecs import DIVISOR, FREQUENCY, TIME, TIMES, reference, references, same_names
-from amalthea_uros.bridge.entries import Entry, Field, Table, part, parts
+from typing import Any
+
+from amalthea_uros.bridge.codecs import DIVISOR, FREQUENCY, TIME, TIMES, all_references, reference, same_names
+from amalthea_uros.bridge.context import Extracting
+from amalthea_uros.bridge.entries import Entry, Field, Table, all_parts, part, parts
 from amalthea_uros.bridge.kinds import Kind
 from amalthea_uros.bridge.tables.conditions import ASSIGNMENTS, CONDITION
 from amalthea_uros.bridge.tables.distributions import NUMBER, TIME_SPAN
 from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import stimuli as perf
 
 #: Numbers that are not given have these values in every version: prescaler 1, offset 0.
@@ -39,7 +43,17 @@ _POINTS = Table(
     )
 )
 
-STIMULI = Table(
+
+class _Stimuli(Table):
+    """Stimuli; what is incomplete activates at an unknown rate, like a custom one."""
+
+    def extract(self, element: Element, context: Extracting) -> Any:
+        entry = self.by_amalthea_class.get(type(element))
+        found = None if entry is None else entry.complete(element, context, strictly=True)
+        return found or perf.Custom(name=context.names[element], description="incomplete", origin=context.location(element))
+
+
+STIMULI: Table = _Stimuli(
     Entry(
         perf.Periodic,
         am.PeriodicStimulus,
@@ -81,7 +95,7 @@ STIMULI = Table(
     Entry(
         perf.EventTriggered,
         am.EventStimulus,
-        Field("events", "triggering_events", references(Kind.EVENT)),
+        Field("events", "triggering_events", all_references(Kind.EVENT)),
         _COUNTER,
         *_COMMON,
     ),
@@ -102,5 +116,5 @@ CLOCKS = Table(
         Field("swing", "peak_to_peak", FREQUENCY),
         Field("shift", "x_offset", TIME),
     ),
-    Entry(perf.ClockSteps, am.ClockStepList, Field("steps", "entries", parts(_STEPS)), Field("period", "period", TIME)),
+    Entry(perf.ClockSteps, am.ClockStepList, Field("steps", "entries", all_parts(_STEPS)), Field("period", "period", TIME)),
 )

@@ -38,10 +38,11 @@ KINDS = (
         title="process with unknown execution demand",
         severity=Severity.WARNING,
         rationale=(
-            "Loops, waiting for events, ticks without bounds, or a core without a clock frequency make the demand "
-            "unbounded, so the response times of this process and of lower priorities on its core are unknown."
+            "Loops, waiting for events or for other processes, incomplete activities, ticks without bounds, or a core without a clock "
+            "frequency make the demand unbounded, so the response times of this process and of lower priorities on its core "
+            "are unknown."
         ),
-        remedy="Set bounds for ticks, avoid loops and waiting for events, and set the clock frequency of the core.",
+        remedy="Complete the activities, set bounds for ticks, avoid loops and waiting, and set the clock frequency of the core.",
     ),
     FindingKind(
         id="ANA005",
@@ -58,8 +59,7 @@ KINDS = (
         title="overhead that is ignored",
         severity=Severity.WARNING,
         rationale=(
-            "The execution time of this operating system service, of a server runnable, or of a scheduler on another core "
-            "is not included in the results."
+            "The execution time of this operating system service, or of a scheduler on another core, is not included in the results."
         ),
         remedy="Add the overhead to the execution times of the processes that use the service.",
     ),
@@ -75,8 +75,8 @@ KINDS = (
         title="memory access with unknown latency",
         severity=Severity.WARNING,
         rationale=(
-            "The label is not mapped to a memory, or the core has no access element for the memory. The access "
-            "is assumed to take no time."
+            "The label or channel is not mapped to a memory, or the core has no access element for the memory, so the demand "
+            "of the processes that access it is unknown."
         ),
         remedy="Map the label to a memory, and give the core an access element for it.",
     ),

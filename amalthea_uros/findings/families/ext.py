@@ -41,9 +41,12 @@ KINDS = (
     ),
     FindingKind(
         id="EXT004",
-        title="incomplete object that is left out",
+        title="incomplete object",
         severity=Severity.WARNING,
-        rationale="A value that the analysis needs is missing, so the object does not influence the results.",
+        rationale=(
+            "A value that the analysis needs is missing. What the object would influence is unknown, if it is part of a process or "
+            "activates one; otherwise it is left out."
+        ),
         remedy="Add the missing value.",
         fails="""
 <mappingModel><taskAllocation/></mappingModel>

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import NamedTuple
 
 from amalthea_uros.perf.conditions import read_by
 from amalthea_uros.perf.events import Event, RunnableChange, RunnableEvent
@@ -21,6 +22,7 @@ from amalthea_uros.perf.software import (
     Send,
     SenderReceiverAccess,
     ServerCall,
+    ServerCallKind,
     SetEvent,
     Trigger,
     WaitEvent,
@@ -29,6 +31,7 @@ from amalthea_uros.perf.stimuli import EventTriggered
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import EventLocator, EventOccurrence, JobPhase, raises
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.server_calls import with_direct_calls
 
 #: The names of the objects that an activity accesses in one way; empty for most activities.
 NamesOf = Callable[[ActivityPosition], tuple[str, ...]]
@@ -63,12 +66,22 @@ class Link:
     ----------
     names : labels, channels, OS events or server runnables, or the stimulus
     write, read : where the data are written and read, or the trigger is fired
+    is_before : whether the trigger is fired when `write` starts, not when it ends
     """
 
     kind: LinkKind
     names: tuple[str, ...] = ()
     write: ActivityPosition | None = None
     read: ActivityPosition | None = None
+    is_before: bool = False
+
+
+class Firing(NamedTuple):
+    """An activity that fires a stimulus when it ends, or, if `is_before`, when it starts."""
+
+    stimulus: str
+    position: ActivityPosition
+    is_before: bool = False
 
 
 @dataclass(slots=True)
@@ -78,9 +91,10 @@ class Dataflow:
     system: System
     events: EventLocator = field(init=False)
     _named: dict[tuple[str, NamesOf], _Accesses] = field(default_factory=dict)
-    _fired: dict[str, list[tuple[str, ActivityPosition]]] | None = None
+    _fired: dict[str, list[Firing]] | None = None
 
     def __post_init__(self) -> None:
+        self.system = with_direct_calls(self.system)
         self.events = EventLocator(self.system)
 
     def between(self, first: EventOccurrence, then: EventOccurrence) -> Link:
@@ -96,8 +110,10 @@ class Dataflow:
 
     def trigger(self, first: str, then: str) -> Link | None:
         """How a process activates another one; None if it does not."""
-        found = [(stimulus, position) for stimulus, position in self._triggers(first) if stimulus in self._stimuli(then)]
-        return Link(LinkKind.TRIGGER, (found[0][0],), found[0][1]) if found else None
+        found = next((firing for firing in self._triggers(first) if firing.stimulus in self._stimuli(then)), None)
+        if found is None:
+            return None
+        return Link(LinkKind.TRIGGER, (found.stimulus,), found.position, is_before=found.is_before)
 
     def data(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
         """The data written at one event and read at the other one; None if there are none."""
@@ -142,7 +158,7 @@ class Dataflow:
             for stimulus in self._stimuli(process):
                 activated.setdefault(stimulus, []).append(process)
         for process in self.system.processes:
-            for stimulus, _ in self._triggers(process):
+            for stimulus in (firing.stimulus for firing in self._triggers(process)):
                 yield from ((process, stimulus, other) for other in activated.get(stimulus, ()) if other != process)
 
     def by_name(self, process: str, names_of: NamesOf) -> _Accesses:
@@ -155,27 +171,26 @@ class Dataflow:
     def _stimuli(self, process: str) -> tuple[str, ...]:
         return self.system.processes[process].stimuli
 
-    def _triggers(self, process: str) -> list[tuple[str, ActivityPosition]]:
+    def _triggers(self, process: str) -> list[Firing]:
         """The stimuli that a process fires, in order, by triggers and by the events that it raises."""
         if self._fired is None:
             reactions = self._reactions()
             self._fired = {name: list(self._find_triggers(name, reactions)) for name in self.system.processes}
         return self._fired[process]
 
-    def _find_triggers(self, process: str, reactions: Sequence[tuple[str, Event]]) -> Iterator[tuple[str, ActivityPosition]]:
+    def _find_triggers(self, process: str, reactions: Sequence[tuple[str, Event]]) -> Iterator[Firing]:
         for position in self.events.positions(process):
             if isinstance(position.activity, Trigger):
-                yield position.activity.stimulus, position
+                yield Firing(position.activity.stimulus, position)
             for stimulus, event in reactions:
                 if raises(position, event):
-                    yield stimulus, position
+                    yield Firing(stimulus, position, _is_start(event))
 
     def _reactions(self) -> list[tuple[str, Event]]:
-        """The stimuli that react to events after an activity; the start of a call is not a position to trigger from."""
+        """The stimuli that react to events."""
         events = self.system.events_by_name
         stimuli = (s for s in self.system.stimuli.stimuli if isinstance(s, EventTriggered))
-        found = ((stimulus.name, events[name]) for stimulus in stimuli for name in stimulus.events if name in events)
-        return [(name, event) for name, event in found if not _is_start(event)]
+        return [(stimulus.name, events[name]) for stimulus in stimuli for name in stimulus.events if name in events]
 
     def _synchronisation(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
         """The synchronisation of two processes by OS events, or by calls of server runnables and their results."""
@@ -241,9 +256,14 @@ def _awaits(position: ActivityPosition) -> tuple[str, ...]:
 
 
 def _requests(position: ActivityPosition) -> tuple[str, ...]:
+    """The runnables that other processes execute for this one, or because of it."""
     match position.activity:
-        case ServerCall(runnable=name):
-            return (name,)
+        case ServerCall(kind=ServerCallKind.SYNCHRONOUS, waits=False):
+            return ()
+        case ServerCall(runnable=name, result=result):
+            return (name,) if result is None else (name, result)
+        case SenderReceiverAccess(notifies=notifies):
+            return notifies
     return ()
 
 

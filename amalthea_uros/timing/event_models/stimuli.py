@@ -52,7 +52,8 @@ def _event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | Non
             # Times beyond the period coincide with those of later periods.
             return Pattern(period, tuple(sorted(time % period for time in times)))
         case perf.Burst(period=period, length=length, distance=distance, count=count) if period > 0:
-            occurrences = min(count, -(-max(length, 1) // distance)) if distance > 0 else count
+            # Whether an occurrence at exactly the end of the burst is clipped is not stated; counting it is safe.
+            occurrences = min(count, max(length, 0) // distance + 1) if distance > 0 else count
             if not 0 < occurrences <= MAX_OCCURRENCES or (occurrences - 1) * distance >= period:
                 return None
             return Pattern(period, tuple(index * distance for index in range(occurrences)))

@@ -380,8 +380,9 @@ class TestWhatCarries:
             CustomEvent(name="event"),
             LabelEvent(name="event", label="L", change=LabelChange.WRITE),
             RunnableEvent(name="event", runnable="prepare", change=RunnableChange.TERMINATE),
+            RunnableEvent(name="event", runnable="prepare", change=RunnableChange.START),
         ],
-        ids=["raised", "written", "ended"],
+        ids=["raised", "written", "ended", "started"],
     )
     def test_an_event_that_activates_a_task(self, event):
         prepare = Runnable(name="prepare", activities=(ticks(2), RaiseEvent(event="event"), write("L")))
@@ -395,6 +396,18 @@ class TestWhatCarries:
         assert not rules
         # The source goes on, before the sink can run.
         assert values["max_reduced_reaction_time"] >= 3 + 3
+
+    @pytest.mark.parametrize(("change", "latency"), [(RunnableChange.START, 1 + 3), (RunnableChange.TERMINATE, 1 + 2 + 3)])
+    def test_an_event_that_activates_a_task_on_another_core(self, change, latency):
+        runnables = [Runnable(name="prepare", activities=(ticks(2),))]
+        tasks = [("source", 10, [ticks(1), Call(runnable="prepare"), ticks(5)]), ("sink", None, [ticks(3)], "other")]
+        events = [at("source", START), at("sink", END), RunnableEvent(name="event", runnable="prepare", change=change)]
+        chain = EventChain(name="chain", stimulus=events[0].name, response=events[1].name)
+        stimuli = [EventTriggered(name="sink", events=("event",))]
+        built = system(tasks, events, chains=(chain,), stimuli=stimuli, runnables=runnables, cores=("core", "other"))
+        _, values, _, _ = evaluate(built)
+        # The sink starts at once, and nothing delays it or the source.
+        assert values["min_first_to_first"] <= latency <= values["max_reduced_reaction_time"]
 
     def test_a_frame_on_a_bus(self):
         # A bus is a core whose frames are non-preemptive tasks: the frame waits for a longer one of lower priority.
