@@ -51,7 +51,8 @@ def content(result: AnalysisResult) -> dict[str, Any]:
         }
     if result.proposals is not None:
         found["priorities"] = [
-            {"processor": p.core, "current": p.current, "proposed": p.priorities, "reason": p.reason} for p in result.proposals
+            {"processor": p.core, "current": p.current, "proposed": p.priorities, "outcome": p.outcome, "reason": p.reason}
+            for p in result.proposals
         ]
     return found
 
