@@ -235,7 +235,7 @@ class _Search:
             return f"{name!r} could not be analysed: {solution.reasons.get(name, '')}"
         if item.is_isr:
             return ""
-        if item.deadline is None:
+        if self.analysis.processes[name].deadline is None:
             return f"{name!r} has no deadline"
         if item.server is not None or item.equal_priority is not EqualPriority.FIFO or item.rank != (0, item.priority):
             return f"{name!r} is not scheduled by a single fixed priority"

@@ -84,7 +84,7 @@ def test_another_clock(tmp_path):
         (["--frequency", "Core_9=2MHz"], "unknown core 'Core_9'; did you mean 'Core_0'?"),
         (["--frequency", "Core_0=2"], "has no unit"),
         (["--frequency", "Core_0=0MHz"], "greater than zero"),
-        (["--explain", "Nothing"], "unknown process 'Nothing'"),
+        (["--explain", "Nothing"], "unknown process or chain 'Nothing'; known: Executor_Task"),
         (["--scale", "0"], "0"),
         (["--mode", "speed"], "not of the form LABEL=VALUE"),
         (["--mode", "speed=1"], "unknown mode label 'speed'; the model has no mode label"),
