@@ -58,7 +58,9 @@ def _execution(explanation: ProcessExplanation, terminal: Terminal) -> None:
         (share.name, share.calls if share.is_runnable else "", _jobs(share.counter), _time(share.time), _part(share, wcet))
         for share in explanation.execution
     ]
-    terminal.table(("WCET made of", "calls", "in jobs", "time", "share"), [*rows, ("sum", "", "", _time(wcet), "")], right=(1, 3, 4))
+    terminal.table(
+        ("WCET made of", "calls", "in jobs", "time", "share"), [*rows, ("sum", "", "", _time(wcet), "")], right=(1, 3, 4)
+    )
 
 
 def _jobs(counter: Counter | None) -> str:
