@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from amalthea_uros.analyze.chains.explanation import ChainExplanation
+from amalthea_uros.analyze.results import Claim
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import Time, time_text
 
 
-def write_hops(explanation: ChainExplanation, total: Time, terminal: Terminal) -> None:
+def write_hops(explanation: ChainExplanation, total: Time, claim: Claim, terminal: Terminal) -> None:
     """Write a row for each hop, with times relative to the first read; the columns wait and run add up to the value."""
     hops = explanation.hops
     columns = {
@@ -26,8 +27,11 @@ def write_hops(explanation: ChainExplanation, total: Time, terminal: Terminal) -
     if explanation.overwritten:
         rows.append(["until overwritten", *empty, time_text(explanation.overwritten), ""])
     waits, runs = sum(hop.wait for hop in hops) + explanation.overwritten, sum(hop.run for hop in hops)
-    rows.append([f"sum {time_text(total)}", *empty, time_text(waits), time_text(runs)])
+    rows.append(["sum", *empty, time_text(waits), time_text(runs)])
     terminal.table(tuple(known), rows, right=range(1, len(known)))
+    terminal.line(f"  waits and runs add up to {time_text(total)}; other times are relative to the first read")
+    if claim is Claim.BOUND:
+        terminal.line("  each read is as early and each write as late as possible, which need not occur in one run")
 
 
 def _time(value: Time | None) -> str:

@@ -101,7 +101,7 @@ def _chain(explanation: ChainExplanation, terminal: Terminal) -> None:
     if explanation.route:
         terminal.line(f"  {explanation.route}")
     if explanation.hops:
-        write_hops(explanation, value.value, terminal)
+        write_hops(explanation, value.value, value.claim, terminal)
     else:
         terminal.line(f"  no single hops: {explanation.reason}")
     terminal.line(f"  {value.method} ({value.source})")
