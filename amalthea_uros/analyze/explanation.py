@@ -110,14 +110,13 @@ def shares(analysis: Analysis, name: str) -> list[Share]:
     response, scheduled = solution.responses.get(name), solution.context.scheduled.get(name)
     if response is None or response.worst is None or scheduled is None:
         return []
-    in_schedule = response.claim is Claim.EXACT
-    found = _in_schedule(solution, scheduled) if in_schedule else _in_window(solution, scheduled, response)
+    tasks = periodic_tasks(scheduled.core, solution) if response.claim is Claim.EXACT else []
+    found = _in_schedule(solution, scheduled, tasks) if tasks else _in_window(solution, scheduled, response)
     return sorted(found, key=lambda share: -share.time)
 
 
-def _in_schedule(solution: Solution, scheduled: ScheduledProcess) -> list[Share]:
+def _in_schedule(solution: Solution, scheduled: ScheduledProcess, tasks: Sequence[schedule.PeriodicTask]) -> list[Share]:
     """The execution of other tasks between the release and the end of the worst job."""
-    tasks = periodic_tasks(scheduled.core, solution)
     until = schedule.steady_state_start(tasks) + 2 * schedule.hyperperiod(tasks)
     jobs = schedule.schedule(tasks, until, MultiframeDemand.worst_of, [True] * len(tasks))
     own = jobs[[task.name for task in tasks].index(scheduled.name)]

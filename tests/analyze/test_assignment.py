@@ -1,5 +1,6 @@
 """Optimal priorities and sensitivity, against trying everything."""
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
 from math import lcm
@@ -11,13 +12,14 @@ from support import ROOT
 from test_system import system, ticks
 
 from amalthea_uros import describe
-from amalthea_uros.analyze.assignment import Outcome, lowest_first, propose_priorities
+from amalthea_uros.analyze.assignment import Outcome, lowest_first, propose_priorities, with_priorities
 from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.task import Task as AnalysedTask
 from amalthea_uros.analyze.sensitivity import max_growth, sensitivity
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.mapping import TaskAllocation
-from amalthea_uros.perf.software import Preemption, Task, Trigger
+from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
+from amalthea_uros.perf.os import InterruptController, Os, Semaphore
+from amalthea_uros.perf.software import Isr, Preemption, SemaphoreAccess, SemaphoreOperation, Task, Trigger
 from amalthea_uros.perf.stimuli import InterProcess, Periodic
 from amalthea_uros.timing.event_models import Periodic as PeriodicEvents
 from amalthea_uros.timing.multiframe import MultiframeDemand
@@ -248,3 +250,44 @@ def test_a_proposal_that_would_spoil_another_core_is_not_made():
     on_a, on_b = propose_priorities(analysis)
     assert (on_a.outcome, on_b.outcome) == (Outcome.NOT_FOUND, Outcome.KEPT)
     assert on_a.reason == "some priorities meet all deadlines on 'A', but 'Second' is then no longer met"
+
+
+def test_tasks_that_share_a_lock_get_priorities_that_hold():
+    # Slow holds the lock for 5 us of its 20: above Urgent it delays it by all of them, below only by the 5.
+    lock = [
+        SemaphoreAccess(semaphore="lock", operation=operation)
+        for operation in (SemaphoreOperation.REQUEST, SemaphoreOperation.RELEASE)
+    ]
+    built = tasks_on_a_core(("Urgent", 100, 5, 12), ("Slow", 100, 20, 60))
+    urgent, slow = built.software.tasks
+    tasks = (
+        replace(urgent, activities=(lock[0], *urgent.activities, lock[1])),
+        replace(slow, activities=(lock[0], ticks(5), lock[1], ticks(15))),
+    )
+    semaphore = Semaphore(name="lock", ceiling=True)
+    built = replace(built, software=replace(built.software, tasks=tasks), os=replace(built.os, semaphores=(semaphore,)))
+    analysis = analyze_system(built)
+    assert analysis.misses
+    (proposal,) = propose_priorities(analysis)
+    assert (proposal.outcome, proposal.priorities) == (Outcome.PROPOSED, {"Urgent": 1, "Slow": 0})
+    changed = analyze_system(with_priorities(built, proposal.priorities))
+    assert changed["Urgent"].response.terms["blocking"] == 5 * US
+    assert not changed.misses
+
+
+@pytest.mark.parametrize(("deadline", "outcome"), [(10, Outcome.PROPOSED), (9, Outcome.NONE)])
+def test_priorities_below_an_interrupt(deadline, outcome):
+    # The interrupt takes 0 to 5 of each 10. With T1 above T0, they execute from 5 to 7 and 7 to 10; with T0 above T1, T1 ends at 10,
+    # 5 after its release.
+    built = with_offsets([(10, 0, 3, deadline), (10, 5, 2, 4)], [1, 0])
+    isr = Isr(name="Interrupt", stimuli=("0",), activities=(ticks(5),))
+    (os,) = built.os.systems
+    built = replace(
+        built,
+        software=replace(built.software, isrs=(isr,)),
+        os=Os(systems=(replace(os, interrupt_controllers=(InterruptController(name="IC", cores=("core",)),)),)),
+        mapping=replace(built.mapping, isrs=(IsrAllocation(isr="Interrupt", controller="IC", priority=1),)),
+    )
+    (proposal,) = propose_priorities(analyze_system(built))
+    assert proposal.outcome is outcome
+    assert proposal.priorities == ({"T0": 0, "T1": 1} if outcome is Outcome.PROPOSED else None)

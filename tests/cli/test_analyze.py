@@ -136,6 +136,25 @@ def test_proposed_priorities(tmp_path):
     assert "  Fast    1         2\n  Slow    2         1\n" in run.stdout, run.stdout + run.stderr
 
 
+@pytest.mark.parametrize(
+    ("offset", "deadline", "message"),
+    [
+        # Each of them takes 4 ms: together they need 8 ms, 5 ms apart only 4 ms each.
+        ("5 ms", "4 ms", "  the present priorities meet all deadlines\n"),
+        ("0 ms", "4 ms", "  no proposal: no assignment of distinct priorities meets all deadlines\n"),
+    ],
+)
+def test_no_other_priorities(offset, deadline, message, tmp_path):
+    path = tmp_path / "app.yaml"
+    task = f"period: 10 ms, execution_time: 4 ms, deadline: {deadline}"
+    path.write_text(
+        "amuros: 1\nname: app\nhardware: single-core\ntasks:\n"
+        f"  - {{name: A, priority: 1, {task}, offset: 0 ms}}\n  - {{name: B, priority: 2, {task}, offset: {offset}}}\n"
+    )
+    run = amuros("analyze", path, "--assign-priorities")
+    assert message in run.stdout
+
+
 def test_a_chain():
     run = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--all-phases")
     assert run.returncode == 0
