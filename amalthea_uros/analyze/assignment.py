@@ -14,8 +14,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import permutations
 
-from amalthea_uros.analyze.propagation import solve
-from amalthea_uros.analyze.results import Analysis, Claim, Response, Verdict, require_analysis
+from amalthea_uros.analyze.results import Analysis, Claim, ProcessResult, Results, Verdict, require_analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.software import Group, Process, SemaphoreAccess
 from amalthea_uros.perf.system import System
@@ -27,7 +26,7 @@ from amalthea_uros.timing.preemption import is_preemptive
 from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
 
 #: All orders of at most this many tasks are tried.
-MAX_PERMUTED = 7
+MAX_PERMUTED = 6
 
 #: Names of tasks, lowest priority first.
 Order = Sequence[str]
@@ -97,6 +96,11 @@ def with_priorities(system: System, priorities: Mapping[str, int]) -> System:
     return replace(system, mapping=replace(mapping, tasks=tasks))
 
 
+def _without_chains(system: System) -> System:
+    """A system with the same response times, but without what depends on them."""
+    return replace(system, events=replace(system.events, chains=()), constraints=replace(system.constraints, constraints=()))
+
+
 @dataclass(slots=True)
 class _Search:
     """The search for the priorities of the tasks of one core.
@@ -111,7 +115,7 @@ class _Search:
     tasks: Sequence[ScheduledProcess]
     analysis: Analysis
     spoiled: str = ""
-    _responses: dict[tuple[str, ...], Mapping[str, Response]] = field(default_factory=dict)
+    _results: dict[tuple[str, ...], Results[ProcessResult]] = field(default_factory=dict)
 
     @property
     def context(self) -> TimingContext:
@@ -183,20 +187,20 @@ class _Search:
         return self._is_met(name, [*order, name, *self._others(order, name)])
 
     def _is_met(self, name: str, order: Order) -> bool:
-        response = self._response(name, order)
-        return response is not None and response.worst is not None and response.worst <= self._deadline(name)
+        return self._result(name, order).verdict is Verdict.MET
 
     def _is_missed(self, name: str, order: Order) -> bool:
         """Whether a deadline is missed for certain: a bound beyond it is none."""
-        response = self._response(name, order)
+        response = self._result(name, order).response
         return response is not None and response.claim is Claim.EXACT and (response.worst or 0) > self._deadline(name)
 
-    def _response(self, name: str, order: Order) -> Response | None:
+    def _result(self, name: str, order: Order) -> ProcessResult:
+        """The result of a process with the priorities of an order."""
         key = tuple(order)
-        if key not in self._responses:
-            context = TimingContext.of(with_priorities(self.context.system, self._numbers(order)), self.context.settings)
-            self._responses[key] = solve(context).responses
-        return self._responses[key].get(name)
+        if key not in self._results:
+            changed = with_priorities(_without_chains(self.context.system), self._numbers(order))
+            self._results[key] = analyze_system(changed, self.context.settings).processes
+        return self._results[key][name]
 
     def _numbers(self, order: Order) -> Mapping[str, int]:
         """Priorities for an order: the present numbers if they are distinct."""
