@@ -231,15 +231,13 @@ class _RouteExplanation:
         return start * self.timing.unit // self.evaluator.context.time_base(process)
 
     def _with_triggered(self, step: _Step, group: Sequence[Stage]) -> list[_Step]:
-        """A step, and those of the processes that it triggers, which take their response times."""
-        triggered = [_Step(stage.process.name, 0, self._response(stage)) for stage in group[1:]]
-        delay = sum(each.run for each in triggered)
-        return [step._replace(run=step.run - delay), *triggered] if step.run >= delay else [step]
-
-    def _response(self, stage: Stage) -> Time:
-        worst = self.evaluator.solution.responses[stage.process.name].worst
-        assert worst is not None
-        return worst * self.timing.unit
+        """A step, and those of the processes that it triggers, which add the same time to every job."""
+        parts = [self.timing.group(group[:count], None).task.response for count in range(1, len(group) + 1)]
+        delays = [more - less for less, more in pairwise(parts)]
+        if step.run < sum(delays):
+            return [step]
+        triggered = [_Step(stage.process.name, 0, delay) for stage, delay in zip(group[1:], delays, strict=True)]
+        return [step._replace(run=step.run - sum(delays)), *triggered]
 
     # By a bound
 
