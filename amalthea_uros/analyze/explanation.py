@@ -1,18 +1,20 @@
-"""Which processes cause the interference in a worst-case response time."""
+"""What the worst-case response time of a process consists of: its own execution, and the processes that interfere."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
+from amalthea_uros.analyze.execution_shares import ExecutionShare, execution_shares
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core import periodic_tasks
-from amalthea_uros.analyze.results import Analysis, Claim, Response
+from amalthea_uros.analyze.results import Analysis, Claim, ProcessResult, Response, Verdict
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.scheduling import ScheduledProcess
+from amalthea_uros.timing.scheduling import ScheduledProcess, Server
 from amalthea_uros.units import Time
 
 
@@ -25,20 +27,96 @@ class Share:
     time: Time
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Load:
+    """The part of the core, or of the budget of a server, that something needs in the long run; None if it is unknown."""
+
+    name: str
+    priority: int | None
+    utilisation: Fraction | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProcessExplanation:
+    """What the response time of a process consists of.
+
+    Attributes
+    ----------
+    execution : shares in its worst-case execution time
+    shares : in the interference, largest first
+    loads : if its deadline is not met: of itself and of all that is served before it or in turn with it, largest first
+    supply : the part of the core that is there for them: less than 1 in a server
+    """
+
+    process: ProcessResult
+    execution: tuple[ExecutionShare, ...]
+    shares: tuple[Share, ...]
+    loads: tuple[Load, ...] = ()
+    supply: Fraction = Fraction(1)
+
+    @property
+    def load(self) -> Fraction | None:
+        """The sum of the loads; None if one is unknown."""
+        known = [load.utilisation for load in self.loads if load.utilisation is not None]
+        return sum(known, Fraction(0)) if len(known) == len(self.loads) else None
+
+
+def explain_process(analysis: Analysis, name: str) -> ProcessExplanation:
+    """Explain the response time of a process."""
+    process, context = analysis.processes[name], analysis.solution.context
+    scheduled = context.scheduled.get(name)
+    is_late = process.verdict in (Verdict.MISSED, Verdict.UNBOUNDED) or (
+        process.response is not None and process.response.worst is None
+    )
+    server = context.servers.get(scheduled.server or "") if scheduled is not None else None
+    return ProcessExplanation(
+        process=process,
+        execution=tuple(execution_shares(context, name)),
+        shares=tuple(shares(analysis, name)),
+        loads=tuple(_loads(analysis.solution, scheduled)) if is_late and scheduled is not None else (),
+        supply=Fraction(server.budget, server.period) if server is not None else Fraction(1),
+    )
+
+
+def _loads(solution: Solution, scheduled: ScheduledProcess) -> list[Load]:
+    """The loads at the rank of a process or higher, largest first; scheduler decisions interrupt all of them."""
+    context = solution.context
+    time_base = context.demand_model.time_base(scheduled.core)
+    found = []
+    for item in context.served(scheduled.core, scheduled.server):
+        if item.rank < scheduled.rank:
+            continue
+        if isinstance(item, Server):
+            found.append(Load(name=item.name, priority=item.rank[-1], utilisation=Fraction(item.budget, item.period)))
+        else:
+            found.append(Load(name=item.name, priority=item.priority, utilisation=_utilisation(solution, item)))
+    for other in context.on_core(scheduled.core) if scheduled.server is None else ():
+        if other.name in context.decisions and other.name in solution.event_models:
+            rate = context.decisions[other.name].mean_worst * solution.event_models[other.name].rate
+            found.append(Load(name=f"scheduler decisions for {other.name}", priority=None, utilisation=rate / time_base))
+    return sorted(found, key=lambda load: -(load.utilisation or 0))
+
+
+def _utilisation(solution: Solution, item: ScheduledProcess) -> Fraction | None:
+    if not solution.is_known(item.name):
+        return None
+    demand, events = solution.context.demands[item.name], solution.event_models[item.name]
+    return demand.mean_worst * events.rate / solution.context.time_base(item.name)
+
+
 def shares(analysis: Analysis, name: str) -> list[Share]:
     """The shares of all processes, largest first; empty if the method does not give them."""
     solution = analysis.solution
     response, scheduled = solution.responses.get(name), solution.context.scheduled.get(name)
     if response is None or response.worst is None or scheduled is None:
         return []
-    in_schedule = response.claim is Claim.EXACT
-    found = _in_schedule(solution, scheduled) if in_schedule else _in_window(solution, scheduled, response)
+    tasks = periodic_tasks(scheduled.core, solution) if response.claim is Claim.EXACT else []
+    found = _in_schedule(solution, scheduled, tasks) if tasks else _in_window(solution, scheduled, response)
     return sorted(found, key=lambda share: -share.time)
 
 
-def _in_schedule(solution: Solution, scheduled: ScheduledProcess) -> list[Share]:
+def _in_schedule(solution: Solution, scheduled: ScheduledProcess, tasks: Sequence[schedule.PeriodicTask]) -> list[Share]:
     """The execution of other tasks between the release and the end of the worst job."""
-    tasks = periodic_tasks(scheduled.core, solution)
     until = schedule.steady_state_start(tasks) + 2 * schedule.hyperperiod(tasks)
     jobs = schedule.schedule(tasks, until, MultiframeDemand.worst_of, [True] * len(tasks))
     own = jobs[[task.name for task in tasks].index(scheduled.name)]

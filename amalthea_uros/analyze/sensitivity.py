@@ -1,7 +1,8 @@
 """Sensitivity: by how much execution times can increase before a deadline or requirement is missed.
 
-Execution times are multiplied by a factor: all of them, like a slower clock, or those of one process. The maximum factor is found by
-bisection, because more load never shortens a response time.
+Worst-case execution times are multiplied by a factor: all of them, or those of one process. Best cases stay as they are, so that each
+analysis also covers all smaller factors: with a single execution time, a latency can be longer for a smaller factor, because a job that
+starts earlier reads older data. The maximum factor is found by bisection.
 """
 
 from __future__ import annotations
@@ -22,11 +23,13 @@ MAX_FACTOR = 1000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sensitivity:
-    """The maximum factors on execution times with which nothing is missed; None if there is no such factor.
+    """The maximum factors on worst-case execution times with which nothing is missed; None if there is no such factor.
+
+    With a factor above 1, nothing is missed with any execution times up to it.
 
     Attributes
     ----------
-    everything : on all execution times, in addition to the scale of the analysis
+    everything : on all execution times
     processes : on the execution times of one process
     """
 
@@ -38,16 +41,15 @@ def sensitivity(analysis: Analysis) -> Sensitivity:
     """The maximum factors; unknown verdicts are ignored."""
     require_analysis(analysis)
     return Sensitivity(
-        everything=max_scale(analysis),
+        everything=max_growth(analysis),
         processes={process.name: _max_factor_of(process.name, analysis) for process in analysis.processes},
     )
 
 
-def max_scale(analysis: Analysis) -> Fraction | None:
-    """The maximum factor on all execution times."""
-    context = analysis.solution.context
-    scale = context.settings.scale
-    return _max_factor(lambda factor: _holds(analysis, factor, replace(context.settings, scale=scale * factor)))
+def max_growth(analysis: Analysis) -> Fraction | None:
+    """The maximum factor on all worst-case execution times."""
+    settings = analysis.solution.context.settings
+    return _max_factor(lambda factor: _holds(analysis, factor, replace(settings, growth=settings.growth * factor)))
 
 
 def _max_factor_of(name: str, analysis: Analysis) -> Fraction | None:

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
+from amalthea_uros.analyze.chains.explanation import EXPLAINED
+from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.cli.output import Output, output_option, show_findings, write_outputs
 from amalthea_uros.perf.software import Communication
-from amalthea_uros.services.analyze import AnalysisResult, ChainDetail, Explanation, analyze_files, chain_detail, explain
+from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail, explain
 from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.units import Frequency, parse_frequency
 
@@ -100,7 +103,19 @@ def _clock(text: str) -> Frequency:
     is_flag=True,
     help="Evaluate chains for all phases of the counters at which they start.",
 )
-@click.option("--explain", "process", metavar="PROCESS", help="Show the terms of the response time of a process.")
+@click.option(
+    "--explain",
+    "explained",
+    metavar="NAME",
+    help="Show what the response time of a process, or a latency of an event chain, consists of.",
+)
+@click.option(
+    "--quantity",
+    type=click.Choice([str(quantity) for quantity in EXPLAINED]),
+    default=str(Quantity.MAX_REDUCED_REACTION_TIME),
+    show_default=True,
+    help="With --explain of a chain: the latency.",
+)
 @click.option(
     "--sensitivity",
     "with_sensitivity",
@@ -119,7 +134,8 @@ def command(
     communication: str,
     method: str,
     all_phases: bool,
-    process: str | None,
+    explained: str | None,
+    quantity: str,
     with_sensitivity: bool,
     with_priorities: bool,
     outputs: tuple[Output, ...],
@@ -140,13 +156,9 @@ def command(
     result = analyze_files(
         paths, settings, with_sensitivity=with_sensitivity, with_priorities=with_priorities, all_methods=method == "all"
     )
-    as_text = _detail(result, process, chain)
+    if explained is not None:
+        result = replace(result, explanation=explain(result, explained, Quantity(quantity)))
+    as_text = result.explanation or (chain_detail(result, chain) if chain is not None else None)
     show_findings(result.findings)
     write_outputs(outputs, result, as_text)
     sys.exit(1 if result.analysis.misses else 0)
-
-
-def _detail(result: AnalysisResult, process: str | None, chain: str | None) -> Explanation | ChainDetail | None:
-    """What is shown instead of all tables."""
-    detail = chain_detail(result, chain) if chain is not None else None
-    return explain(result, process) if process is not None else detail

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros.analyze.assignment import Proposal, propose_priorities
-from amalthea_uros.analyze.explanation import Share, shares
-from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult
+from amalthea_uros.analyze.chains.explanation import ChainExplanation, explain_chain
+from amalthea_uros.analyze.explanation import ProcessExplanation, explain_process
+from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
 from amalthea_uros.analyze.sensitivity import Sensitivity, sensitivity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
@@ -20,13 +21,22 @@ from amalthea_uros.timing.settings import Settings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Explanation:
+    """What the response time of a process or a latency of a chain consists of; both if both have the name."""
+
+    name: str
+    process: ProcessExplanation | None
+    chain: ChainExplanation | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AnalysisResult:
     """The analysis of some files, with what it rests on.
 
     Attributes
     ----------
     findings : problems found while reading the files, and what the analysis could not take into account
-    sensitivity, proposals : None if they were not requested
+    sensitivity, proposals, explanation : None if they were not requested
     all_methods : whether the values of all methods are shown, or the tightest ones
     """
 
@@ -37,15 +47,8 @@ class AnalysisResult:
     findings: tuple[Finding, ...]
     sensitivity: Sensitivity | None = None
     proposals: tuple[Proposal, ...] | None = None
+    explanation: Explanation | None = None
     all_methods: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Explanation:
-    """What the response time of a process is made of, and whose jobs interfere."""
-
-    process: ProcessResult
-    shares: tuple[Share, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,15 +99,24 @@ def analyze_files(
     )
 
 
-def explain(result: AnalysisResult, process: str) -> Explanation:
-    """Explain the response time of a process.
+def explain(result: AnalysisResult, name: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Explanation:
+    """Explain the response time of a process, or a maximum latency of a chain.
+
+    Parameters
+    ----------
+    quantity : of a chain, one of `analyze.chains.explanation.EXPLAINED`
 
     Raises
     ------
-    InvalidArgumentError : there is no such process.
+    InvalidArgumentError : there is no such process or chain.
     """
-    require("process", [process], result.system.processes)
-    return Explanation(result.analysis.processes[process], tuple(shares(result.analysis, process)))
+    system, analysis = result.system, result.analysis
+    require("process or chain", [name], dict.fromkeys((*system.processes, *system.chains)))
+    return Explanation(
+        name=name,
+        process=explain_process(analysis, name) if name in system.processes else None,
+        chain=explain_chain(analysis, name, quantity) if name in system.chains else None,
+    )
 
 
 def chain_detail(result: AnalysisResult, chain: str) -> ChainDetail:

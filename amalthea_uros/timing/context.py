@@ -98,8 +98,10 @@ class TimingContext:
         settings, notes = self.settings, self.notes
         if settings.scale != 1:
             notes.assume(f"all execution times are multiplied by {float(settings.scale):g}")
+        if settings.growth != 1:
+            notes.assume(f"all worst-case execution times are multiplied by {float(settings.growth):g}")
         for name, factor in settings.factors.items():
-            notes.assume(f"the execution times of {name} are multiplied by {float(factor):g}")
+            notes.assume(f"the worst-case execution times of {name} are multiplied by {float(factor):g}")
         for label, value in settings.modes.items():
             notes.assume(f"the mode {label} is always {value}")
         if settings.memory is not Memory.NONE:

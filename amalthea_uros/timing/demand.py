@@ -106,15 +106,19 @@ class DemandModel:
             frames += self._copies(process, core)
         if isinstance(process, Isr):
             frames += [self._ticks(demand, core) for demand in self.overheads.of_isr(process, core)]
-        return MultiframeDemand(_scaled(_summed(frames), self.settings.factors.get(process.name)))
+        return MultiframeDemand(_scaled(_summed(frames), self._growth(process)))
 
     def of_activities(self, process: Process, activities: Sequence[Activity], core: str) -> MultiframeDemand:
         """Demand of some activities of a process, without overheads of the process; raises as `of_process`."""
-        return MultiframeDemand(_scaled(_summed(self._frames(activities, core, ())), self.settings.factors.get(process.name)))
+        return MultiframeDemand(_scaled(_summed(self._frames(activities, core, ())), self._growth(process)))
 
     def of_decision(self, scheduler: Scheduler, core: str) -> MultiframeDemand:
         """Demand of one decision of a scheduler; raises as `of_process`."""
-        return MultiframeDemand(_summed(self._frames(scheduler.overhead, core, ())))
+        return MultiframeDemand(_scaled(_summed(self._frames(scheduler.overhead, core, ())), self.settings.growth))
+
+    def _growth(self, process: Process) -> Fraction:
+        """The factor on the worst-case execution times of a process."""
+        return self.settings.growth * self.settings.factors.get(process.name, 1)
 
     def _access(self, core: str, label: str, kind: AccessKind, times: Count | float | None) -> Frame:
         """The demand of an access to a label, or to its copy, which can be anywhere on the way to the label."""
@@ -307,12 +311,17 @@ def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:
     return tuple(found.values())
 
 
-def _scaled(frames: tuple[Frame, ...], factor: Fraction | None) -> tuple[Frame, ...]:
-    """Frames multiplied by a factor."""
-    if factor is None:
+def _scaled(frames: tuple[Frame, ...], growth: Fraction) -> tuple[Frame, ...]:
+    """Frames with greater worst cases, so that they cover all smaller factors; with a factor below 1, best cases are smaller, too."""
+    if growth == 1:
         return frames
     return tuple(
-        replace(frame, worst=ceil(frame.worst * factor), best=floor(frame.best * factor), average=frame.average * factor)
+        replace(
+            frame,
+            worst=ceil(frame.worst * growth),
+            best=floor(frame.best * min(growth, Fraction(1))),
+            average=frame.average * growth,
+        )
         for frame in frames
     )
 

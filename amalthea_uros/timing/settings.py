@@ -27,7 +27,8 @@ class Settings:
     ----------
     frequencies : of cores, instead of those of the system
     scale : factor on all execution times, like slower clocks
-    factors : on the execution times of single processes
+    growth : factor on all worst-case execution times; best cases only decrease, so that the analysis covers all smaller factors
+    factors : the same for single processes
     modes : values of mode labels that do not change
     communication : of all label accesses; None: as modelled, implicit by default
     all_phases : evaluate chains for all phases of the counters at which they start
@@ -35,6 +36,7 @@ class Settings:
 
     frequencies: Mapping[str, Frequency] = field(default_factory=dict)
     scale: Fraction = Fraction(1)
+    growth: Fraction = Fraction(1)
     factors: Mapping[str, Fraction] = field(default_factory=dict)
     modes: Mapping[str, str] = field(default_factory=dict)
     memory: Memory = Memory.NONE

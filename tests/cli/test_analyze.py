@@ -84,7 +84,7 @@ def test_another_clock(tmp_path):
         (["--frequency", "Core_9=2MHz"], "unknown core 'Core_9'; did you mean 'Core_0'?"),
         (["--frequency", "Core_0=2"], "has no unit"),
         (["--frequency", "Core_0=0MHz"], "greater than zero"),
-        (["--explain", "Nothing"], "unknown process 'Nothing'"),
+        (["--explain", "Nothing"], "unknown process or chain 'Nothing'; known: Executor_Task"),
         (["--scale", "0"], "0"),
         (["--mode", "speed"], "not of the form LABEL=VALUE"),
         (["--mode", "speed=1"], "unknown mode label 'speed'; the model has no mode label"),
@@ -136,6 +136,25 @@ def test_proposed_priorities(tmp_path):
     assert "  Fast    1         2\n  Slow    2         1\n" in run.stdout, run.stdout + run.stderr
 
 
+@pytest.mark.parametrize(
+    ("offset", "deadline", "message"),
+    [
+        # Each of them takes 4 ms: together they need 8 ms, 5 ms apart only 4 ms each.
+        ("5 ms", "4 ms", "  the present priorities meet all deadlines\n"),
+        ("0 ms", "4 ms", "  no proposal: no assignment of distinct priorities meets all deadlines\n"),
+    ],
+)
+def test_no_other_priorities(offset, deadline, message, tmp_path):
+    path = tmp_path / "app.yaml"
+    task = f"period: 10 ms, execution_time: 4 ms, deadline: {deadline}"
+    path.write_text(
+        "amuros: 1\nname: app\nhardware: single-core\ntasks:\n"
+        f"  - {{name: A, priority: 1, {task}, offset: 0 ms}}\n  - {{name: B, priority: 2, {task}, offset: {offset}}}\n"
+    )
+    run = amuros("analyze", path, "--assign-priorities")
+    assert message in run.stdout
+
+
 def test_a_chain():
     run = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--all-phases")
     assert run.returncode == 0
@@ -171,3 +190,53 @@ def test_whose_jobs_interfere():
     assert f"  interference  {round(sum(times), 1)} us" in run.stdout
     exact = amuros("analyze", ADVANCED, "--explain", "Control_Function")
     assert "  Executor_Task       1  25 us" in exact.stdout
+
+
+class TestExplain:
+    def test_a_chain(self):
+        run = amuros("analyze", ADVANCED, "--all-phases", "--explain", "factor-to-output")
+        assert run.returncode == 0
+        lines = run.stdout.splitlines()
+        assert lines[0] == "factor-to-output: max reduced reaction time 20.029 ms (exact)"
+        assert lines[2].split() == ["process", "job", "release", "start", "read", "write", "wait", "run"]
+        assert lines[5].split("  ")[1] == "Control_Function"
+        assert lines[5].endswith("1.007 ms   4 us")
+
+    def test_another_quantity(self):
+        run = amuros("analyze", ADVANCED, "--explain", "factor-to-output", "--quantity", "max_data_age")
+        assert run.stdout.startswith("factor-to-output: max data age 22.016 ms (exact)")
+        # The next control function ends a millisecond later.
+        assert "  until overwritten" in run.stdout
+
+    def test_a_process_and_a_chain_of_the_same_name(self, tmp_path):
+        path = tmp_path / "app.yaml"
+        path.write_text(ADVANCED.read_text().replace("factor-to-output", "Control_Function"))
+        run = amuros("analyze", path, "--explain", "Control_Function")
+        assert run.stdout.startswith("Control_Function: worst-case response time 29 us (exact)")
+        assert "'Control_Function' is also the name of an event chain:\nControl_Function: max reduced" in run.stdout
+
+    def test_an_overload(self):
+        run = amuros("analyze", ADVANCED, "--scale", "80", "--explain", "Control_Function")
+        assert run.returncode == 1
+        # 12.65 us and 4 us in each millisecond, 80 times.
+        rows = [line.split() for line in run.stdout.splitlines()]
+        assert ["Executor_Task", "3", "101.200%"] in rows
+        assert ["Control_Function", "2", "32.000%"] in rows
+        assert ["sum", "133.200%"] in rows
+        assert ["supply", "100.000%"] in rows
+
+    def test_machine_readable(self, tmp_path):
+        for name in ("Executor_Task", "factor-to-output"):
+            amuros("analyze", ADVANCED, "--explain", name, "--output", f"json={tmp_path / name}")
+        process = json.loads((tmp_path / "Executor_Task").read_text())["explanation"]
+        assert process["chain"] is None
+        assert [(each["name"], each["time_ps"]) for each in process["process"]["execution"]] == [
+            ("Executor_Task_Spin", 12_000_000),
+            ("Take_Message_Factor", 13_000_000),
+        ]
+        result = json.loads((tmp_path / "factor-to-output").read_text())
+        chain = result["explanation"]["chain"]
+        assert chain["value_ps"] == sum(hop["wait_ps"] + hop["run_ps"] for hop in chain["hops"]) == 2_016_000_000
+        assert [hop["process"] for hop in chain["hops"]] == ["Executor_Task", "Message_Factor", "Control_Function"]
+        # The rest of the result is there as well.
+        assert result["chains"][0]["name"] == "factor-to-output"

@@ -61,7 +61,7 @@ class ChainEvaluator:
         return ChainResult(
             name=chain.name,
             communication=communication_of(stage for route in every for stage in self._stages(route)),
-            routes=tuple(map(_route_text, every)),
+            routes=tuple(map(route_text, every)),
             values=tightest,
             all_values=tuple(all_values),
             why=found.why,
@@ -73,7 +73,7 @@ class ChainEvaluator:
         found = _Evaluated()
         for events, found_routes in ways.items():
             try:
-                methods = [self._methods(route) for route in found_routes]
+                methods = [self.latencies(route) for route in found_routes]
             except UnboundedStageError as error:
                 found.reason = str(error)
                 found.values[events] = []
@@ -91,7 +91,7 @@ class ChainEvaluator:
         UnresolvedError, UnboundedStageError : there are no values.
         """
         found = routes([first, then], self.context.dataflow)
-        return _tightest(_worst_of([list(self._methods(route).values()) for route in found]))
+        return _tightest(_worst_of([list(self.latencies(route).values()) for route in found]))
 
     def _note(self, chain: EventChain, left_out: Iterable[str], found: Sequence[Route]) -> None:
         """Report what had to be assumed about a chain."""
@@ -116,7 +116,17 @@ class ChainEvaluator:
     def _stages(self, route: Route) -> list[Stage]:
         return stages(route, self.context.settings.communication)
 
-    def _methods(self, route: Route) -> RouteLatencies:
+    def groups(self, route: Route) -> list[list[Stage]]:
+        """The stages of a route, each together with those that it triggers."""
+        return _groups(self._stages(route))
+
+    def latencies(self, route: Route) -> RouteLatencies:
+        """The latencies of a route.
+
+        Raises
+        ------
+        UnboundedStageError : there is no bound.
+        """
         for link in route.links:
             if link.kind is LinkKind.TOPIC:
                 raise UnboundedStageError(
@@ -124,7 +134,7 @@ class ChainEvaluator:
                 )
         parts: list[list[TimedStage]] = []
         before = None
-        for group, follower in _with_followers(_groups(self._stages(route))):
+        for group, follower in _with_followers(self.groups(route)):
             controller = self._controller(group[0])
             if controller != before or not parts:
                 parts.append([])
@@ -170,7 +180,8 @@ def _with_followers(groups: Sequence[Sequence[Stage]]) -> list[tuple[Sequence[St
     return list(zip(groups, [*followers, None], strict=True))
 
 
-def _route_text(route: Route) -> str:
+def route_text(route: Route) -> str:
+    """The events of a route and the links between them."""
     parts = [route.events[0]]
     for link, event in zip(route.links, route.events[1:], strict=True):
         parts.append(f"-[{link_text(link)}]-> {event}")

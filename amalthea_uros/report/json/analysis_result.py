@@ -7,6 +7,7 @@ from typing import Any
 
 from amalthea_uros.analyze.results import ChainResult, ProcessResult
 from amalthea_uros.report.findings import finding_json, joined
+from amalthea_uros.report.json import explanation
 from amalthea_uros.services.analyze import AnalysisResult
 
 
@@ -44,6 +45,8 @@ def content(result: AnalysisResult) -> dict[str, Any]:
             for requirement in analysis.requirements
         ],
     }
+    if result.explanation is not None:
+        found["explanation"] = explanation.content(result.explanation)
     if result.sensitivity is not None:
         found["sensitivity"] = {
             "everything": _number(result.sensitivity.everything),
@@ -51,7 +54,8 @@ def content(result: AnalysisResult) -> dict[str, Any]:
         }
     if result.proposals is not None:
         found["priorities"] = [
-            {"processor": p.core, "current": p.current, "proposed": p.priorities, "reason": p.reason} for p in result.proposals
+            {"processor": p.core, "current": p.current, "proposed": p.priorities, "outcome": p.outcome, "reason": p.reason}
+            for p in result.proposals
         ]
     return found
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil
 
-from amalthea_uros.analyze.assignment import Proposal
+from amalthea_uros.analyze.assignment import Outcome, Proposal
 from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, RequirementResult, Verdict
 from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
 from amalthea_uros.report.latencies import write_chains
@@ -140,6 +140,9 @@ def _factor(factor: Fraction | None) -> str:
 
 def _proposal(terminal: Terminal, proposal: Proposal) -> None:
     terminal.heading(f"Priorities on {proposal.core}")
+    if proposal.outcome is Outcome.KEPT:
+        terminal.line("  the present priorities meet all deadlines")
+        return
     if proposal.priorities is None:
         terminal.line(f"  no proposal: {proposal.reason}")
         return

@@ -1,0 +1,82 @@
+"""The explanation of a response time or of the latency of a chain for programs."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+from amalthea_uros.analyze.chains.explanation import ChainExplanation
+from amalthea_uros.analyze.explanation import ProcessExplanation
+from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.services.analyze import Explanation
+
+
+def content(explanation: Explanation) -> dict[str, Any]:
+    """Everything that is explained; null for what has another name."""
+    return {
+        "name": explanation.name,
+        "process": None if explanation.process is None else _process_json(explanation.process),
+        "chain": None if explanation.chain is None else _chain_json(explanation.chain),
+    }
+
+
+def _process_json(explanation: ProcessExplanation) -> dict[str, Any]:
+    response = explanation.process.response
+    return {
+        "wcrt_ps": response.worst if response else None,
+        "wcet_ps": explanation.process.wcet,
+        "reason": explanation.process.reason,
+        "interference": [{"process": share.name, "jobs": share.jobs, "time_ps": share.time} for share in explanation.shares],
+        "execution": [
+            {
+                "name": share.name,
+                "is_runnable": share.is_runnable,
+                "calls": share.calls,
+                "counter": _counter_json(share.counter),
+                "time_ps": share.time,
+                "reason": share.reason,
+            }
+            for share in explanation.execution
+        ],
+        "loads": [
+            {"name": load.name, "priority": load.priority, "utilisation": _number(load.utilisation)}
+            for load in explanation.loads
+        ],
+        "load": _number(explanation.load) if explanation.loads else None,
+        "supply": _number(explanation.supply),
+    }
+
+
+def _counter_json(counter: Counter | None) -> dict[str, int | None] | None:
+    return None if counter is None else {"prescaler": counter.prescaler, "offset": counter.offset}
+
+
+def _number(value: Fraction | None) -> float | None:
+    return None if value is None else float(value)
+
+
+def _chain_json(explanation: ChainExplanation) -> dict[str, Any]:
+    value = explanation.value
+    return {
+        "quantity": explanation.quantity,
+        "value_ps": value.value if value else None,
+        "claim": value.claim if value else None,
+        "method": value.method if value else None,
+        "source": value.source if value else None,
+        "route": explanation.route,
+        "hops": [
+            {
+                "process": hop.process,
+                "job": hop.job,
+                "release_ps": hop.release,
+                "start_ps": hop.start,
+                "read_ps": hop.read,
+                "write_ps": hop.write,
+                "wait_ps": hop.wait,
+                "run_ps": hop.run,
+            }
+            for hop in explanation.hops
+        ],
+        "until_overwritten_ps": explanation.overwritten,
+        "reason": explanation.reason,
+    }

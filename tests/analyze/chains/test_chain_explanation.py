@@ -1,0 +1,128 @@
+"""The hops of explained chains, against runs that are played through unit of time by unit of time, and the terms of bounds."""
+
+from dataclasses import replace
+from random import Random
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from support import ROOT
+from test_brute_force import ALWAYS, ANY, built, run, systems
+from test_chain_systems import END, START, at, read, system, ticks, write
+
+from amalthea_uros import describe
+from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda, terms
+from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
+from amalthea_uros.analyze.chains.explanation import EXPLAINED, explain_chain
+from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.hardware import StructureKind
+from amalthea_uros.perf.software import Communication
+from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import MICROSECOND as US
+
+
+def check_sums(explanation):
+    """Waits, runs and the time until the output is overwritten add up to the value, and times fit waits and runs."""
+    hops = explanation.hops
+    total = sum(hop.wait + hop.run for hop in hops) + explanation.overwritten
+    assert total == explanation.value.value
+    assert hops[0].read == 0
+    now = -hops[0].wait
+    for hop in hops:
+        assert (hop.read, hop.write) == (now + hop.wait, now + hop.wait + hop.run)
+        now = hop.write
+    return hops
+
+
+@pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
+@settings(max_examples=40)
+@given(systems(["one", "two"], ALWAYS, varying=False, triggered=False))
+def test_the_jobs_of_exact_values_are_those_of_a_run(communication, drawn):
+    tasks, chain = drawn
+    analysis = analyze_system(built(tasks, chain), Settings(communication=communication))
+    jobs = run(tasks, 600, Random(0), communication)
+    for quantity in EXPLAINED:
+        hops = check_sums(explain_chain(analysis, "chain", quantity))
+        assert [hop.process for hop in hops] == chain
+        played = [jobs[hop.process][hop.job - 1] for hop in hops]
+        # The chain leads from the start of the first job to the end of the last one.
+        starts, reads, writes, ends = (list(column) for column in zip(*played, strict=True))
+        origin, reads, writes = starts[0], [starts[0], *reads[1:]], [*writes[:-1], ends[-1]]
+        assert [hop.start // US for hop in hops] == [start - origin for start in starts]
+        assert [hop.read // US for hop in hops] == [moment - origin for moment in reads]
+        assert [hop.write // US for hop in hops] == [moment - origin for moment in writes]
+        periods = {task.name: (task.offset, task.period) for task in tasks}
+        releases = [periods[hop.process][0] + (hop.job - 1) * periods[hop.process][1] for hop in hops]
+        assert [hop.release // US for hop in hops] == [release - origin for release in releases]
+
+
+@pytest.mark.parametrize("communication", [*Communication])
+@settings(max_examples=40)
+@given(systems(["one", "two"], ANY, varying=True, triggered=True), st.booleans())
+def test_the_hops_of_bounds_add_up(communication, drawn, controllers):
+    tasks, chain = drawn
+    model = built(tasks, chain)
+    if controllers:
+        structures = tuple(replace(each, kind=StructureKind.ECU) for each in model.hardware.structures)
+        model = replace(model, hardware=replace(model.hardware, structures=structures))
+    analysis = analyze_system(model, Settings(communication=communication))
+    assume(analysis.chains["chain"].values)
+    for quantity in EXPLAINED:
+        explanation = explain_chain(analysis, "chain", quantity)
+        if explanation.value is not None:
+            assert [hop.process for hop in check_sums(explanation)] == chain
+
+
+def test_the_worst_message_of_the_thesis():
+    """Taken one tick after the callback ran, 19 ticks before it runs again; the next control function also waits for a message."""
+    analysis = analyze_system(describe(ROOT / "samples" / "bodas-test-advanced.yaml").system, Settings(all_phases=True))
+    executor, callback, control = check_sums(explain_chain(analysis, "factor-to-output"))
+    assert (executor.process, executor.release, executor.start, executor.write) == ("Executor_Task", 0, 0, 25 * US)
+    assert (callback.process, callback.release, callback.start) == ("Message_Factor", 19_000 * US, 19_016 * US)
+    # 12 and 13 for the executor with a message, and 4 of its own.
+    assert (control.process, control.release, control.start) == ("Control_Function", 20_000 * US, 20_025 * US)
+    assert (control.write, control.wait, control.run) == (20_029 * US, 20_025 * US - 19_018 * US, 4 * US)
+
+
+def test_data_that_wait_for_another_controller():
+    tasks = [("A", 10, [ticks(4), write("x")], "one"), ("B", 10, [read("x"), ticks(1)], "two")]
+    events = (at("A", START), at("B", END))
+    analysis = analyze_system(system(tasks, events, cores=("one", "two"), controllers=True))
+    a, b = check_sums(explain_chain(analysis, "chain", Quantity.MAX_REACTION_TIME))
+    # The message arrives just after A has started, and its output just after B has: a period and an execution time each.
+    assert [(hop.wait // US, hop.run // US) for hop in (a, b)] == [(10, 4), (10, 1)]
+
+
+def test_a_chain_without_a_value():
+    tasks = [("A", 10, [ticks(11), write("x")]), ("B", 10, [read("x"), ticks(1)])]
+    explanation = explain_chain(analyze_system(system(tasks, (at("A", START), at("B", END)))), "chain")
+    assert (explanation.value, explanation.hops) == (None, ())
+    assert "'A' is unbounded" in explanation.reason
+
+
+@st.composite
+def chains(draw):
+    tasks = []
+    for _ in range(draw(st.integers(1, 4))):
+        period = draw(st.sampled_from([2, 3, 4, 5, 6, 10]))
+        response = draw(st.integers(1, period))
+        tasks.append(
+            ChainTask(period=period, response=response, offset=draw(st.integers(0, 9)), preempts_reader=draw(st.booleans()))
+        )
+    tasks[-1] = replace(tasks[-1], preempts_reader=False)
+    return tasks
+
+
+REACTIONS = {davare: davare.reaction_time, duerr: duerr.reaction_time, hamann: hamann.reaction_time, kloda: kloda.reaction_time}
+AGES = {duerr: duerr.reduced_data_age, becker: becker.reduced_data_age, bi: bi.reduced_data_age}
+
+
+@given(chains())
+def test_the_terms_of_a_bound_add_up_to_it(tasks):
+    for table, methods in ((terms.REACTION_TIME, REACTIONS), (terms.REDUCED_DATA_AGE, AGES)):
+        for paper, bound in methods.items():
+            found = table[paper.SOURCE](tasks)
+            assert len(found) == len(tasks)
+            assert sum(term.wait + term.run for term in found) == bound(tasks)
+    assert all(term.wait == task.period for term, task in zip(terms.REACTION_TIME[davare.SOURCE](tasks), tasks, strict=True))

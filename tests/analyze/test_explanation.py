@@ -1,0 +1,123 @@
+"""What a response time consists of: execution times by runnable, and the loads of what is served first."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from support import ROOT
+from test_system import system, ticks
+
+from amalthea_uros import describe
+from amalthea_uros.analyze.execution_shares import ACCESSES, OTHER, OVERHEADS, OWN
+from amalthea_uros.analyze.explanation import explain_process
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.mapping import TaskAllocation
+from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler
+from amalthea_uros.perf.software import Call, Case, Group, Loop, Runnable, Switch, Task
+from amalthea_uros.perf.stimuli import Counter, Periodic
+from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import MICROSECOND as US
+
+
+def tasks_on_a_core(*rows, runnables=()):
+    """Tasks of (name, period, activities, priority, deadline) at 1 MHz."""
+    return system(
+        ["core"],
+        [Periodic(name=name, period=period * US) for name, period, *_ in rows],
+        [Task(name=name, stimuli=(name,), activities=tuple(body)) for name, _, body, _, _ in rows],
+        [
+            TaskAllocation(task=name, scheduler="core", priority=priority, deadline=deadline and deadline * US)
+            for name, _, _, priority, deadline in rows
+        ],
+        runnables=runnables,
+        frequency=10**6,
+    )
+
+
+def execution(explanation):
+    return [(share.name, share.time and share.time // US, share.calls) for share in explanation.execution]
+
+
+class TestExecution:
+    def test_the_executor_of_the_thesis(self):
+        analysis = analyze_system(describe(ROOT / "samples" / "bodas-test-advanced.yaml").system)
+        spin, take = explain_process(analysis, "Executor_Task").execution
+        # 12 us in each job, 13 us more in every 20th.
+        assert (spin.name, spin.time, spin.counter, spin.is_runnable) == ("Executor_Task_Spin", 12 * US, None, True)
+        assert (take.name, take.time, take.counter.prescaler) == ("Take_Message_Factor", 13 * US, 20)
+
+    def test_calls_groups_and_branches(self):
+        runnables = (Runnable(name="step", activities=(ticks(3),)), Runnable(name="rare", activities=(ticks(10),)))
+        every_fourth = Counter(prescaler=4, offset=2)
+        body = [
+            Call(runnable="step"),
+            ticks(5),
+            Group(activities=(Call(runnable="step"), Call(runnable="rare", counter=every_fourth))),
+            Switch(cases=(Case(activities=(ticks(7),)), Case(activities=(ticks(2),)))),
+            Call(runnable="rare"),
+            ticks(1),
+        ]
+        analysis = analyze_system(tasks_on_a_core(("T", 100, body, 1, 100), runnables=runnables))
+        found = explain_process(analysis, "T")
+        assert execution(found) == [("step", 6, 2), (OWN, 6, 2), ("rare", 10, 1), (OTHER, 7, 1), ("rare", 10, 1)]
+        assert [share.counter for share in found.execution] == [None, None, every_fourth, None, None]
+        assert sum(share.time for share in found.execution) == found.process.wcet == 39 * US
+
+    def test_an_unknown_execution_time_is_where_the_loop_is(self):
+        runnables = (Runnable(name="step", activities=(ticks(3),)), Runnable(name="poll", activities=(Loop(activities=()),)))
+        body = [Call(runnable="step"), Call(runnable="poll")]
+        found = explain_process(analyze_system(tasks_on_a_core(("T", 100, body, 1, 100), runnables=runnables)), "T")
+        assert execution(found) == [("step", 3, 1), ("poll", None, 1)]
+        assert "loop" in found.execution[1].reason
+
+    @pytest.mark.parametrize("scale", [Fraction(1), Fraction(1, 3), Fraction(997, 1000)])
+    def test_shares_of_picoseconds_add_up(self, scale):
+        system = describe(ROOT / "samples" / "drive-and-lift.yaml").system
+        analysis = analyze_system(system, Settings(scale=scale))
+        for process in analysis.processes:
+            shares = explain_process(analysis, process.name).execution
+            assert sum(share.time for share in shares) == process.wcet
+            assert {share.name for share in shares if not share.is_runnable} <= {OWN, ACCESSES, OTHER, OVERHEADS}
+
+
+class TestLoads:
+    def test_an_overload_is_the_sum_of_the_loads(self):
+        rows = [("high", 10, [ticks(6)], 3, 10), ("middle", 20, [ticks(10)], 2, 20), ("low", 40, [ticks(2)], 1, 40)]
+        found = explain_process(analyze_system(tasks_on_a_core(*rows)), "middle")
+        assert [(load.name, load.priority, load.utilisation) for load in found.loads] == [
+            ("high", 3, Fraction(6, 10)),
+            ("middle", 2, Fraction(10, 20)),
+        ]
+        assert (found.load, found.supply) == (Fraction(11, 10), 1)
+        assert found.process.response.worst is None
+
+    def test_one_that_meets_its_deadline_has_none(self):
+        rows = [("high", 10, [ticks(6)], 3, 10), ("middle", 20, [ticks(10)], 2, 20)]
+        assert explain_process(analyze_system(tasks_on_a_core(*rows)), "high").loads == ()
+
+    def test_one_that_misses_its_deadline_has_both_interference_and_loads(self):
+        rows = [("high", 10, [ticks(6)], 3, 10), ("low", 20, [ticks(4)], 2, 9)]
+        found = explain_process(analyze_system(tasks_on_a_core(*rows)), "low")
+        assert [(share.name, share.jobs, share.time) for share in found.shares] == [("high", 1, 6 * US)]
+        assert found.load == Fraction(6, 10) + Fraction(4, 20)
+
+    def test_the_supply_of_a_server(self):
+        built = tasks_on_a_core(("T", 10, [ticks(4)], 1, 10), ("beside", 10, [ticks(1)], 1, 10))
+        parameters = [("capacity", 3), ("period", 10)]
+        server = Scheduler(
+            name="server",
+            policy=Policy.DEFERRABLE_SERVER,
+            parent=Parent(scheduler="core", priority=2),
+            parameters=tuple(Parameter(name=name, values=(Duration(time=time * US),)) for name, time in parameters),
+        )
+        (os,) = built.os.systems
+        first, second = built.mapping.tasks
+        built = replace(
+            built,
+            os=replace(built.os, systems=(replace(os, schedulers=(*os.schedulers, server)),)),
+            mapping=replace(built.mapping, tasks=(replace(first, scheduler="server"), second)),
+        )
+        found = explain_process(analyze_system(built), "T")
+        # 4 of 10 in a budget of 3 of 10; what runs outside does not count.
+        assert [(load.name, load.utilisation) for load in found.loads] == [("T", Fraction(4, 10))]
+        assert found.supply == Fraction(3, 10)
