@@ -27,7 +27,7 @@ class Share:
 
 def shares(analysis: Analysis, name: str) -> list[Share]:
     """The shares of all processes, largest first; empty if the method does not give them."""
-    solution = analysis.solution
+    solution = analysis.solution_of(name)
     response, scheduled = solution.responses.get(name), solution.context.scheduled.get(name)
     if response is None or response.worst is None or scheduled is None:
         return []
