@@ -84,7 +84,8 @@ def analyze_files(
     system = opened.system
     require("core", settings.frequencies, system.cores)
     require("process", settings.factors, system.processes)
-    require("callback with a phase", settings.phases, sources(system))
+    if settings.phases:
+        require("callback with a phase", settings.phases, sources(system))
     require("mode label", settings.modes, [label.name for label in system.software.mode_labels])
     analysis = analyze_system(system, settings)
     return AnalysisResult(
