@@ -11,7 +11,7 @@ import numpy as np
 from amalthea_uros.analyze.execution_shares import ExecutionShare, execution_shares
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core import periodic_tasks
-from amalthea_uros.analyze.results import Analysis, Claim, ProcessResult, Response, Verdict
+from amalthea_uros.analyze.results import Analysis, ProcessResult, Response, Verdict
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.scheduling import ScheduledProcess, Server
@@ -106,11 +106,11 @@ def _utilisation(solution: Solution, item: ScheduledProcess) -> Fraction | None:
 
 def shares(analysis: Analysis, name: str) -> list[Share]:
     """The shares of all processes, largest first; empty if the method does not give them."""
-    solution = analysis.solution
+    solution = analysis.solution_of(name)
     response, scheduled = solution.responses.get(name), solution.context.scheduled.get(name)
     if response is None or response.worst is None or scheduled is None:
         return []
-    tasks = periodic_tasks(scheduled.core, solution) if response.claim is Claim.EXACT else []
+    tasks = periodic_tasks(scheduled.core, solution) if response.method == schedule.METHOD else []
     found = _in_schedule(solution, scheduled, tasks) if tasks else _in_window(solution, scheduled, response)
     return sorted(found, key=lambda share: -share.time)
 

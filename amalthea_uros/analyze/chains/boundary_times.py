@@ -55,10 +55,8 @@ class BoundaryTimes:
 
     def _executed(self, position: ActivityPosition, including: bool) -> Numbers:
         """The demand that each job has executed before a position, or including it."""
-        process, context = self.stage.process, self.context
-        core = context.scheduled[process.name].core
-        before = (*position.before, position.activity) if including else position.before
-        demand = context.demand_model.of_activities(process, before, core)
+        core = self.context.scheduled[self.stage.process.name].core
+        demand = self.context.demand_model.of_position(position, core, including)
         table = schedule.demand_table(demand, self.demand_of)
         lead = len(table) - schedule.demand_cycle(demand)
         index = np.arange(len(self.jobs.releases))

@@ -44,7 +44,8 @@ class EventWindows:
         occurrences = self.evaluation.context.dataflow.events.of(self.event(name))
         if len(occurrences) > 1:
             raise UnknownError(f"the event {name!r} occurs at several positions")
-        if any(counter.prescaler > 1 for counter in (occurrences[0].position.counters if occurrences[0].position else ())):
+        position = occurrences[0].position
+        if position is not None and (position.counter is None or position.counter.prescaler > 1):
             raise UnknownError(f"the event {name!r} occurs in some jobs only")
         return occurrences[0]
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amalthea_uros.analyze.chains import counter_phases, job_chains
+from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import terms
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator, route_text
 from amalthea_uros.analyze.chains.job_chains import backward, build_job_chains, forward
@@ -18,13 +18,13 @@ from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
 from amalthea_uros.analyze.chains.stages import Stage
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
-from amalthea_uros.analyze.propagation import solve
+from amalthea_uros.analyze.phases import solutions_for_phases
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity, Value
 from amalthea_uros.perf.events import EventChain
-from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.routes import Route, routes
+from amalthea_uros.timing.phases import unknown_phases
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.units import Time
 
@@ -113,13 +113,13 @@ def explain_chain(analysis: Analysis, name: str, quantity: Quantity = Quantity.M
 
 
 def _evaluators(chain: EventChain, analysis: Analysis) -> Iterator[ChainEvaluator]:
-    """The system as analysed: with each phase of the counter at which the chain starts, if all of them were."""
-    context = analysis.solution.context
-    variants = list(counter_phases.variants(chain, context)) if context.settings.all_phases else []
-    for system in variants:
-        yield ChainEvaluator(solve(TimingContext.of(system, context.settings)))
-    if not variants:
-        yield ChainEvaluator(analysis.solution)
+    """The system as it can have been analysed: for each phase of everything, for each phase of what the chain passes, for none."""
+    solution = analysis.solution
+    evaluation = ChainEvaluator(solution)
+    for occurrences in (unknown_phases(solution.context.system), evaluation.occurrences(chain)):
+        if occurrences:
+            yield from map(ChainEvaluator, solutions_for_phases(solution, occurrences))
+    yield evaluation
 
 
 def _routes(chain: EventChain, evaluator: ChainEvaluator) -> list[Route]:

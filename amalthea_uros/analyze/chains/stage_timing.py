@@ -28,6 +28,7 @@ from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.software import Communication, Process, Trigger
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.counters import first_effect, is_always
 from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.demand import MAX_TIME_BASE
 from amalthea_uros.timing.limits import LIMIT
@@ -77,12 +78,17 @@ class StageTiming:
         min_delay = sum(self._min_delay(stage) for stage in triggered)
         counters = self._counters(stages)
         preempts_reader = self._preempts_reader(base, follower) and not triggered
-        task = self._chain_task(base, max_delay, counters, preempts_reader)
+        is_countable = all(stage.is_countable for stage in stages)
+        task = self._chain_task(base, max_delay, counters, is_countable, preempts_reader)
         releases = known_releases(base.process, self.context.system)
         if releases is None:
             return TimedStage(task=task, reason=f"the release times of {base.process.name!r} are unknown")
+        if not is_countable:
+            return TimedStage(task=task, reason=f"it is unknown which jobs of {base.process.name!r} take part")
         if len(counters) > 1:
             return TimedStage(task=task, reason=f"several counters select the jobs of {base.process.name!r}")
+        if not all(counter.is_phase_known for counter in counters):
+            return TimedStage(task=task, reason=f"the phase at which {base.process.name!r} takes part is unknown")
         if self._is_too_long(releases, counters):
             return TimedStage(task=task, reason=f"the jobs of {base.process.name!r} that take part are too far apart")
         if is_logical(base.enter) and is_logical(base.leave):
@@ -100,7 +106,7 @@ class StageTiming:
 
     def _is_too_long(self, releases: Periodic, counters: Sequence[Counter]) -> bool:
         """Whether two jobs that take part are too far apart in time, or have too many others between them."""
-        max_distance = max((max(counter.prescaler, counter.offset) for counter in counters), default=1)
+        max_distance = max((max(counter.prescaler, first_effect(counter)) for counter in counters), default=1)
         return max_distance > MAX_JOBS or (releases.offset + 4 * max_distance * releases.period) * self.unit > LIMIT
 
     # Processes
@@ -134,7 +140,7 @@ class StageTiming:
         if position is None or not position.is_certain:
             return 0
         core = self.context.scheduled[stage.process.name].core
-        demand = self.context.demand_model.of_activities(stage.process, position.before, core)
+        demand = self.context.demand_model.of_position(position, core, including=False)
         return demand.best * self.unit // self.context.time_base(stage.process.name)
 
     def _counters(self, stages: Sequence[Stage]) -> list[Counter]:
@@ -150,9 +156,11 @@ class StageTiming:
                 if isinstance(stimulus, InterProcess | EventTriggered) and stimulus.counter is not None:
                     found.add(stimulus.counter)
             found |= then.counters
-        return [counter for counter in found if counter.prescaler > 1 or counter.offset > 1]
+        return [counter for counter in found if not is_always(counter)]
 
-    def _chain_task(self, base: Stage, delay: Time, counters: Sequence[Counter], preempts_reader: bool) -> ChainTask:
+    def _chain_task(
+        self, base: Stage, delay: Time, counters: Sequence[Counter], is_countable: bool, preempts_reader: bool
+    ) -> ChainTask:
         name = base.process.name
         events = self.solution.event_models.get(name)
         max_interarrival = events.max_interarrival if events is not None else None
@@ -161,7 +169,7 @@ class StageTiming:
         offset = None if releases is None else releases.offset * self.unit
         for counter in counters:
             if offset is not None and releases is not None:
-                offset += ((counter.offset or counter.prescaler) - 1) * releases.period * self.unit
+                offset += (first_effect(counter) - 1) * releases.period * self.unit
             period *= counter.prescaler
         response = self._worst(base.process)
         if is_logical(base.leave):
@@ -171,9 +179,11 @@ class StageTiming:
         return ChainTask(
             name=name,
             period=period,
-            is_regular=max_interarrival is not None,
+            is_regular=max_interarrival is not None and is_countable,
             response=response + delay,
-            offset=offset if len(counters) < 2 else None,
+            offset=offset
+            if len(counters) < 2 and is_countable and all(counter.is_phase_known for counter in counters)
+            else None,
             preempts_reader=preempts_reader,
         )
 
@@ -282,10 +292,10 @@ class StageTiming:
         if counters:
             (counter,) = counters
             cycle = lcm(times.cycle, releases.period * self.unit * counter.prescaler)
-            lead = counter.offset * releases.period * self.unit
+            lead = first_effect(counter) * releases.period * self.unit
             times = times.extended(max(times.until, steady_state_start + lead) + 2 * cycle)
-            numbers = np.arange(1, len(times.releases) + 1)
-            taking_part = (numbers >= max(counter.offset, 1)) & ((numbers - counter.offset) % counter.prescaler == 0)
+            first, numbers = first_effect(counter), np.arange(1, len(times.releases) + 1)
+            taking_part = (numbers >= first) & ((numbers - first) % counter.prescaler == 0)
             times = ReadWriteTimes(
                 releases=times.releases[taking_part],
                 reads=times.reads[taking_part],

@@ -76,7 +76,12 @@ class Stage:
     @property
     def counters(self) -> set[Counter]:
         """The counters that let only some jobs take part."""
-        return {counter for position in self.positions for counter in position.counters}
+        return {position.counter for position in self.positions if position.counter is not None}
+
+    @property
+    def is_countable(self) -> bool:
+        """Whether the counters are those of its process alone, so that it is known how often its jobs take part."""
+        return all(position.counter is not None for position in self.positions)
 
 
 def stages(route: Route, communication: Communication | None) -> list[Stage]:

@@ -76,7 +76,7 @@ def test_the_hops_of_bounds_add_up(communication, drawn, controllers):
 
 def test_the_worst_message_of_the_thesis():
     """Taken one tick after the callback ran, 19 ticks before it runs again; the next control function also waits for a message."""
-    analysis = analyze_system(describe(ROOT / "samples" / "bodas-test-advanced.yaml").system, Settings(all_phases=True))
+    analysis = analyze_system(describe(ROOT / "samples" / "bodas-test-advanced.yaml").system)
     executor, callback, control = check_sums(explain_chain(analysis, "factor-to-output"))
     assert (executor.process, executor.release, executor.start, executor.write) == ("Executor_Task", 0, 0, 25 * US)
     assert (callback.process, callback.release, callback.start) == ("Message_Factor", 19_000 * US, 19_016 * US)
