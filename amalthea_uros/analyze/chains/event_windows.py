@@ -6,8 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.chains.stages import job_counter
 from amalthea_uros.perf.events import Event, EventSet
+from amalthea_uros.timing.counters import is_always
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
+from amalthea_uros.timing.dataflow.skipping import can_be_skipped
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.units import Time
 
@@ -44,7 +47,10 @@ class EventWindows:
         occurrences = self.evaluation.context.dataflow.events.of(self.event(name))
         if len(occurrences) > 1:
             raise UnknownError(f"the event {name!r} occurs at several positions")
-        if any(counter.prescaler > 1 for counter in (occurrences[0].position.counters if occurrences[0].position else ())):
+        position, context = occurrences[0].position, self.evaluation.context
+        if position is not None and (
+            not is_always(job_counter(position)) or can_be_skipped(position, context.system, context.settings.modes)
+        ):
             raise UnknownError(f"the event {name!r} occurs in some jobs only")
         return occurrences[0]
 
