@@ -1,19 +1,21 @@
-"""The maximum time until a job has executed a part of its demand, under fixed priorities with preemption.
+"""The maximum time until a job has executed a part of its demand, under fixed priorities.
 
-The busy window of `fixed_priority`, with only this part of the last job. An access after that part takes no time, and the job may
-make it only when it has the core again: what arrives at the end of the window counts, too. Since times are integers, this is the
-window up to the beginning of one unit more.
+The busy window of `fixed_priority`, with only this part of the last job: as long as that has not been executed, the core serves earlier
+jobs, tasks of higher priority, or the one task of lower priority that blocks. This holds for tasks of any preemption mode, because none
+lets tasks of lower priority go first once it has started; only the advantage of not being preempted is given away.
+
+An access after that part takes no time, and the job may make it only when it has the core again: what arrives at the end of the window
+counts, too. Since times are integers, this is the window up to the beginning of one unit more.
 """
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.response_times import fixed_priority
+from amalthea_uros.analyze.response_times import fixed_priority, non_preemptive
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.timing.critical_sections import semaphores_of
 from amalthea_uros.timing.event_models import rescaled
-from amalthea_uros.timing.preemption import is_preemptive
 from amalthea_uros.timing.scheduling import ScheduledProcess, Server
 from amalthea_uros.units import Time
 
@@ -33,8 +35,7 @@ def time_until_executed(name: str, executed: Time, solution: Solution) -> Time |
     here = context.served(scheduled.core, None)
     above = [item for item in here if item.rank >= scheduled.rank and item.name != name]
     if (
-        response.method != fixed_priority.METHOD
-        or not is_preemptive(scheduled)
+        response.method not in (fixed_priority.METHOD, non_preemptive.METHOD)
         or scheduled.server is not None
         or any(isinstance(item, Server) or item.rank == scheduled.rank for item in above)
         or any(item.name in context.decisions or _can_wait(item, solution) for item in here)
