@@ -89,6 +89,14 @@ class TestCounters:
         # Taken in the second job at 10 + 3, used in the eleventh at 100 + 3 to 5; the message before it came 500 earlier.
         assert (values["max_reduced_reaction_time"], values["max_reaction_time"]) == (92, 592)
 
+    @pytest.mark.parametrize("offset", [1, 1000])
+    def test_the_first_jobs_of_a_counter_can_come_late(self, offset):
+        # Jobs 1, 4, 7 and so on, or those from 1000 on; the other callback is in odd jobs: in the same one, or in the next one.
+        _, values, claims, _ = evaluate(self.build(Counter(prescaler=3, offset=offset), Counter(prescaler=2, offset=1), True))
+        assert claims == {"exact"}
+        assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (3, 12)
+        assert values["max_reaction_time"] == 12 + 30
+
     COUNTERS = st.builds(Counter, prescaler=st.integers(1, 5), offset=st.integers(0, 7))
 
     @settings(max_examples=60)
