@@ -13,7 +13,7 @@ demo: $(READY)
 	$(BIN)/amuros info --schema build/app.amxmi
 	$(BIN)/amuros check samples/bodas-test-advanced.yaml
 	$(BIN)/amuros analyze build/app.amxmi
-	$(BIN)/amuros analyze build/app.amxmi --chain factor-to-output --any-phase
+	$(BIN)/amuros analyze build/app.amxmi --chain factor-to-output
 	sed 's/rate: 50 Hz/rate: 100 Hz/' samples/bodas-test-advanced.yaml > build/faster.yaml
 	$(BIN)/amuros build build/faster.yaml -o build/faster.amxmi
 	$(BIN)/amuros diff build/app.amxmi build/faster.amxmi || true

@@ -9,7 +9,7 @@ import numpy as np
 
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core import periodic_tasks
-from amalthea_uros.analyze.results import Analysis, Claim, Response
+from amalthea_uros.analyze.results import Analysis, Response
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.scheduling import ScheduledProcess
@@ -27,11 +27,11 @@ class Share:
 
 def shares(analysis: Analysis, name: str) -> list[Share]:
     """The shares of all processes, largest first; empty if the method does not give them."""
-    solution = analysis.solution
+    solution = analysis.solution_of(name)
     response, scheduled = solution.responses.get(name), solution.context.scheduled.get(name)
     if response is None or response.worst is None or scheduled is None:
         return []
-    in_schedule = response.claim is Claim.EXACT
+    in_schedule = response.method == schedule.METHOD
     found = _in_schedule(solution, scheduled) if in_schedule else _in_window(solution, scheduled, response)
     return sorted(found, key=lambda share: -share.time)
 

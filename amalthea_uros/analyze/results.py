@@ -236,7 +236,9 @@ class Analysis:
 
     Attributes
     ----------
-    solution : the response times with their timing context, for explanations and proposals
+    solution : the response times with their timing context, for explanations and proposals; for unknown phases, any job may take
+        what comes from outside
+    worst_solutions : for each process the solution of the phase in which its response time is the worst; empty if all are known
     assumptions : on which the numbers are based
     findings : what the analysis does not take into account
     """
@@ -249,6 +251,11 @@ class Analysis:
     requirements: Results[RequirementResult]
     assumptions: tuple[str, ...]
     findings: tuple[Finding, ...]
+    worst_solutions: Mapping[str, Solution] = field(default_factory=dict, repr=False, compare=False)
+
+    def solution_of(self, process: str) -> Solution:
+        """The solution that the response time of a process is from."""
+        return self.worst_solutions.get(process, self.solution)
 
     def __getitem__(self, process: str) -> ProcessResult:
         """The result of a process by its name.

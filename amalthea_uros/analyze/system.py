@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from amalthea_uros.analyze.chains import counter_phases
 from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.phases import MAX_COMBINATIONS, is_too_much, merged, merged_chain
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.requirements import evaluate_requirements
 from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessorResult, ProcessResult, Response, Results, Verdict
@@ -18,6 +18,14 @@ from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.overheads import COUNTED
+from amalthea_uros.timing.phases import (
+    Occurrence,
+    phase_assumptions,
+    phase_count,
+    phase_variants,
+    unknown_phases,
+    with_stated_phases,
+)
 from amalthea_uros.timing.preemption import preemption
 from amalthea_uros.timing.releases import response_time_limits
 from amalthea_uros.timing.settings import Settings
@@ -31,13 +39,44 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
             f"expected a System, not {type(system).__name__}; extract(model).system is the system of an AMALTHEA model, "
             "describe(path).system that of an app.yaml; analyze_files(path) takes either file"
         )
-    context = TimingContext.of(system, settings)
-    solution = solve(context)
+    settings = settings or Settings()
+    system = with_stated_phases(system, settings.phases)
+    solution = solve(TimingContext.of(system, settings))
+    unknown = unknown_phases(system)
+    every = _of_all_phases(solution, unknown) if unknown else None
+    found = every or _analysis(solution)
+    phases = phase_assumptions(system, are_all_evaluated=every is not None)
+    return replace(found, assumptions=tuple(dict.fromkeys((*found.assumptions, *phases))))
+
+
+def _of_all_phases(solution: Solution, unknown: Sequence[Occurrence]) -> Analysis | None:
+    """The analysis over all combinations of unknown phases; None if there are too many."""
+    solutions = _solutions(solution, unknown)
+    return merged([_analysis(each) for each in solutions], solution) if solutions else None
+
+
+def _solutions(solution: Solution, unknown: Sequence[Occurrence]) -> list[Solution]:
+    """The solution for each combination of phases; none if there are too many."""
+    count = phase_count(unknown)
+    if count > MAX_COMBINATIONS:
+        return []
+    found: list[Solution] = []
+    for variant in phase_variants(solution.context.system, unknown):
+        found.append(solve(TimingContext.of(variant, solution.context.settings)))
+        if is_too_much(found[0], count):
+            return []
+    return found
+
+
+def _analysis(solution: Solution) -> Analysis:
+    """The analysis of a system; chains are evaluated for all phases of the jobs that they pass, other unknown phases are any job."""
+    context = solution.context
+    system = context.system
     _note_ignored(solution)
     limits = response_time_limits(system)
     processes = Results(_process(name, solution, limits) for name in system.processes)
     evaluation = ChainEvaluator(solution)
-    chains = Results(_chains(evaluation))
+    chains = Results(_chain(chain, evaluation) for chain in system.events.chains)
     verdicts = evaluate_requirements(system, {process.name: process for process in processes}, context.notes)
     requirements = Results((*verdicts, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
     return Analysis(
@@ -51,26 +90,13 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     )
 
 
-def _chains(evaluation: ChainEvaluator) -> Iterator[ChainResult]:
-    """The chains; over all phases of the counters at which they start if the settings say so."""
-    context = evaluation.context
-    for chain in context.system.events.chains:
-        found = evaluation.chain(chain)
-        if context.settings.all_phases and found.values:
-            found = _over_all_phases(found, chain, context)
-        yield found
-
-
-def _over_all_phases(found: ChainResult, chain: EventChain, context: TimingContext) -> ChainResult:
-    """The result of a chain over all phases of the counter at which it starts; no values if these are too many."""
-    try:
-        variants = [TimingContext.of(system, context.settings) for system in counter_phases.variants(chain, context)]
-    except counter_phases.TooManyPhasesError as error:
-        # The modelled phase must not stand for all of them.
-        context.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {error}", chain)
-        return replace(found, values=(), all_values=(), reason=str(error))
-    results = [ChainEvaluator(solve(variant)).chain(chain) for variant in variants]
-    return counter_phases.merged(results) if results else found
+def _chain(chain: EventChain, evaluation: ChainEvaluator) -> ChainResult:
+    """A chain, over all unknown phases of the jobs that it passes if these are not too many."""
+    passed = evaluation.occurrences(chain)
+    solutions = _solutions(evaluation.solution, passed) if passed else []
+    if not solutions:
+        return evaluation.chain(chain)
+    return merged_chain([ChainEvaluator(solution).chain(chain) for solution in solutions])
 
 
 def _note_ignored(solution: Solution) -> None:

@@ -14,7 +14,7 @@ from amalthea_uros.cli.output import Output, output_option, show_findings, write
 from amalthea_uros.perf.software import Communication
 from amalthea_uros.services.analyze import AnalysisResult, ChainDetail, Explanation, analyze_files, chain_detail, explain
 from amalthea_uros.timing.settings import Memory, Settings
-from amalthea_uros.units import Frequency, parse_frequency
+from amalthea_uros.units import Frequency, Time, parse_frequency, parse_time
 
 T = TypeVar("T")
 
@@ -46,6 +46,13 @@ def _clock(text: str) -> Frequency:
     if frequency <= 0:
         raise ValueError("a frequency must be greater than zero")
     return frequency
+
+
+def _phase(text: str) -> Time:
+    phase = parse_time(text)
+    if phase < 0:
+        raise ValueError("a phase must not be negative")
+    return phase
 
 
 @click.command("analyze")
@@ -94,11 +101,11 @@ def _clock(text: str) -> Frequency:
     help="With --chain: show the tightest values (auto), or those of all methods.",
 )
 @click.option(
-    "--all-phases",
-    "--any-phase",
-    "all_phases",
-    is_flag=True,
-    help="Evaluate chains for all phases of the counters at which they start.",
+    "--phase",
+    "phases",
+    multiple=True,
+    type=Assignment("CALLBACK=TIME", _phase),
+    help="Time at which the first message of a callback is taken, e.g. Message_Factor=5ms; may be repeated.",
 )
 @click.option("--explain", "process", metavar="PROCESS", help="Show the terms of the response time of a process.")
 @click.option(
@@ -118,7 +125,7 @@ def command(
     chain: str | None,
     communication: str,
     method: str,
-    all_phases: bool,
+    phases: tuple[tuple[str, Time], ...],
     process: str | None,
     with_sensitivity: bool,
     with_priorities: bool,
@@ -135,7 +142,7 @@ def command(
         modes=dict(modes),
         memory=Memory(memory),
         communication=_COMMUNICATION.get(communication),
-        all_phases=all_phases,
+        phases=dict(phases),
     )
     result = analyze_files(
         paths, settings, with_sensitivity=with_sensitivity, with_priorities=with_priorities, all_methods=method == "all"

@@ -14,16 +14,20 @@ from amalthea_uros.units import Frequency, Time
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counter:
-    """Lets only every n-th time take effect; counting goes on across jobs.
+    """Lets only every n-th time take effect; counting goes on across jobs and callers.
 
     Attributes
     ----------
     prescaler : the n
-    offset : number of the first effective time, counted from 1; 0 stands for the prescaler itself
+    offset : number of the first effective time, counted from 1; below 1 only its remainder modulo the prescaler counts
+    source : the message or timer that the counter represents; counters of a process with the same source take effect together
+    is_phase_known : whether the offset is stated; otherwise any time can be the first effective one
     """
 
     prescaler: int = 1
     offset: int = 0
+    source: str = ""
+    is_phase_known: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,6 +16,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require
 from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.timing.phases import sources
 from amalthea_uros.timing.settings import Settings
 
 
@@ -75,13 +76,16 @@ def analyze_files(
     Raises
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
-    InvalidArgumentError : the settings name a core or a mode label that does not exist.
+    InvalidArgumentError : the settings name a core, process, callback or mode label that does not exist, or a phase in which no job is
+        released.
     """
     files, settings = as_paths(paths), settings or Settings()
     opened = open_system(files)
     system = opened.system
     require("core", settings.frequencies, system.cores)
     require("process", settings.factors, system.processes)
+    if settings.phases:
+        require("callback with a phase", settings.phases, sources(system))
     require("mode label", settings.modes, [label.name for label in system.software.mode_labels])
     analysis = analyze_system(system, settings)
     return AnalysisResult(

@@ -32,6 +32,12 @@ class Callback(Section):
     """Where it runs; default: `callbacks` of the executor."""
     task_period: Duration | None = None
     """Period of its task; default: the longest available period that the rules allow."""
+    runs_when: Literal["activated", "due"] | None = None
+    """In which activations of its task it runs, if that is activated more often than the callback is due: in all of them, or only in
+    every n-th; default: `activated` for callbacks of messages, which then use the latest message, and `due` for timers."""
+    phase: Offset | None = None
+    """Activation of the executor in which it is due for the first time, e.g. when the first message is taken; default: unknown, so that
+    all phases are analysed."""
     offset: Offset = 0
     """Time of the first activation of its task."""
     priority: Priority | None = None

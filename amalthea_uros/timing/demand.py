@@ -39,7 +39,8 @@ from amalthea_uros.perf.software import (
 )
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH, TooComplexError, positions
+from amalthea_uros.timing.counters import CallSites, UncountableError, first_effect
+from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH, ActivityPosition, TooComplexError, positions
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.timing.means import mean
 from amalthea_uros.timing.memory import MemoryAccess, count_of
@@ -63,12 +64,14 @@ class DemandModel:
     settings: Settings = field(default_factory=Settings)
     memory: MemoryAccess = field(init=False)
     overheads: Overheads = field(init=False)
+    sites: CallSites = field(init=False)
     _of_runnables: dict[tuple[str, str], tuple[Frame, ...]] = field(default_factory=dict)
     _in_preparation: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         self.memory = MemoryAccess(self.system, self.notes, self.frequency)
         self.overheads = Overheads(self.system)
+        self.sites = CallSites(self.system)
 
     def time_base(self, core: str) -> int:
         """Time units per picosecond on a core; 1 if they would be too small, and then demand is rounded outwards."""
@@ -103,14 +106,28 @@ class DemandModel:
         """Demand of some activities of a process, without overheads of the process; raises as `of_process`."""
         return MultiframeDemand(_scaled(_summed(self._frames(activities, core, ())), self.settings.factors.get(process.name)))
 
+    def of_position(self, position: ActivityPosition, core: str, including: bool) -> MultiframeDemand:
+        """Demand that jobs have executed when they reach a position, or have left it; raises as `of_process`."""
+        frames: list[Frame] = []
+        for depth, (activities, index) in enumerate(position.outer, start=1):
+            is_last = depth == len(position.outer)
+            here = self._frames(activities[: index + (including and is_last)], core, ())
+            for outer, at in reversed(position.outer[: depth - 1]):
+                call = outer[at]
+                if isinstance(call, Call):
+                    here = [counted for frame in here if (counted := self._counted(frame, call)) is not None]
+            frames += here
+        return MultiframeDemand(_scaled(_summed(frames), self.settings.factors.get(position.process.name)))
+
     def of_decision(self, scheduler: Scheduler, core: str) -> MultiframeDemand:
         """Demand of one decision of a scheduler; raises as `of_process`."""
-        return MultiframeDemand(_summed(self._frames(scheduler.overhead, core, ())))
+        # The decisions for all tasks count.
+        return MultiframeDemand(_summed([_any_time(frame) for frame in self._frames(scheduler.overhead, core, ())]))
 
     def _copies(self, process: Process, core: str) -> list[Frame]:
         """Copies of the labels that a process reads, at its start, and of those that it writes, at its end."""
         try:
-            here = [position.activity for position in positions(process, self.system)]
+            here = [position.activity for position in positions(process, self.system, self.sites)]
         except TooComplexError as error:
             raise UnknownDemandError(str(error)) from None
         found = dict.fromkeys((access.label, access.kind) for access in here if isinstance(access, LabelAccess))
@@ -143,10 +160,12 @@ class DemandModel:
                 return self._frames(inner, core, above)
             case ProbabilitySwitch(branches=branches):
                 weights = [branch.weight for branch in branches]
-                return _one_of([self._frames(branch.activities, core, above) for branch in branches], weights)
+                each_occurs = not any(weights) or all(weights)
+                return _one_of([self._frames(branch.activities, core, above) for branch in branches], weights, each_occurs)
             case Switch():
                 alternatives = [self._frames(inner, core, above) for inner in self._possible(activity)]
-                return _one_of(alternatives, [1.0] * len(alternatives))
+                # The modes can exclude branches, or combinations of them.
+                return _one_of(alternatives, [1.0] * len(alternatives), each_occurs=len(alternatives) == 1)
             case Loop(condition=condition):
                 if holds(condition, self.settings.modes) is False:
                     return []
@@ -190,20 +209,33 @@ class DemandModel:
             case False:
                 return []
             case None if runnable.condition is not None:
-                frames = [replace(_any_time(frame), best=0) for frame in frames]
+                frames = [replace(_any_time(frame), best=0, is_certain=not frame.worst) for frame in frames]
         if call.times is not None:
             frames = [_repeated(frame, call.times) for frame in frames]
-        return [_counted(frame, call.counter) for frame in frames] if call.counter else frames
+        return [counted for frame in frames if (counted := self._counted(frame, call)) is not None]
 
     def _runnable(self, runnable: Runnable, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
-        """The frames of a runnable; the jobs on which its inner counters fall are unknown."""
+        """The frames of a runnable, by its own executions."""
         key = (runnable.name, core)
         if key not in self._of_runnables:
             self._prepare(runnable, core)
         if key not in self._of_runnables:
             inner = self._frames(runnable.activities, core, (*above, runnable.name))
-            self._of_runnables[key] = _summed([_any_time(frame) for frame in inner])
+            self._of_runnables[key] = _summed(inner)
         return self._of_runnables[key]
+
+    def _counted(self, frame: Frame, call: Call) -> Frame | None:
+        """A frame of a called runnable in the executions of the caller; None if it is never executed."""
+        inner = Counter(prescaler=frame.prescaler, offset=frame.offset, is_phase_known=frame.is_certain)
+        try:
+            counter = self.sites.lifted(call, inner)
+        except UncountableError:
+            prescaler = frame.prescaler * (call.counter.prescaler if call.counter else 1)
+            return Frame(worst=frame.worst, best=0, average=frame.average / prescaler, is_certain=False)
+        if counter is None:
+            return None
+        is_certain = frame.is_certain and counter.is_phase_known
+        return replace(frame, prescaler=counter.prescaler, offset=first_effect(counter), is_certain=is_certain)
 
     def _prepare(self, runnable: Runnable, core: str) -> None:
         """Find the frames of the called runnables first, innermost first, which avoids deep recursion."""
@@ -214,7 +246,7 @@ class DemandModel:
             if (name, core) not in self._of_runnables:
                 with suppress(UnknownDemandError):
                     frames = self._frames(self.system.runnables[name].activities, core, (name,))
-                    self._of_runnables[name, core] = _summed([_any_time(frame) for frame in frames])
+                    self._of_runnables[name, core] = _summed(frames)
         self._in_preparation.remove(core)
 
     def _called(self, runnable: str) -> list[str]:
@@ -253,9 +285,9 @@ class DemandModel:
 
 def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:
     """The frames of the same jobs added up."""
-    found: dict[tuple[int, int], Frame] = {}
+    found: dict[tuple[int, int, bool], Frame] = {}
     for frame in frames:
-        key = (frame.prescaler, frame.offset)
+        key = (frame.prescaler, frame.offset, frame.is_certain)
         same = found.get(key)
         found[key] = (
             frame
@@ -277,16 +309,11 @@ def _scaled(frames: tuple[Frame, ...], factor: Fraction | None) -> tuple[Frame, 
     )
 
 
-def _counted(frame: Frame, counter: Counter) -> Frame:
-    """A frame that is executed when its counter allows it."""
-    return replace(frame, prescaler=counter.prescaler, offset=counter.offset)
-
-
 def _any_time(frame: Frame) -> Frame:
     """A frame on unknown jobs: any job may execute it, and any job may not."""
-    if frame.prescaler == 1 and frame.offset <= 1:
+    if frame.is_always or (frame.prescaler == 1 and not frame.is_certain):
         return frame
-    return Frame(worst=frame.worst, best=0, average=frame.average / frame.prescaler)
+    return Frame(worst=frame.worst, best=0, average=frame.average / frame.prescaler, is_certain=False)
 
 
 def _repeated(frame: Frame, times: Count | float) -> Frame:
@@ -297,8 +324,8 @@ def _repeated(frame: Frame, times: Count | float) -> Frame:
     )
 
 
-def _one_of(alternatives: Sequence[Sequence[Frame]], weights: Sequence[float]) -> Sequence[Frame]:
-    """One frame that bounds all alternatives."""
+def _one_of(alternatives: Sequence[Sequence[Frame]], weights: Sequence[float], each_occurs: bool) -> Sequence[Frame]:
+    """One frame that bounds all alternatives; `each_occurs`: whether each job can take any of them."""
     plain = [[_any_time(frame) for frame in frames] for frames in alternatives]
     worst = [sum(frame.worst for frame in frames) for frames in plain]
     best = [sum(frame.best for frame in frames) for frames in plain]
@@ -309,4 +336,8 @@ def _one_of(alternatives: Sequence[Sequence[Frame]], weights: Sequence[float]) -
     if not total:
         weights, total = [1.0] * len(worst), Fraction(len(worst))
     weighted = sum((value * Fraction(weight) for value, weight in zip(average, weights, strict=True)), Fraction(0))
-    return [Frame(worst=max(worst), best=min(best), average=weighted / total)]
+    is_certain = all(frame.is_certain for frames in plain for frame in frames)
+    is_same = max(worst) == min(best)
+    return [
+        Frame(worst=max(worst), best=min(best), average=weighted / total, is_certain=is_certain and (each_occurs or is_same))
+    ]

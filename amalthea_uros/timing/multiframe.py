@@ -19,7 +19,8 @@ class Frame:
     Attributes
     ----------
     average : mean, for loads
-    offset : number of the first such job, counted from 1; 0 means the prescaler itself
+    offset : number of the first such job, counted from 1; below 1 only its remainder modulo the prescaler counts
+    is_certain : whether exactly these jobs have the demand; otherwise any job may have it or not, but at most every n-th one
     """
 
     worst: Time
@@ -27,10 +28,16 @@ class Frame:
     average: Fraction = Fraction(0)
     prescaler: int = 1
     offset: int = 0
+    is_certain: bool = True
+
+    @property
+    def is_always(self) -> bool:
+        """Whether each job has the demand."""
+        return self.is_certain and self.prescaler == 1 and self.offset <= 1
 
     def falls_on(self, job: int) -> bool:
-        """Whether a job, counted from 1, executes it."""
-        return job >= max(self.offset, 1) and (job - self.offset) % self.prescaler == 0
+        """Whether a job, counted from 1, is one of those in which it is known to be executed."""
+        return self.is_certain and job >= max(self.offset, 1) and (job - self.offset) % self.prescaler == 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +50,11 @@ class MultiframeDemand:
     def constant(cls, worst: Time, best: Time | None = None) -> MultiframeDemand:
         """The same demand for all jobs."""
         return cls((Frame(worst=worst, best=worst if best is None else best, average=Fraction(worst)),))
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether it is known which jobs have which demand."""
+        return all(frame.is_certain for frame in self.frames)
 
     def max_demand(self, count: int) -> Time:
         """Maximum demand of that many consecutive jobs."""
@@ -64,7 +76,7 @@ class MultiframeDemand:
 
     def worst_of(self, job: int) -> Time:
         """Worst-case execution time of the n-th job, counted from 1."""
-        return sum(frame.worst for frame in self.frames if frame.falls_on(job))
+        return sum(frame.worst for frame in self.frames if not frame.is_certain or frame.falls_on(job))
 
     def best_of(self, job: int) -> Time:
         """Best-case execution time of the n-th job, counted from 1."""

@@ -8,7 +8,7 @@ from enum import StrEnum
 from fractions import Fraction
 
 from amalthea_uros.perf.software import Communication
-from amalthea_uros.units import Frequency
+from amalthea_uros.units import Frequency, Time
 
 
 class Memory(StrEnum):
@@ -30,7 +30,7 @@ class Settings:
     factors : on the execution times of single processes
     modes : values of mode labels that do not change
     communication : of all label accesses; None: as modelled, implicit by default
-    all_phases : evaluate chains for all phases of the counters at which they start
+    phases : times at which what comes from outside, such as messages, is first taken; other phases are as modelled
     """
 
     frequencies: Mapping[str, Frequency] = field(default_factory=dict)
@@ -39,7 +39,7 @@ class Settings:
     modes: Mapping[str, str] = field(default_factory=dict)
     memory: Memory = Memory.NONE
     communication: Communication | None = None
-    all_phases: bool = False
+    phases: Mapping[str, Time] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name, kind in (("memory", Memory), ("communication", Communication)):

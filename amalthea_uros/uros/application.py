@@ -14,7 +14,6 @@ from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.executor import (
     ExecutorRunnables,
     PlannedCall,
-    call_counter,
     in_executor_calls,
     message_cost,
     own_task_calls,
@@ -27,6 +26,7 @@ from amalthea_uros.uros.periods import (
     choose_task_period,
     period_candidates,
 )
+from amalthea_uros.uros.phases import ExecutorPhases, own_task_counter
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
 
@@ -52,7 +52,16 @@ def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tu
     for callback in outside:
         if callback.name in periods:
             _add_own_task(context, callback, periods[callback.name], bodies[callback.name])
+    _check_phases(context, callbacks, chosen.period)
     return (chosen, *choices)
+
+
+def _check_phases(context: AssemblyContext, callbacks: Sequence[Callback], period: Time) -> None:
+    calls = [call for task in context.tasks for call in task.activities if isinstance(call, Call)]
+    counted = {call.counter.source for call in calls if call.counter is not None}
+    phases = ExecutorPhases.of(context.description.middleware.executor, period, callbacks)
+    for callback in callbacks:
+        phases.check(callback, callback.name in counted, context.notes)
 
 
 def _executor_calls(
@@ -66,10 +75,11 @@ def _executor_calls(
     runnables = ExecutorRunnables(
         middleware=context.description.middleware, converter=context.converter, core=core, channels=context.channels
     )
+    phases = ExecutorPhases.of(context.description.middleware.executor, period, (*outside, *inside))
     return [
         PlannedCall(runnable=runnables.spin(timer_count((*outside, *inside)))),
-        *own_task_calls(outside, runnables, period),
-        *in_executor_calls(inside, bodies, runnables, period),
+        *own_task_calls(outside, runnables, phases),
+        *in_executor_calls(inside, bodies, runnables, phases),
     ]
 
 
@@ -124,15 +134,16 @@ def body_name(callback: Callback) -> str:
 
 
 def _add_own_task(context: AssemblyContext, callback: Callback, period: Time, body: Runnable) -> None:
-    """Add the task of a callback; if it is activated more often than the callback is due, it calls it every n-th time."""
+    """Add the task of a callback."""
     section = callback.section
+    counter = own_task_counter(callback, period) if callback.runs_when_due else None
     context.runnables[body.name] = body
     context.tasks.append(
         PlannedTask(
             name=callback.name,
             core=_core(context, callback, context.controller.first_core),
             stimuli=(context.stimuli.periodic(period, section.offset, callback.origin),),
-            activities=(Call(runnable=body.name, counter=call_counter(callback.interval, period)),),
+            activities=(Call(runnable=body.name, counter=counter),),
             period=period,
             priority=section.priority,
             deadline=section.deadline,

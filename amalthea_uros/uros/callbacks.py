@@ -73,6 +73,11 @@ class Callback:
         return self.section.name
 
     @property
+    def runs_when_due(self) -> bool:
+        """Whether it runs only in the activations of its own task in which it is due, instead of all."""
+        return (self.section.runs_when or ("due" if self.kind is CallbackKind.TIMER else "activated")) == "due"
+
+    @property
     def origin(self) -> Location | None:
         """Where the callback is described."""
         return self.section.location()

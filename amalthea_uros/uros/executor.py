@@ -21,6 +21,7 @@ from amalthea_uros.spec.middleware import Executor, MessageCost, Middleware
 from amalthea_uros.units import DataSize, Time
 from amalthea_uros.uros.callbacks import Callback, CallbackKind
 from amalthea_uros.uros.demand import DemandConverter
+from amalthea_uros.uros.phases import ExecutorPhases
 
 _BITS_PER_BYTE = 8
 
@@ -86,22 +87,18 @@ def message_cost(cost: MessageCost, size: DataSize | None) -> list[ExecutionTime
     return [cost.fixed, cost.per_byte * -(-size // _BITS_PER_BYTE)]
 
 
-def call_counter(interval: Time, period: Time) -> Counter | None:
-    """The counter of a call that is due once per interval in a task of a period; rounded towards more frequent calls."""
-    prescaler = max(1, interval // period)
-    return Counter(prescaler=prescaler) if prescaler > 1 else None
-
-
-def own_task_calls(callbacks: Iterable[Callback], runnables: ExecutorRunnables, period: Time) -> Iterator[PlannedCall]:
+def own_task_calls(
+    callbacks: Iterable[Callback], runnables: ExecutorRunnables, phases: ExecutorPhases
+) -> Iterator[PlannedCall]:
     """The calls of the executor for callbacks with their own tasks."""
     for callback in callbacks:
         runnable = runnables.take_or_notify(callback)
         if runnable.activities:
-            yield PlannedCall(runnable=runnable, counter=call_counter(callback.interval, period))
+            yield PlannedCall(runnable=runnable, counter=phases.counter(callback, callback.interval))
 
 
 def in_executor_calls(
-    callbacks: Sequence[Callback], bodies: Mapping[str, Runnable], runnables: ExecutorRunnables, period: Time
+    callbacks: Sequence[Callback], bodies: Mapping[str, Runnable], runnables: ExecutorRunnables, phases: ExecutorPhases
 ) -> Iterator[PlannedCall]:
     """The calls of the executor for callbacks that run in it, in their order.
 
@@ -110,7 +107,7 @@ def in_executor_calls(
     bodies : the runnable of each callback
     """
     executor = runnables.middleware.executor
-    counters = {callback.name: _triggered_counter(callback, callbacks, executor, period) for callback in callbacks}
+    counters = {callback.name: _triggered_counter(callback, callbacks, executor, phases) for callback in callbacks}
     takes = {
         callback.name: PlannedCall(runnable=runnable, counter=counters[callback.name])
         for callback in callbacks
@@ -128,15 +125,17 @@ def in_executor_calls(
         yield run
 
 
-def _triggered_counter(callback: Callback, callbacks: Sequence[Callback], executor: Executor, period: Time) -> Counter | None:
-    """The counter of the call of a callback under the trigger condition."""
+def _triggered_counter(
+    callback: Callback, callbacks: Sequence[Callback], executor: Executor, phases: ExecutorPhases
+) -> Counter | None:
+    """The counter of the call of a callback under the trigger condition; callbacks that wait for the same event are due together."""
     trigger = executor.trigger
-    due = callback.interval
-    if trigger.one is not None:
-        due = max(due, next((other.interval for other in callbacks if other.name == trigger.one), due))
-    elif trigger.when == "all":
-        due = max(other.interval for other in callbacks)
-    return call_counter(due, period)
+    one = next((other for other in callbacks if other.name == trigger.one), None)
+    if one is not None and one.interval >= callback.interval:
+        return phases.counter(callback, one.interval, waits_for=one.name)
+    if trigger.one is None and trigger.when == "all" and len(callbacks) > 1:
+        return phases.counter(callback, max(other.interval for other in callbacks), waits_for=executor.name)
+    return phases.counter(callback, callback.interval)
 
 
 def timer_count(callbacks: Iterable[Callback]) -> int:

@@ -78,7 +78,8 @@ def choose_task_period(
     for period in candidates.for_callback(callback):
         violation = violated_rule(callback, period, wcet, candidates)
         if violation is None:
-            return PeriodChoice(task=callback.name, period=period, reason=_reason(callback, candidates))
+            reason = _reason(callback, candidates) + _when_it_runs(callback, period)
+            return PeriodChoice(task=callback.name, period=period, reason=reason)
         violations.setdefault(violation, []).append(time_text(period))
     reasons = "; ".join(f"{', '.join(periods)} ({violation})" for violation, periods in violations.items())
     message = f"no available task period fits {callback.name!r}: {reasons}"
@@ -100,7 +101,15 @@ def _check_task_period(
     elif violation is not None:
         advice = "Set another period, or remove 'task_period' to have one chosen."
         notes.error("UR102", f"{subject} is {violation}", location, advice)
-    return PeriodChoice(task=callback.name, period=period, reason=_SET_BY_USER)
+    return PeriodChoice(task=callback.name, period=period, reason=_SET_BY_USER + _when_it_runs(callback, period))
+
+
+def _when_it_runs(callback: Callback, period: Time) -> str:
+    """In which activations of its task a callback runs, if that is activated more often than the callback is due."""
+    every = callback.interval // period
+    if every < 2:
+        return ""
+    return f"; runs in one of {every} activations" if callback.runs_when_due else "; runs in every activation"
 
 
 def _reason(callback: Callback, candidates: PeriodCandidates) -> str:

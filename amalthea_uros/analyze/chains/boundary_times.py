@@ -77,8 +77,8 @@ class BoundaryTimes:
         """The demand that each job has executed before a position, or including it."""
         process, context = self.stage.process, self.context
         model, core = context.demand_model, context.scheduled[process.name].core
-        inner = (*position.before, position.activity) if including else position.before
-        before, everything = (model.of_activities(process, part, core) for part in (inner, process.activities))
+        before = model.of_position(position, core, including)
+        everything = model.of_activities(process, process.activities, core)
         total = context.demands[process.name]
 
         def executed(_: MultiframeDemand, job: int) -> Time:

@@ -13,7 +13,6 @@ from amalthea_uros.analyze.chains.stages import Boundary, Stage
 from amalthea_uros.analyze.response_times.partial import time_until_executed
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.perf.software import Activity
 from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.units import Time
@@ -64,7 +63,8 @@ class BoundaryWindows:
         if before is None:
             return worst
         # Overheads of the job that belong to no activity may all come first.
-        everything = self._of(self.stage.process.activities)
+        process = self.stage.process
+        everything = self.solution.context.demand_model.of_activities(process, process.activities, self._core)
         return self._latest_after(before.worst + self._demand.worst - everything.worst, everything.best - before.best)
 
     def _latest_after(self, executed: Time, left: Time) -> Time:
@@ -89,10 +89,9 @@ class BoundaryWindows:
         position = position_of(boundary)
         if position is None or not position.is_certain:
             return None
-        is_after = kind(boundary) is JobPhase.AFTER
-        return self._of((*position.before, position.activity) if is_after else position.before)
+        model = self.solution.context.demand_model
+        return model.of_position(position, self._core, including=kind(boundary) is JobPhase.AFTER)
 
-    def _of(self, activities: tuple[Activity, ...]) -> MultiframeDemand:
-        context = self.solution.context
-        core = context.scheduled[self.stage.process.name].core
-        return context.demand_model.of_activities(self.stage.process, activities, core)
+    @property
+    def _core(self) -> str:
+        return self.solution.context.scheduled[self.stage.process.name].core

@@ -19,6 +19,7 @@ from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import GAPS, LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, routes
+from amalthea_uros.timing.phases import Occurrence, unknown_phases
 
 
 @dataclass(slots=True)
@@ -76,6 +77,23 @@ class ChainEvaluator:
             why=found.why,
             reason=reason,
         )
+
+    def occurrences(self, chain: EventChain) -> tuple[Occurrence, ...]:
+        """What comes from outside with an unknown phase and is taken by the jobs of a chain; nothing if it cannot be evaluated."""
+        unknown, events_by_name = unknown_phases(self.context.system), self.context.system.events_by_name
+        if not unknown:
+            return ()
+        try:
+            found = {
+                Occurrence.of(stage.process.name, counter)
+                for events in sequences(unfold(chain, self.context.system)[0])
+                for route in routes([events_by_name[name] for name in events], self.context.dataflow)
+                for stage in self._stages(route)
+                if (counter := stage.counter) is not None
+            }
+        except (UnfoldError, UnresolvedError):
+            return ()
+        return tuple(occurrence for occurrence in unknown if occurrence in found)
 
     def _evaluated(self, ways: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
         """The values of each way through a chain, and the reasons."""

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.chains.stages import job_counter
 from amalthea_uros.perf.events import Event, EventSet
 from amalthea_uros.timing.counters import is_always
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
@@ -49,7 +48,9 @@ class EventWindows:
             raise UnknownError(f"the event {name!r} occurs at several positions")
         position, context = occurrences[0].position, self.evaluation.context
         if position is not None and (
-            not is_always(job_counter(position)) or can_be_skipped(position, context.system, context.settings.modes)
+            position.counter is None
+            or not is_always(position.counter)
+            or can_be_skipped(position, context.system, context.settings.modes)
         ):
             raise UnknownError(f"the event {name!r} occurs in some jobs only")
         return occurrences[0]

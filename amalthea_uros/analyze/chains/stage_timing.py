@@ -100,6 +100,10 @@ class StageTiming:
         )
         if why_irregular:
             return TimedStage(task=task, reason=why_irregular, why_irregular=why_irregular)
+        if not counter.is_phase_known:
+            return TimedStage(
+                task=replace(task, offset=None), reason=f"the phase at which {base.process.name!r} takes part is unknown"
+            )
         if releases is None or read_write is None:
             return TimedStage(task=task, reason=f"the release times of {base.process.name!r} are unknown")
         if self._is_too_long(releases, counter):
@@ -142,14 +146,14 @@ class StageTiming:
 
     def _counter(self, stages: Sequence[Stage]) -> Counter:
         """The counter that lets only some jobs of the first stage take part, including those of triggers."""
-        found = stages[0].counter
+        found = stages[0].counter or ALWAYS
         for stage, then in pairwise(stages):
             assert isinstance(stage.leave, Fire)
             fired = stage.leave.position
             if fired is not None and isinstance(fired.activity, Trigger):
                 found = composed(found, fired.activity.counter or ALWAYS)
             of_stimuli = [self._counter_of(name) for name in then.process.stimuli]
-            others = [counter for counter in (*of_stimuli, then.counter) if not is_always(counter)]
+            others = [counter for counter in (*of_stimuli, then.counter or ALWAYS) if not is_always(counter)]
             if others and not self._is_only_cause(fired, then.process):
                 raise UnboundedStageError(f"a counter of {then.process.name!r} also counts activations by others")
             found = reduce(composed, others, found)
@@ -170,6 +174,8 @@ class StageTiming:
         """Why there is no maximum time between two jobs of a stage that take part; "" if there is one."""
         system, modes = self.context.system, self.context.settings.modes
         for stage in stages:
+            if stage.counter is None:
+                return f"it is unknown which jobs of {stage.process.name!r} take part"
             if any(can_be_skipped(position, system, modes) for position in stage.positions):
                 return f"jobs of {stage.process.name!r} can take a branch without the access or event of the chain"
         events = self.solution.event_models.get(stages[0].process.name)

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import reduce
 from itertools import pairwise
 
 from amalthea_uros.perf.software import Communication, Group, LabelAccess, Process
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.timing.counters import ALWAYS, composed
+from amalthea_uros.timing.counters import ALWAYS
 from amalthea_uros.timing.dataflow.events import EventOccurrence
 from amalthea_uros.timing.dataflow.links import Link, LinkKind
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
@@ -91,14 +90,9 @@ class Stage:
     jobs_later: JobsLater | None = None
 
     @property
-    def counter(self) -> Counter:
-        """The counter that lets only some jobs take part; it is the same at all positions of a stage."""
-        return job_counter(self.positions[0]) if self.positions else ALWAYS
-
-
-def job_counter(position: ActivityPosition) -> Counter:
-    """In which jobs a position is reached: an inner counter counts only what the outer ones let take effect."""
-    return reduce(composed, position.counters, ALWAYS)
+    def counter(self) -> Counter | None:
+        """The counter that lets only some jobs take part, the same at all positions of a stage; None if it is unknown."""
+        return self.positions[0].counter if self.positions else ALWAYS
 
 
 def stages(route: Route, communication: Communication | None) -> list[Stage]:
@@ -140,7 +134,7 @@ def _within(stage: Stage, passed: Sequence[ActivityPosition | None]) -> list[Sta
         if parts[-1]:
             before = parts[-1][-1]
             later = _later_in_job(before, position)
-            if later != SAME_JOB or job_counter(before) != job_counter(position):
+            if later != SAME_JOB or before.counter != position.counter:
                 parts.append([])
                 links.append(later)
         parts[-1].append(position)

@@ -69,7 +69,7 @@ class Blocking:
             demand = self.demand_model.of_activities(item.process, region, item.core)
             if demand.worst:
                 found.append(demand.worst)
-            if any(frame.prescaler == 1 and frame.worst for frame in demand.frames):
+            if any(frame.is_always and frame.worst for frame in demand.frames):
                 break
         return min(found, default=0)
 

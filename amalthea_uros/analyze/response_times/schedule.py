@@ -113,8 +113,8 @@ def demand_table(demand: MultiframeDemand, demand_of: Callable[[MultiframeDemand
 
 
 def _lead(demand: MultiframeDemand) -> int:
-    """Number of jobs before the demands repeat, because of counters with offsets."""
-    return max((frame.offset for frame in demand.frames), default=0)
+    """Number of jobs before the demands repeat, because a counter starts later than its prescaler makes it repeat."""
+    return max((max(0, frame.offset - frame.prescaler) for frame in demand.frames), default=0)
 
 
 def demand_cycle(demand: MultiframeDemand) -> int:
@@ -133,7 +133,12 @@ def steady_state_start(tasks: Sequence[PeriodicTask]) -> Time:
 
 
 def fits(tasks: Sequence[PeriodicTask], until: Time) -> bool:
-    """Whether a schedule up to a time is short enough to compute, and the core is not overloaded."""
+    """Whether a schedule up to a time is short enough to compute, and the core is not overloaded.
+
+    Not where it is unknown in which jobs something is executed, although not in all: in a schedule each job would execute it.
+    """
+    if any(frame.prescaler > 1 and not frame.is_certain for task in tasks for frame in task.demand.frames):
+        return False
     if until > LIMIT or sum(until // task.period + 1 for task in tasks) > MAX_JOBS:
         return False
     return sum(task.demand.mean_worst / task.period for task in tasks) <= 1
@@ -146,10 +151,14 @@ def response_times(tasks: Sequence[PeriodicTask]) -> list[Response] | None:
         return None
     worst = schedule(tasks, until, MultiframeDemand.worst_of)
     best = schedule(tasks, until, MultiframeDemand.best_of)
-    return [_response(task, w, b) for task, w, b in zip(tasks, worst, best, strict=True)]
+    certain = [
+        all(other.demand.is_certain for other in tasks if other.priority >= task.priority)  # lower ones have no effect
+        for task in tasks
+    ]
+    return [_response(task, w, b, c) for task, w, b, c in zip(tasks, worst, best, certain, strict=True)]
 
 
-def _response(task: PeriodicTask, worst: Jobs, best: Jobs) -> Response:
+def _response(task: PeriodicTask, worst: Jobs, best: Jobs, is_certain: bool) -> Response:
     responses = worst.ends - worst.releases
     at = int(responses.argmax())
     longest, own = int(responses[at]), task.demand.worst_of(at + 1)
@@ -158,7 +167,7 @@ def _response(task: PeriodicTask, worst: Jobs, best: Jobs) -> Response:
         best=int((best.ends - best.releases).min()),
         method=METHOD,
         source=SOURCE,
-        claim=Claim.EXACT,
+        claim=Claim.EXACT if is_certain else Claim.BOUND,
         jobs=len(responses),
         window=longest,
         terms={"own": own, "interference": longest - own, "blocking": 0},

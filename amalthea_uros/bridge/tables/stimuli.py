@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 from amalthea_uros.bridge.codecs import DIVISOR, FREQUENCY, TIME, TIMES, reference, references, same_names
+from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.entries import Entry, Field, Table, part, parts
 from amalthea_uros.bridge.kinds import Kind
 from amalthea_uros.bridge.tables.conditions import ASSIGNMENTS, CONDITION
@@ -10,8 +14,33 @@ from amalthea_uros.bridge.tables.distributions import NUMBER, TIME_SPAN
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.perf import stimuli as perf
 
+#: AMALTHEA has no attributes for them.
+_SOURCE, _PHASE_KNOWN = "source", "phaseKnown"
+
+
+class _Counters(Table):
+    """Counters, with custom properties for the message or timer that they represent, and whether its phase is known."""
+
+    def build(self, item: Any, context: Building) -> Any:
+        element = super().build(item, context)
+        if item.source:
+            element.custom_properties.append(am.CustomProperty(key=_SOURCE, value=am.StringObject(value=item.source)))
+        if not item.is_phase_known:
+            element.custom_properties.append(am.CustomProperty(key=_PHASE_KNOWN, value=am.BooleanObject(value=False)))
+        return element
+
+    def extract(self, element: Any, context: Extracting) -> Any:
+        stated = {item.key: getattr(item.value, "value", None) for item in element.custom_properties}
+        source = stated.get(_SOURCE)
+        return replace(
+            super().extract(element, context),
+            source=source if isinstance(source, str) else "",
+            is_phase_known=stated.get(_PHASE_KNOWN) is not False,
+        )
+
+
 #: Numbers that are not given have these values in every version: prescaler 1, offset 0.
-COUNTER = part(Table(Entry(perf.Counter, am.Counter, Field("prescaler", "prescaler", DIVISOR), Field("offset", "offset"))))
+COUNTER = part(_Counters(Entry(perf.Counter, am.Counter, Field("prescaler", "prescaler", DIVISOR), Field("offset", "offset"))))
 
 _COMMON = (
     Field("condition", "execution_condition", CONDITION),

@@ -38,6 +38,7 @@ from amalthea_uros.perf.software import (
     SenderReceiverAccess,
 )
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.counters import CallSites
 from amalthea_uros.timing.dataflow.positions import ActivityPosition, TooComplexError, positions
 
 
@@ -90,7 +91,11 @@ class EventLocator:
 
     system: System
     guesses: dict[str, str] = field(default_factory=dict)
+    sites: CallSites = field(init=False)
     _positions: dict[str, list[ActivityPosition]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.sites = CallSites(self.system)
 
     def positions(self, process: str) -> list[ActivityPosition]:
         """Everything that the jobs of a process do.
@@ -101,7 +106,7 @@ class EventLocator:
         """
         if process not in self._positions:
             try:
-                self._positions[process] = positions(self.system.processes[process], self.system)
+                self._positions[process] = positions(self.system.processes[process], self.system, self.sites)
             except TooComplexError as error:
                 raise UnresolvedError(str(error)) from None
         return self._positions[process]

@@ -22,6 +22,7 @@ from amalthea_uros.perf.software import (
 )
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.counters import ALWAYS, CallSites, UncountableError
 
 #: Processes with more activities, or deeper calls, are not analysed.
 MAX_POSITIONS = 200_000
@@ -48,8 +49,8 @@ class ActivityPosition(NamedTuple):
     last : the number of the last activity within it, its own if there is none
     runnable : that contains it; None: directly in the process
     outer : the lists of activities that contain it
-    counters : those that let only some jobs reach it
-    is_certain : whether each job reaches it at the same point, apart from the counters
+    counter : in which jobs it is reached, apart from branches; None if unknown, because other processes or branches count, too
+    is_certain : whether each job reaches it at the same point, apart from the counter
     times : how often a job executes it at most
     conditions : those that are tested when a job reaches it
     """
@@ -60,25 +61,24 @@ class ActivityPosition(NamedTuple):
     activity: Activity
     runnable: str | None
     outer: Nesting
-    counters: tuple[Counter, ...]
+    counter: Counter | None
     is_certain: bool
     times: int
     conditions: tuple[Condition, ...] = ()
 
-    @property
-    def before(self) -> tuple[Activity, ...]:
-        """The activities that a job has executed when it reaches this position."""
-        return tuple(activity for activities, index in self.outer for activity in activities[:index])
 
-
-def positions(process: Process, system: System) -> list[ActivityPosition]:
+def positions(process: Process, system: System, sites: CallSites) -> list[ActivityPosition]:
     """All activities of the jobs of a process, in order; a call is followed by the activities of its runnable.
+
+    Parameters
+    ----------
+    sites : the calls of the system
 
     Raises
     ------
     TooComplexError : it has more than `MAX_POSITIONS` activities, or calls nested deeper than `MAX_CALL_DEPTH`.
     """
-    walk = _Walk(process, system)
+    walk = _Walk(process, system, sites)
     walk.through(process.activities, _Branch())
     return [position for position in walk.found if position is not None]
 
@@ -89,26 +89,28 @@ class _Branch:
 
     runnable: str | None = None
     outer: Nesting = ()
-    counters: tuple[Counter, ...] = ()
+    counter: Counter | None = ALWAYS
     is_certain: bool = True
     times: int = 1
     above: tuple[str, ...] = ()
+    calls: tuple[Call, ...] = ()
 
 
 @dataclass(slots=True)
 class _Walk:
     process: Process
     system: System
+    sites: CallSites
     found: list[ActivityPosition | None] = field(default_factory=list)
 
     def through(self, activities: tuple[Activity, ...], branch: _Branch) -> None:
         for index, activity in enumerate(activities):
             outer = (*branch.outer, (activities, index))
-            counters, times = branch.counters, branch.times
+            counter, times = branch.counter, branch.times
             if isinstance(activity, Call | LabelAccess):
                 times *= _max_times(activity.times)
-            if isinstance(activity, Call) and activity.counter is not None:
-                counters = (*counters, activity.counter)
+            if isinstance(activity, Call):
+                counter = self._counter((*branch.calls, activity), branch)
             place = len(self.found)
             if place >= MAX_POSITIONS or len(branch.above) > MAX_CALL_DEPTH:
                 raise TooComplexError(f"{self.process.name!r} has too many calls, or too deeply nested calls, to be analysed")
@@ -117,10 +119,10 @@ class _Walk:
             if isinstance(activity, Call):
                 called = self.system.runnables.get(activity.runnable)
                 if called is not None and called.name not in branch.above:
-                    self.through(called.activities, _of_call(activity, called, branch, outer, counters, times))
+                    self.through(called.activities, _of_call(activity, called, branch, outer, counter, times))
             elif isinstance(activity, _WITH_PARTS):
                 is_certain = branch.is_certain and isinstance(activity, Group) and activity.ordered
-                within = _Branch(branch.runnable, outer, counters, is_certain, times, branch.above)
+                within = _Branch(branch.runnable, outer, counter, is_certain, times, branch.above, branch.calls)
                 for each in inner_activities(activity):
                     self.through(each, within)
             self.found[place] = ActivityPosition(
@@ -130,18 +132,31 @@ class _Walk:
                 activity,
                 branch.runnable,
                 outer,
-                counters,
+                counter,
                 branch.is_certain,
                 times,
                 _conditions(activity, self.system) if isinstance(activity, _WITH_CONDITIONS) else (),
             )
 
+    def _counter(self, calls: tuple[Call, ...], branch: _Branch) -> Counter | None:
+        """In which jobs the last of nested calls is executed; None if unknown."""
+        if calls[-1].counter is None:
+            return branch.counter
+        counter: Counter = ALWAYS
+        for call in reversed(calls):
+            try:
+                found = self.sites.lifted(call, counter)
+            except UncountableError:
+                return None
+            if found is None:
+                return None
+            counter = found
+        return counter
 
-def _of_call(
-    call: Call, called: Runnable, branch: _Branch, outer: Nesting, counters: tuple[Counter, ...], times: int
-) -> _Branch:
+
+def _of_call(call: Call, called: Runnable, branch: _Branch, outer: Nesting, counter: Counter | None, times: int) -> _Branch:
     is_certain = branch.is_certain and call.times is None and called.condition is None
-    return _Branch(called.name, outer, counters, is_certain, times, (*branch.above, called.name))
+    return _Branch(called.name, outer, counter, is_certain, times, (*branch.above, called.name), (*branch.calls, call))
 
 
 def _conditions(activity: Activity, system: System) -> tuple[Condition, ...]:

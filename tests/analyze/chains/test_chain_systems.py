@@ -9,7 +9,6 @@ from support import ROOT, SHARED
 from test_methods import cases
 
 from amalthea_uros import Settings, analyze_system, describe, extract, load
-from amalthea_uros.analyze.chains import counter_phases
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.perf.distributions import Boundaries, Constant
 from amalthea_uros.perf.events import (
@@ -175,21 +174,13 @@ class TestTheThesis:
 
     def test_over_all_phases_of_the_message(self):
         system = describe(self.SAMPLE).system
-        _, values, claims, _ = evaluate(system, all_phases=True)
+        _, values, claims, _ = evaluate(system)
         assert claims == {"exact"}
         # By hand: taken in the tick of Message_Factor 1000 + 16; taken in the tick after it, up to the long job 20 ticks later.
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (1016, 20029)
         # Ticks 0 to 19 after Message_Factor: 20 in steps of one, each of which ends at 16 or, where it meets a message, at 29.
         assert values["mean_first_to_first"] == pytest.approx(sum(range(1, 21)) * 1000 / 20 + 16 + 13 / 20)
         assert (values["min_last_to_last"], values["max_reduced_data_age"]) == (1016, 39016)
-
-    def test_more_phases_than_are_evaluated_give_no_value(self, monkeypatch):
-        monkeypatch.setattr(counter_phases, "MAX_PHASES", 19)
-        analysis = analyze_system(describe(self.SAMPLE).system, Settings(all_phases=True))
-        (chain,) = analysis.chains
-        assert (chain.values, chain.all_values) == ((), ())
-        assert "has 20 phases, and at most 19 are evaluated" in chain.reason
-        assert [finding.rule for finding in analysis.findings] == ["CHN003"]
 
     @pytest.mark.parametrize(
         ("start", "end", "minimum", "maximum"),
@@ -201,17 +192,17 @@ class TestTheThesis:
         segments = tuple(Segment(stimulus=a.name, response=b.name) for a, b in pairwise(events))
         chain = EventChain(name="c", stimulus=events[0].name, response=events[-1].name, items=Sequence(segments))
         system = replace(system, events=Events(events=events, chains=(chain,)))
-        _, values, _, _ = evaluate(system, all_phases=True)
+        _, values, _, _ = evaluate(system)
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (minimum, maximum)
 
     def test_within_five_per_cent_of_what_was_measured(self):
-        _, values, _, _ = evaluate(describe(self.SAMPLE).system, all_phases=True)
+        _, values, _, _ = evaluate(describe(self.SAMPLE).system)
         measured = {"min_first_to_first": 970, "mean_first_to_first": 10320, "max_reduced_reaction_time": 19978}
         for quantity, value in measured.items():
             assert abs(values[quantity] - value) / value < 0.05
 
     def test_logical_execution_times(self):
-        _, values, claims, _ = evaluate(describe(self.SAMPLE).system, all_phases=True, communication=Communication.LET)
+        _, values, claims, _ = evaluate(describe(self.SAMPLE).system, communication=Communication.LET)
         assert claims == {"exact"}
         assert (values["min_first_to_first"], values["max_reduced_reaction_time"]) == (22000, 41000)
 

@@ -1,0 +1,192 @@
+"""The phases of what comes from outside, such as messages: nobody knows in which job of a task the first one is taken.
+
+A counter with a source represents such an event. If its phase is not known, each of its phases is possible, and each is a system of
+its own in which the phase is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from math import prod
+
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.software import (
+    Activity,
+    Call,
+    Group,
+    Loop,
+    ProbabilitySwitch,
+    Process,
+    Switch,
+    Trigger,
+    walk,
+)
+from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.counters import first_effect
+from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.units import Time, time_text
+
+
+@dataclass(frozen=True, slots=True)
+class Occurrence:
+    """What comes from outside, taken by every n-th job of a process.
+
+    Attributes
+    ----------
+    source : name of the message or timer
+    every : the n
+    """
+
+    process: str
+    source: str
+    every: int
+
+    @classmethod
+    def of(cls, process: str, counter: Counter) -> Occurrence:
+        """What a counter in the jobs of a process represents."""
+        return cls(process, counter.source, counter.prescaler)
+
+
+def sources(system: System) -> list[str]:
+    """The names of everything from outside that counters represent."""
+    return list(dict.fromkeys(counter.source for _, counter in _counters(system) if counter.source))
+
+
+def unknown_phases(system: System) -> tuple[Occurrence, ...]:
+    """What comes from outside with an unknown phase."""
+    return tuple(
+        dict.fromkeys(
+            Occurrence.of(process, counter)
+            for process, counter in _counters(system)
+            if counter.source and not counter.is_phase_known
+        )
+    )
+
+
+def phase_count(occurrences: Sequence[Occurrence]) -> int:
+    """The number of combinations of all phases."""
+    return prod(occurrence.every for occurrence in occurrences)
+
+
+def phase_variants(system: System, occurrences: Sequence[Occurrence]) -> Iterator[System]:
+    """The system with each combination of the phases."""
+    for firsts in product(*(range(1, occurrence.every + 1) for occurrence in occurrences)):
+        chosen = dict(zip(occurrences, firsts, strict=True))
+
+        def known(process: Process, counter: Counter, chosen: Mapping[Occurrence, int] = chosen) -> Counter:
+            first = chosen.get(Occurrence.of(process.name, counter))
+            if first is None or counter.is_phase_known:
+                return counter
+            return replace(counter, offset=first, is_phase_known=True)
+
+        yield _with_counters(system, known)
+
+
+def with_stated_phases(system: System, times: Mapping[str, Time]) -> System:
+    """The system in which some sources are first taken at stated times.
+
+    The job that takes it is released at that time. If another process counts the same source, its next job is the first one.
+
+    Raises
+    ------
+    InvalidArgumentError : no job that takes it is released at that time.
+    """
+    for source, time in times.items():
+        takers = [process for process, counter in _counters(system) if counter.source == source]
+        if takers and not any(_is_release(time, system.processes[taker], system) for taker in takers):
+            raise InvalidArgumentError(_no_release(time, source, system.processes[takers[0]], system))
+
+    def stated(process: Process, counter: Counter) -> Counter:
+        if counter.source not in times:
+            return counter
+        return replace(counter, offset=_first_job(times[counter.source], process, system), is_phase_known=True)
+
+    return _with_counters(system, stated) if times else system
+
+
+def _is_release(time: Time, process: Process, system: System) -> bool:
+    releases = known_releases(process, system)
+    return releases is not None and time >= releases.offset and (time - releases.offset) % releases.period == 0
+
+
+def _no_release(time: Time, source: str, process: Process, system: System) -> str:
+    releases = known_releases(process, system)
+    if releases is None:
+        return f"the phase of {source!r} cannot be stated: the release times of {process.name!r} are unknown"
+    grid = f"{time_text(releases.offset)} + n * {time_text(releases.period)}"
+    return f"the phase {time_text(time)} of {source!r} is not an activation of {process.name!r}, which are at {grid}"
+
+
+def _first_job(time: Time, process: Process, system: System) -> int:
+    """The number of the first job that is released at a time or later, counted from 1."""
+    releases = known_releases(process, system)
+    if releases is None:
+        raise InvalidArgumentError(f"the phase cannot be stated: the release times of {process.name!r} are unknown")
+    return max(0, -(-(time - releases.offset) // releases.period)) + 1
+
+
+def phase_assumptions(system: System, are_all_evaluated: bool) -> Iterator[str]:
+    """What is assumed about phases, in sentences."""
+    for process, counter in _counters(system):
+        if not counter.source:
+            continue
+        due = f"{counter.source} is due in one of {counter.prescaler} jobs of {process}"
+        if not counter.is_phase_known:
+            how = "all phases are evaluated" if are_all_evaluated else "any job can be that one"
+            yield f"{due}, and its phase is unknown: {how}"
+            continue
+        first, releases = first_effect(counter), known_releases(system.processes[process], system)
+        at = "" if releases is None else f", at {time_text(releases.offset + (first - 1) * releases.period)}"
+        yield f"{due}, first in job {first}{at}, as stated"
+
+
+def _counters(system: System) -> Iterator[tuple[str, Counter]]:
+    """The counters in the jobs of processes, with the name of the process."""
+    for name, process in system.processes.items():
+        for activity in walk(process.activities):
+            if isinstance(activity, Call | Trigger) and activity.counter is not None:
+                yield name, activity.counter
+
+
+def _with_counters(system: System, change: Callable[[Process, Counter], Counter]) -> System:
+    """The system with the counters in the jobs of its processes changed."""
+
+    def changed(process: Process) -> tuple[Activity, ...]:
+        return _activities(process.activities, lambda counter: change(process, counter))
+
+    software = system.software
+    return replace(
+        system,
+        software=replace(
+            software,
+            tasks=tuple(replace(task, activities=changed(task)) for task in software.tasks),
+            isrs=tuple(replace(isr, activities=changed(isr)) for isr in software.isrs),
+        ),
+    )
+
+
+def _activities(activities: tuple[Activity, ...], change: Callable[[Counter], Counter]) -> tuple[Activity, ...]:
+    return tuple(_activity(activity, change) for activity in activities)
+
+
+def _activity(activity: Activity, change: Callable[[Counter], Counter]) -> Activity:
+    match activity:
+        case Call(counter=Counter() as counter) | Trigger(counter=Counter() as counter):
+            return replace(activity, counter=change(counter))
+        case Group(activities=inner) | Loop(activities=inner):
+            return replace(activity, activities=_activities(inner, change))
+        case ProbabilitySwitch(branches=branches):
+            return replace(
+                activity,
+                branches=tuple(replace(branch, activities=_activities(branch.activities, change)) for branch in branches),
+            )
+        case Switch(cases=cases, default=default):
+            return replace(
+                activity,
+                cases=tuple(replace(case, activities=_activities(case.activities, change)) for case in cases),
+                default=None if default is None else _activities(default, change),
+            )
+    return activity

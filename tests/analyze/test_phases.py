@@ -1,0 +1,250 @@
+"""What comes from outside can come at any time: the worst phase counts, and nothing is known if there are too many of them."""
+
+import json
+from fractions import Fraction
+
+import pytest
+from support import ROOT, SHARED
+
+from amalthea_uros import Settings, analyze_system, build_model, describe, extract
+from amalthea_uros.analyze import phases, system
+from amalthea_uros.analyze.assignment import propose_priorities
+from amalthea_uros.analyze.explanation import shares
+from amalthea_uros.analyze.results import Claim, Verdict
+from amalthea_uros.analyze.sensitivity import max_scale
+from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import time_text
+
+SAMPLE = ROOT / "samples" / "bodas-test-advanced.yaml"
+DESIGN = json.loads((SHARED / "vectors" / "design.json").read_text()) if (SHARED / "vectors").exists() else {}
+
+
+@pytest.fixture(name="analyze")
+def fixture_analyze(tmp_path):
+    def analyze(text, settings=None):
+        path = tmp_path / "app.yaml"
+        path.write_text(text)
+        return analyze_system(describe(path).system, settings)
+
+    return analyze
+
+
+def sample(**changes):
+    """The sample with some of its texts replaced."""
+    text = SAMPLE.read_text()
+    for old, new in changes.values():
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+def times(analysis, name):
+    response = analysis[name].response
+    return response.best // US, response.worst // US, response.claim
+
+
+def latency(analysis, quantity="max_reduced_reaction_time"):
+    (chain,) = analysis.chains
+    return next(value.value for value in chain.values if value.quantity == quantity) / US
+
+
+class TestTheSample:
+    """Executor 12 us, with a message 25 us, every 1 ms; control function 4 us every 1 ms; the message every 20 ms, its task 2 us."""
+
+    def test_response_times(self):
+        analysis = analyze_system(describe(SAMPLE).system)
+        assert times(analysis, "Executor_Task") == (12, 25, Claim.EXACT)
+        assert times(analysis, "Control_Function") == (12 + 4, 25 + 4, Claim.EXACT)
+        # Message_Factor waits for the long job of the executor only if the message is taken when it is released.
+        assert times(analysis, "Message_Factor") == (12 + 4 + 2, 25 + 4 + 2, Claim.EXACT)
+
+    def test_a_limit_that_only_the_modelled_phase_meets_is_missed(self, analyze):
+        analysis = analyze(sample(limit=("reaction: 25 ms", "reaction: 15 ms")))
+        result = analysis.requirements["factor-to-output_reaction"]
+        assert (result.verdict, result.value / US) == (Verdict.MISSED, 20029)
+        assert analysis.misses
+
+    def test_the_model_and_the_description_give_the_same(self):
+        described = describe(SAMPLE).system
+        extracted = extract(build_model(described)).system
+        assert extracted == described
+        analyses = [analyze_system(each) for each in (described, extracted)]
+        assert analyses[0].processes == analyses[1].processes
+        assert analyses[0].chains == analyses[1].chains
+
+    def test_it_is_an_assumption(self):
+        assert (
+            "Message_Factor is due in one of 20 jobs of Executor_Task, and its phase is unknown: all phases are evaluated"
+            in analyze_system(describe(SAMPLE).system).assumptions
+        )
+
+    @pytest.mark.parametrize("phase", range(0, 40, 3))
+    def test_a_stated_phase(self, phase, analyze):
+        stated = analyze(sample(phase=("rate: 50 Hz", f"rate: 50 Hz, phase: {phase} ms")))
+        for_once = analyze_system(describe(SAMPLE).system, Settings(phases={"Message_Factor": phase * MS}))
+        assert stated.processes == for_once.processes
+        assert stated.assumptions == for_once.assumptions
+        assert f"first in job {phase + 1}, at {time_text(phase * MS)}, as stated" in stated.assumptions[-1]
+        assert times(stated, "Message_Factor")[1] == (31 if phase % 20 == 0 else 18)
+        # Until Message_Factor runs in the next activation of its task, and from then to the end of the next control function.
+        wait = -phase % 20 * 1000
+        assert latency(stated) == wait + (1016 if wait != 19_000 else 1029)
+
+    def test_what_is_explained_is_what_is_shown(self):
+        analysis = analyze_system(describe(SAMPLE).system)
+        found = {share.name: (share.jobs, share.time // US) for share in shares(analysis, "Message_Factor")}
+        assert found == {"Executor_Task": (1, 25), "Control_Function": (1, 4)}
+
+    def test_factors_are_those_of_all_phases(self, analyze):
+        analysis = analyze(sample(limit=("reaction: 25 ms", "reaction: 20.058 ms")))
+        # 20 ms + 29 us * factor <= 20.058 ms.
+        assert float(max_scale(analysis)) == pytest.approx(2, rel=2e-3)
+        assert max_scale(analysis) <= 2
+
+    def test_proposals_do_not_depend_on_a_phase(self, analyze):
+        limit = ("period: 1 ms, execution_time: {base", "period: 1 ms, deadline: 1 ms, execution_time: {base")
+        more = ("rate: 50 Hz", "rate: 50 Hz, deadline: 31 us")
+        proposal = propose_priorities(analyze(sample(limit=limit, more=more)))[0]
+        # Alone above the others it needs 2 us; with the long job of the executor and the control function just 31 us.
+        assert proposal.priorities is not None
+
+
+class TestTooManyPhases:
+    """With more combinations than are tried, any job can be the one that is due."""
+
+    @pytest.fixture(autouse=True)
+    def _few(self, monkeypatch):
+        monkeypatch.setattr(system, "MAX_COMBINATIONS", 19)
+
+    def test_response_times_are_bounds(self):
+        analysis = analyze_system(describe(SAMPLE).system)
+        for name, best, worst in (("Executor_Task", 12, 25), ("Control_Function", 16, 29), ("Message_Factor", 18, 31)):
+            found = times(analysis, name)
+            assert found[0] <= best
+            assert found[1] >= worst
+            assert found[2] is Claim.BOUND
+
+    def test_chains_have_bounds_and_a_reason(self):
+        analysis = analyze_system(describe(SAMPLE).system)
+        (chain,) = analysis.chains
+        assert latency(analysis) >= 20029
+        assert {value.claim for value in chain.values} == {Claim.BOUND}
+        assert "phase" in chain.why
+
+    def test_it_is_an_assumption(self):
+        assert (
+            "Message_Factor is due in one of 20 jobs of Executor_Task, and its phase is unknown: any job can be that one"
+            in analyze_system(describe(SAMPLE).system).assumptions
+        )
+
+    def test_a_chain_needs_only_the_phases_of_its_own_jobs(self, analyze, monkeypatch):
+        # 20 * 10 combinations; the chain passes the job that takes the factor.
+        monkeypatch.setattr(system, "MAX_COMBINATIONS", 100)
+        other = "        - {name: Other, topic: other, rate: 100 Hz, message_size: 4 B, execution_time: 1 us}\n      timers:"
+        analysis = analyze(sample(other=("      timers:", other)))
+        assert latency(analysis) >= 20029
+        (chain,) = analysis.chains
+        assert "over all 20 phases" in chain.values[0].method
+
+
+def test_too_many_jobs_are_too_many_phases(monkeypatch):
+    monkeypatch.setattr(phases, "MAX_JOBS", 100)
+    analysis = analyze_system(describe(SAMPLE).system)
+    assert times(analysis, "Message_Factor")[2] is Claim.BOUND
+
+
+THESIS = [row for problem in DESIGN.get("thesis", ()) for row in problem["rows"] if "breaks" not in row]
+
+
+@pytest.mark.parametrize("row", THESIS, ids=lambda row: str(row["change"]))
+def test_the_application_of_the_thesis_with_changes(row, analyze):
+    text = SAMPLE.read_text().replace("1 ms, 10 ms", "500 us, 1 ms, 2 ms, 5 ms, 10 ms")
+    keys = {
+        "Executor_Task.period": ("period: 1 ms, execution_time: {base", "period: {} us, execution_time: {{base"),
+        "Executor_Task.offset": ("period: 1 ms, execution_time: {base", "period: 1 ms, offset: {} us, execution_time: {{base"),
+        "Message_Factor.period": ("rate: 50 Hz", "rate: 50 Hz, task_period: {} us"),
+        "Message_Factor.offset": ("rate: 50 Hz", "rate: 50 Hz, offset: {} us"),
+        "Control_Function.period": ("period: 1 ms, execution_time: 4", "period: {} us, execution_time: 4"),
+        "Control_Function.offset": ("period: 1 ms, execution_time: 4", "period: 1 ms, offset: {} us, execution_time: 4"),
+    }
+    order = row["change"].get("priority_order", ["Executor_Task", "Control_Function", "Message_Factor"])
+    for priority, name in enumerate(reversed(order), start=1):
+        text = text.replace(f"- {{name: {name},", f"- {{name: {name}, priority: {priority},")
+        text = text.replace(f"executor: {{name: {name},", f"executor: {{name: {name}, priority: {priority},")
+    for key, value in row["change"].items():
+        if key != "priority_order":
+            old, new = keys[key]
+            text = text.replace(old, new.format(value))
+    analysis = analyze(text)
+    assert (latency(analysis, "min_first_to_first"), latency(analysis)) == (row["best"], row["worst"])
+
+
+PERIODS = [
+    pytest.param(problem, row, id=f"{problem['id']}-{'-'.join(map(str, row[:3]))}")
+    for problem in DESIGN.get("period_problems", ())
+    for row in (*problem["feasible"], *problem["too_slow"])[::7]
+    if problem["message_interval"] % row[0] == 0
+]
+
+
+@pytest.mark.parametrize(("problem", "row"), PERIODS)
+def test_other_periods(problem, row, analyze):
+    *periods, worst, best = row
+    # Rate monotonic; at equal periods the executor, then the timer, then the subscription.
+    order = sorted(zip(periods, (0, 2, 1), ("executor", "subscription", "timer"), strict=True), reverse=True)
+    priority = {name: number for number, (*_, name) in enumerate(order, start=1)}
+    executor, subscription, timer = periods
+    cost, extra = problem["executor"]["base"], problem["executor"]["with_message"] - problem["executor"]["base"]
+    text = f"""
+amuros: 1
+name: periods
+hardware: single-core
+middleware:
+  executor:
+    name: Executor_Task
+    period: {executor} us
+    priority: {priority["executor"]}
+    execution_time: {{base: {cost} us, per_message: {extra} us}}
+application:
+  nodes:
+    - name: node
+      timers:
+        - name: Control_Function
+          period: {timer} us
+          priority: {priority["timer"]}
+          execution_time: {problem["timer"]["execution_time"]} us
+          reads: [memory_2]
+      subscriptions:
+        - name: Message_Factor
+          topic: factor
+          interval: {problem["message_interval"]} us
+          task_period: {subscription} us
+          priority: {priority["subscription"]}
+          message_size: 4 B
+          execution_time: {problem["subscription"]["execution_time"]} us
+          writes: [memory_2]
+chains:
+  - {{name: chain, path: [Executor_Task, Message_Factor, Control_Function]}}
+"""
+    analysis = analyze(text)
+    assert (latency(analysis, "min_first_to_first"), latency(analysis)) == (best, worst)
+
+
+class TestWhatRunsWhenItIsDue:
+    """Message_Factor in a task of 1 ms, below the control function."""
+
+    def test_it_does_not_run_in_the_other_activations_of_its_task(self, analyze):
+        every, due = (
+            analyze(sample(task=("rate: 50 Hz", f"rate: 50 Hz, priority: 0, task_period: 1 ms, runs_when: {when}")))
+            for when in ("activated", "due")
+        )
+        load = Fraction(2 * US, MS)
+        assert every.processors[0].worst - due.processors[0].worst == load - load / 20
+        # Message and task are not synchronised: the message can wait for the callback for up to 19 ms.
+        assert (latency(every), latency(due)) == (1016, 20029)
+
+    def test_its_phase_can_be_stated(self, analyze):
+        # The task runs in the activation in which the message is taken, after the control function: the next one uses it.
+        task = "rate: 50 Hz, priority: 0, task_period: 1 ms, runs_when: due, phase: 7 ms"
+        assert latency(analyze(sample(task=("rate: 50 Hz", task)))) == 1016

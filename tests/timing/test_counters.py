@@ -1,0 +1,209 @@
+"""Counters against a play that counts, job by job."""
+
+from collections import Counter as Tally
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from amalthea_uros.analyze.results import Claim
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.distributions import Constant
+from amalthea_uros.perf.hardware import Clock, Core, CoreType, Hardware, Structure
+from amalthea_uros.perf.mapping import Mapping, TaskAllocation
+from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
+from amalthea_uros.perf.software import Call, Chance, Demand, Execute, Group, ProbabilitySwitch, Runnable, Software, Task
+from amalthea_uros.perf.stimuli import Counter, Periodic, Stimuli
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.counters import composed, first_effect, of_one_in
+from amalthea_uros.units import MICROSECOND, MILLISECOND
+
+JOBS = 120
+SCHEDULER = Scheduler(name="scheduler", policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=("core",))
+
+
+def execute(ticks):
+    return Execute(demand=Demand(Constant(ticks)))
+
+
+def system(tasks, runnables):
+    """Tasks of 1 ms on a core of 1 MHz, the first one with the highest priority; a tick is a microsecond."""
+    return System(
+        hardware=Hardware(
+            clocks=(Clock(name="clock", frequency=Fraction(1_000_000)),),
+            core_types=(CoreType(name="type"),),
+            structures=(Structure(name="ECU", cores=(Core(name="core", type="type", clock="clock"),)),),
+        ),
+        os=Os(systems=(OperatingSystem(name="OS", schedulers=(SCHEDULER,)),)),
+        stimuli=Stimuli(stimuli=(Periodic(name="tick", period=MILLISECOND),)),
+        software=Software(
+            tasks=tuple(Task(name=name, stimuli=("tick",), activities=tuple(body)) for name, body in tasks.items()),
+            runnables=tuple(Runnable(name=name, activities=tuple(body)) for name, body in runnables.items()),
+        ),
+        mapping=Mapping(
+            tasks=tuple(
+                TaskAllocation(task=name, scheduler="scheduler", priority=len(tasks) - index)
+                for index, name in enumerate(tasks)
+            )
+        ),
+    )
+
+
+def takes_effect(counter, number):
+    return number >= max(counter.offset, 1) and (number - counter.offset) % counter.prescaler == 0
+
+
+def played(tasks, runnables):
+    """The ticks of the jobs of each task, all of which are released together and executed in their order."""
+    reached = Tally()
+
+    def ticks(activities):
+        total = 0
+        for activity in activities:
+            if isinstance(activity, Execute):
+                total += activity.demand.ticks.value
+            elif isinstance(activity, Group):
+                total += ticks(activity.activities)
+            else:
+                reached[id(activity)] += 1
+                if activity.counter is None or takes_effect(activity.counter, reached[id(activity)]):
+                    total += ticks(runnables[activity.runnable])
+        return total
+
+    rows = [{name: ticks(body) for name, body in tasks.items()} for _ in range(JOBS)]
+    return {name: [row[name] for row in rows] for name in tasks}
+
+
+COUNTERS = st.builds(Counter, prescaler=st.integers(1, 6), offset=st.integers(-4, 9))
+
+
+def calls(names):
+    return st.builds(Call, runnable=st.sampled_from(names), counter=st.none() | COUNTERS)
+
+
+def bodies(names):
+    return st.lists(st.one_of(st.integers(1, 3).map(execute), *([calls(names)] if names else [])), min_size=1, max_size=3)
+
+
+@st.composite
+def structures(draw, names):
+    """Tasks and runnables, each of which calls only those that follow it."""
+    order = ["A", "B", "C"]
+    runnables = {name: draw(bodies(order[index + 1 :])) for index, name in enumerate(order)}
+    return {name: draw(bodies(order)) for name in names}, runnables
+
+
+@given(counter=COUNTERS)
+def test_the_first_occurrence_that_takes_effect(counter):
+    assert first_effect(counter) == next(number for number in range(1, 100) if takes_effect(counter, number))
+
+
+@given(outer=COUNTERS, inner=COUNTERS)
+def test_nested_counters_are_one_counter(outer, inner):
+    passed = [number for number in range(1, 200) if takes_effect(outer, number)]
+    expected = {number for index, number in enumerate(passed, start=1) if takes_effect(inner, index)}
+    found = composed(outer, inner)
+    assert {number for number in range(1, 200) if takes_effect(found, number)} == expected
+
+
+@given(counter=COUNTERS, count=st.integers(1, 5), data=st.data())
+def test_a_counter_seen_by_one_of_several_calls_in_a_job(counter, count, data):
+    number = data.draw(st.integers(1, count))
+    expected = {job for job in range(1, 80) if takes_effect(counter, (job - 1) * count + number)}
+    found = of_one_in(counter, number, count)
+    assert {job for job in range(1, 80) if found is not None and takes_effect(found, job)} == expected
+
+
+@given(structure=structures(["T"]))
+def test_the_demand_of_each_job_of_a_single_task(structure):
+    tasks, runnables = structure
+    demand = TimingContext.of(system(tasks, runnables)).demands["T"]
+    executed = played(tasks, runnables)["T"]
+    found = [(demand.best_of(job) // MICROSECOND, demand.worst_of(job) // MICROSECOND) for job in range(1, JOBS + 1)]
+    if demand.is_certain:
+        assert found == [(ticks, ticks) for ticks in executed]
+    assert all(best <= ticks <= worst for ticks, (best, worst) in zip(executed, found, strict=True))
+    for count in (1, 2, 3, 7):
+        most = max(sum(executed[first : first + count]) for first in range(JOBS - count))
+        assert demand.max_demand(count) >= most * MICROSECOND
+
+
+@given(structure=structures(["T", "U"]))
+def test_the_demand_of_tasks_that_share_runnables(structure):
+    tasks, runnables = structure
+    context, executed = TimingContext.of(system(tasks, runnables)), played(tasks, runnables)
+    for name, demand in context.demands.items():
+        found = [(demand.best_of(job) // MICROSECOND, demand.worst_of(job) // MICROSECOND) for job in range(1, JOBS + 1)]
+        if demand.is_certain:
+            assert found == [(ticks, ticks) for ticks in executed[name]]
+        assert all(best <= ticks <= worst for ticks, (best, worst) in zip(executed[name], found, strict=True))
+
+
+@given(structure=structures(["T", "U"]))
+def test_an_exact_response_time_occurs(structure):
+    tasks, runnables = structure
+    executed = played(tasks, runnables)
+    responses = [upper + lower for upper, lower in zip(executed["T"], executed["U"], strict=True)]
+    analysis = analyze_system(system(tasks, runnables))
+    for name, times in (
+        ("T", executed["T"]),
+        ("U", [0 if not own else r for own, r in zip(executed["U"], responses, strict=True)]),
+    ):
+        response = analysis[name].response
+        assert response.worst >= max(times) * MICROSECOND
+        assert response.best <= min(times) * MICROSECOND
+        if response.claim is Claim.EXACT:
+            assert response.worst == max(times) * MICROSECOND
+
+
+class TestCallsThatAreFollowed:
+    """Counters in runnables: known jobs as long as only one process counts."""
+
+    @pytest.mark.parametrize(
+        ("body", "expected"),
+        [
+            # Every 2nd execution of A; A runs in jobs 3, 6, 9, ...: jobs 6, 12, ...
+            ([Call(runnable="A", counter=Counter(prescaler=3))], {6, 12}),
+            # Two calls in each job: the second of them is always the even one.
+            ([Call(runnable="A"), Call(runnable="A")], set(range(1, 13))),
+            # Three calls in each job: executions 2, 4, 6 are in jobs 1, 2, 2.
+            ([Call(runnable="A"), Group(activities=(Call(runnable="A"), Call(runnable="A")))], set(range(1, 13))),
+        ],
+    )
+    def test_it_is_known_which_jobs_execute_it(self, body, expected):
+        demand = TimingContext.of(
+            system({"T": body}, {"A": [Call(runnable="B", counter=Counter(prescaler=2))], "B": [execute(5)]})
+        ).demands["T"]
+        assert demand.is_certain
+        assert {job for job in range(1, 13) if demand.worst_of(job)} == expected
+
+    def test_two_tasks_that_call_it_can_each_meet_the_counter_in_any_job(self):
+        runnables = {"A": [Call(runnable="B", counter=Counter(prescaler=2))], "B": [execute(5)]}
+        # Together they execute it once per job: T in none of its jobs, U in all.
+        analysis = analyze_system(system({"T": [Call(runnable="A")], "U": [Call(runnable="A")]}, runnables))
+        response = analysis["T"].response
+        assert (response.best, response.worst, response.claim) == (0, 5 * MICROSECOND, Claim.BOUND)
+
+    def test_a_counter_in_a_branch_counts_only_when_it_is_reached(self):
+        branch = (Call(runnable="B", counter=Counter(prescaler=2)),)
+        body = [
+            ProbabilitySwitch(branches=(Chance(weight=0.5, activities=branch), Chance(weight=0.5, activities=(execute(1),))))
+        ]
+        response = analyze_system(system({"T": body}, {"B": [execute(5)]}))["T"].response
+        assert (response.best, response.worst, response.claim) == (0, 5 * MICROSECOND, Claim.BOUND)
+
+    def test_a_branch_that_is_never_taken_is_no_proof_of_the_worst_case(self):
+        def claim(weight):
+            branches = (Chance(weight=weight, activities=(execute(5),)), Chance(weight=1.0, activities=(execute(1),)))
+            return analyze_system(system({"T": [ProbabilitySwitch(branches=branches)]}, {}))["T"].response.claim
+
+        assert [claim(0.5), claim(0.0)] == [Claim.EXACT, Claim.BOUND]
+
+    def test_an_offset_below_one_only_shifts(self):
+        # -5 mod 4 = 3: jobs 3, 7, 11.
+        body = [execute(1), Call(runnable="B", counter=Counter(prescaler=4, offset=-5))]
+        analysis = analyze_system(system({"T": body}, {"B": [execute(5)]}))
+        response = analysis["T"].response
+        assert (response.best, response.worst, response.claim) == (1 * MICROSECOND, 6 * MICROSECOND, Claim.EXACT)
