@@ -21,8 +21,15 @@ class Notes:
 
     def warning(self, rule: str, message: str, item: Named | None) -> None:
         """Add a finding about something that is not analysed as modelled."""
+        self._add(rule, Severity.WARNING, message, item)
+
+    def error(self, rule: str, message: str, item: Named | None) -> None:
+        """Add a finding about something whose analysis failed."""
+        self._add(rule, Severity.ERROR, message, item)
+
+    def _add(self, rule: str, severity: Severity, message: str, item: Named | None) -> None:
         name = item.name if item else ""
-        self.found[Finding(rule, Severity.WARNING, message, item.origin if item else None, object=name)] = None
+        self.found[Finding(rule, severity, message, item.origin if item else None, object=name)] = None
 
     def assume(self, sentence: str) -> None:
         """Add an assumption on which the results are based."""

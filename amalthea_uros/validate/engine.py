@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from pathlib import Path
-from traceback import extract_tb
 
+from amalthea_uros._internal.failures import failure
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
@@ -34,7 +33,7 @@ def _system_findings(rule: SystemRule, context: SystemContext) -> Iterator[Findi
     try:
         problems = list(rule.check(context))
     except Exception as error:
-        yield Finding("CHK001", Severity.ERROR, f"the rule {rule.id} failed: {_reason(error)}", help=_REPORT)
+        yield Finding("CHK001", Severity.ERROR, f"the rule {rule.id} failed: {failure(error)}", help=_REPORT)
         return
     for item, message, name, severity in problems:
         object_name = name or (item.name if isinstance(item, Named) else "")
@@ -45,24 +44,18 @@ def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
     try:
         elements = list(concerned(rule, context))
     except Exception as error:
-        yield Finding("CHK001", Severity.ERROR, f"the rule {rule.id} failed: {_reason(error)}", help=_REPORT)
+        yield Finding("CHK001", Severity.ERROR, f"the rule {rule.id} failed: {failure(error)}", help=_REPORT)
         return
     for element in elements:
         try:
             messages = list(rule.check(element, context))
         except Exception as error:
-            failed = f"the rule {rule.id} failed at this object: {_reason(error)}"
+            failed = f"the rule {rule.id} failed at this object: {failure(error)}"
             yield _finding("CHK001", Severity.ERROR, failed, element, _REPORT)
             continue
         for message in messages:
             text, severity = message if isinstance(message, Downgraded) else (message, rule.severity)
             yield _finding(rule.id, severity, text, element, rule.remedy)
-
-
-def _reason(error: Exception) -> str:
-    """What went wrong, and where in the code of the rule."""
-    frame = extract_tb(error.__traceback__)[-1]
-    return f"{type(error).__name__}: {error} ({Path(frame.filename).name}:{frame.lineno})"
 
 
 def concerned(rule: ModelRule, context: Context) -> Iterator[Element]:

@@ -11,7 +11,7 @@ from amalthea_uros.analyze import phases, system
 from amalthea_uros.analyze.assignment import propose_priorities
 from amalthea_uros.analyze.explanation import shares
 from amalthea_uros.analyze.results import Claim, Verdict
-from amalthea_uros.analyze.sensitivity import max_scale
+from amalthea_uros.analyze.sensitivity import max_growth
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import time_text
@@ -99,8 +99,8 @@ class TestTheSample:
     def test_factors_are_those_of_all_phases(self, analyze):
         analysis = analyze(sample(limit=("reaction: 25 ms", "reaction: 20.058 ms")))
         # 20 ms + 29 us * factor <= 20.058 ms.
-        assert float(max_scale(analysis)) == pytest.approx(2, rel=2e-3)
-        assert max_scale(analysis) <= 2
+        assert float(max_growth(analysis)) == pytest.approx(2, rel=2e-3)
+        assert max_growth(analysis) <= 2
 
     def test_proposals_do_not_depend_on_a_phase(self, analyze):
         limit = ("period: 1 ms, execution_time: {base", "period: 1 ms, deadline: 1 ms, execution_time: {base")

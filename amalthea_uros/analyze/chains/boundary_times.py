@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.analyze.chains import completed_work
-from amalthea_uros.analyze.chains.stages import At, Boundary, Fire, Read, Stage, Write
+from amalthea_uros.analyze.chains.completed_work import Busy
+from amalthea_uros.analyze.chains.stages import At, Boundary, Fire, Pass, Read, Stage, Write
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.schedule import Jobs
-from amalthea_uros.perf.software import Communication
+from amalthea_uros.perf.software import Communication, Execute, ExecutionNeed
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
@@ -25,16 +26,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class BoundaryTimes:
-    """The jobs of a stage in a schedule."""
+    """The earliest or the latest times at which the jobs of a stage reach its boundaries.
+
+    Attributes
+    ----------
+    jobs : in the schedule of all best cases for the earliest times, of all worst cases for the latest ones
+    demand_of : best-case or worst-case demand of the n-th job, counted from 1
+    busy_above : when tasks of higher priority have the core, for the latest times; None for the earliest ones
+    """
 
     context: TimingContext
     stage: Stage
     jobs: Jobs
     period: Time
     demand_of: Callable[[MultiframeDemand, int], Time]
+    busy_above: Busy | None = None
 
-    def at(self, boundary: Boundary, is_late: bool) -> Numbers:
-        """When each job reaches a boundary; where that is uncertain, an upper or a lower bound."""
+    def at(self, boundary: Boundary) -> Numbers:
+        """When each job reaches a boundary."""
         jobs = self.jobs
         match kind(boundary):
             case JobPhase.ACTIVATION:
@@ -45,22 +54,45 @@ class BoundaryTimes:
                 return jobs.ends
             case None:
                 return jobs.releases + self.period
-        position = boundary.occurrence.position if isinstance(boundary, At) else boundary.position
+        return self._inside(boundary)
+
+    def _inside(self, boundary: Boundary) -> Numbers:
+        jobs, position = self.jobs, position_of(boundary)
         assert position is not None
         if not position.is_certain:
-            return jobs.ends if is_late else jobs.begins
-        if kind(boundary) is JobPhase.BEFORE:
-            return completed_work.times_of_continuation(jobs, self._executed(position, including=False))
-        return completed_work.times_of_completion(jobs, self._executed(position, including=True))
+            return jobs.begins if self.busy_above is None else self.busy_above.resumption(jobs.ends)
+        executed = self._executed(position, including=kind(boundary) is JobPhase.AFTER)
+        completions = completed_work.times_of_completion(jobs, executed)
+        if self.busy_above is None or (kind(boundary) is JobPhase.AFTER and self._ends_with_execution(position)):
+            return completions
+        # A job that has not executed anything has just got the core.
+        return np.where(executed > 0, self.busy_above.resumption(completions), completions)
+
+    def _ends_with_execution(self, position: ActivityPosition) -> bool:
+        """Whether nothing follows the last execution in an activity, so that it ends with that."""
+        everything = self.context.dataflow.events.positions(self.stage.process.name)
+        return isinstance(everything[position.last - 1].activity, Execute | ExecutionNeed)
 
     def _executed(self, position: ActivityPosition, including: bool) -> Numbers:
         """The demand that each job has executed before a position, or including it."""
-        core = self.context.scheduled[self.stage.process.name].core
-        demand = self.context.demand_model.of_position(position, core, including)
-        table = schedule.demand_table(demand, self.demand_of)
-        lead = len(table) - schedule.demand_cycle(demand)
+        process, context = self.stage.process, self.context
+        model, core = context.demand_model, context.scheduled[process.name].core
+        before = model.of_position(position, core, including)
+        everything = model.of_activities(process, process.activities, core)
+        total = context.demands[process.name]
+
+        def executed(_: MultiframeDemand, job: int) -> Time:
+            done = self.demand_of(before, job)
+            if self.busy_above is None:
+                return done
+            # Overheads of the job that belong to no activity may all come first.
+            return done + self.demand_of(total, job) - self.demand_of(everything, job)
+
+        table = schedule.demand_table(total, executed)
+        cycle = schedule.demand_cycle(total)
+        lead = len(table) - cycle
         index = np.arange(len(self.jobs.releases))
-        at = np.where(index < lead, index, lead + (index - lead) % schedule.demand_cycle(demand))
+        at = np.where(index < lead, index, lead + (index - lead) % cycle)
         found: Numbers = np.array(table, dtype=np.int64)[at]
         return found
 
@@ -86,7 +118,19 @@ def kind(boundary: Boundary) -> JobPhase | None:
             return None if is_end else JobPhase.ACTIVATION
         case At(occurrence=occurrence):
             return occurrence.when
+        case Pass():
+            return JobPhase.ACTIVATION
     return JobPhase.END
+
+
+def position_of(boundary: Boundary) -> ActivityPosition | None:
+    """The position at a boundary, if it is inside a job."""
+    match boundary:
+        case At(occurrence=occurrence):
+            return occurrence.position
+        case Read(position=position) | Write(position=position) | Fire(position=position):
+            return position
+    return None
 
 
 def is_inside(boundary: Boundary) -> bool:
@@ -96,4 +140,4 @@ def is_inside(boundary: Boundary) -> bool:
 
 def is_logical(boundary: Boundary) -> bool:
     """Whether a boundary depends only on releases and periods."""
-    return not isinstance(boundary, Fire) and boundary.communication is Communication.LET
+    return isinstance(boundary, Read | Write | At) and boundary.communication is Communication.LET

@@ -1,12 +1,19 @@
-"""The times at which jobs have executed a given part of their demand."""
+"""The times at which jobs have executed a given part of their demand, and those at which they have the core again after that.
+
+An access takes no time. If somebody else arrives at the very moment at which a job has executed what comes before the access, the job
+may still access at once, or only when it has the core again, or, if the access is made elsewhere, at any moment in between.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from amalthea_uros.analyze.response_times.schedule import Jobs
+from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
@@ -20,12 +27,47 @@ def times_of_completion(jobs: Jobs, executed: Numbers) -> Numbers:
     return np.where(executed > 0, found, jobs.begins)
 
 
-def times_of_continuation(jobs: Jobs, executed: Numbers) -> Numbers:
-    """When each job continues after the given demand; its end if it executes no more than that."""
-    ends, target = _targets(jobs, executed)
-    at = np.minimum(np.searchsorted(ends, target, side="right"), len(ends) - 1)
-    found: Numbers = jobs.execution_slices[at, 2] - (ends[at] - target)
-    return np.where(jobs.execution_slices[at, 0] == np.arange(len(executed)), found, jobs.ends)
+@dataclass(frozen=True, slots=True)
+class Busy:
+    """When a core executes some tasks, in the steady state again and again.
+
+    Attributes
+    ----------
+    begins, ends : of the times without interruption, in order
+    cycle : time after which they repeat
+    until : the end of the time that is covered
+    """
+
+    begins: Numbers
+    ends: Numbers
+    cycle: Time
+    until: Time
+
+    @classmethod
+    def of(cls, tasks: Sequence[Jobs], cycle: Time, until: Time) -> Busy:
+        """The times at which a core executes one of some tasks whose execution slices are known."""
+        slices = np.concatenate([np.zeros((0, 3), dtype=np.int64), *(jobs.execution_slices for jobs in tasks)])[:, 1:]
+        slices = slices[slices[:, 0] < slices[:, 1]]
+        slices = slices[np.argsort(slices[:, 0])]
+        is_first = np.ones(len(slices), dtype=bool)
+        is_first[1:] = slices[1:, 0] > slices[:-1, 1]
+        is_last = np.ones(len(slices), dtype=bool)
+        is_last[:-1] = is_first[1:]
+        return cls(slices[is_first, 0], slices[is_last, 1], cycle, until)
+
+    def resumption(self, times: Numbers) -> Numbers:
+        """From each time on, when the core is first free of these tasks; they have it if one of them arrives at that time."""
+        if not len(self.begins):
+            return times
+        found = times
+        while True:
+            # What is released after the covered time is found one or several cycles before.
+            shift = np.maximum(0, (found - self.until) // self.cycle + 1) * self.cycle
+            at = np.searchsorted(self.begins, found - shift, side="right") - 1
+            later: Numbers = np.where(at >= 0, np.maximum(found, self.ends[at] + shift), found)
+            if np.array_equal(later, found):
+                return found
+            found = later
 
 
 def _targets(jobs: Jobs, executed: Numbers) -> tuple[Numbers, Numbers]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
 from amalthea_uros.analyze.chains.runnable_order import satisfies_order
@@ -60,16 +61,13 @@ class ConstraintEvaluator:
             try:
                 yield from self._one(constraint)
             except (UnknownError, UnresolvedError, UnboundedStageError) as error:
-                yield RequirementResult(
-                    name=constraint.name,
-                    object="",
-                    quantity=type(constraint).__name__,
-                    is_upper=True,
-                    limit=None,
-                    value=None,
-                    verdict=Verdict.UNKNOWN,
-                    reason=str(error),
-                )
+                yield _unknown(constraint, str(error))
+            except Exception as error:
+                # An error of this program leaves one constraint unknown, not all.
+                reason = f"the evaluation failed: {failure(error)}"
+                message = f"the constraint {constraint.name!r} is unknown: {reason}"
+                self.evaluation.context.notes.error("CHN006", message, constraint)
+                yield _unknown(constraint, reason)
 
     def _one(self, constraint: Named) -> Iterator[RequirementResult]:
         match constraint:
@@ -203,6 +201,19 @@ class ConstraintEvaluator:
                 value=None,
                 verdict=Verdict.MET if holds else Verdict.MISSED,
             )
+
+
+def _unknown(constraint: Named, reason: str) -> RequirementResult:
+    return RequirementResult(
+        name=constraint.name,
+        object="",
+        quantity=type(constraint).__name__,
+        is_upper=True,
+        limit=None,
+        value=None,
+        verdict=Verdict.UNKNOWN,
+        reason=reason,
+    )
 
 
 def _result(

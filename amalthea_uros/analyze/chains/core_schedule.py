@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from amalthea_uros.analyze.chains.completed_work import Busy
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core import periodic_tasks
 from amalthea_uros.analyze.response_times.schedule import Jobs, PeriodicTask
@@ -17,9 +18,7 @@ from amalthea_uros.units import Time
 class CoreSchedule:
     """The schedules of a core for all worst and all best cases.
 
-    Attributes
-    ----------
-    is_constant : whether execution times are constant, so that both schedules are the same
+    The last of the cycles that are covered is the steady state.
     """
 
     tasks: Mapping[str, PeriodicTask]
@@ -27,12 +26,17 @@ class CoreSchedule:
     best: Mapping[str, Jobs]
     steady_state_start: Time
     cycle: Time
-    is_constant: bool
 
     @property
     def until(self) -> Time:
         """The end of the covered time; its last cycle repeats."""
         return self.steady_state_start + self.cycle
+
+    def busy_above(self, name: str) -> Busy:
+        """When the core executes tasks of higher priority than one of them, in the worst case."""
+        priority = self.tasks[name].priority
+        above = [self.worst[task.name] for task in self.tasks.values() if task.priority > priority]
+        return Busy.of(above, self.cycle, self.until)
 
 
 @dataclass(slots=True)
@@ -72,5 +76,4 @@ class CoreSchedules:
             best=dict(zip(names, best, strict=True)),
             steady_state_start=start + cycle,
             cycle=cycle,
-            is_constant=is_constant,
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
 from amalthea_uros.analyze.chains.stages import Stage, communication_of, link_text, stages
@@ -39,7 +40,15 @@ class ChainEvaluator:
         self.controllers = controller_of_core(self.context.system)
 
     def chain(self, chain: EventChain) -> ChainResult:
-        """The latencies of a chain."""
+        """The latencies of a chain. If its evaluation fails, that is a finding, and the chain is unknown."""
+        try:
+            return self._chain(chain)
+        except Exception as error:
+            reason = f"the evaluation failed: {failure(error)}"
+            self.context.notes.error("CHN006", f"the chain {chain.name!r} is unknown: {reason}", chain)
+            return ChainResult(name=chain.name, communication="", reason=reason)
+
+    def _chain(self, chain: EventChain) -> ChainResult:
         events_by_name = self.context.system.events_by_name
         try:
             unfolded, left_out = unfold(chain, self.context.system)
@@ -80,7 +89,7 @@ class ChainEvaluator:
                 for events in sequences(unfold(chain, self.context.system)[0])
                 for route in routes([events_by_name[name] for name in events], self.context.dataflow)
                 for stage in self._stages(route)
-                for counter in stage.counters
+                if (counter := stage.counter) is not None
             }
         except (UnfoldError, UnresolvedError):
             return ()

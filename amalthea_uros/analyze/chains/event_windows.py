@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.perf.events import Event, EventSet
+from amalthea_uros.timing.counters import is_always
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
+from amalthea_uros.timing.dataflow.skipping import can_be_skipped
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.units import Time
 
@@ -44,8 +46,12 @@ class EventWindows:
         occurrences = self.evaluation.context.dataflow.events.of(self.event(name))
         if len(occurrences) > 1:
             raise UnknownError(f"the event {name!r} occurs at several positions")
-        position = occurrences[0].position
-        if position is not None and (position.counter is None or position.counter.prescaler > 1):
+        position, context = occurrences[0].position, self.evaluation.context
+        if position is not None and (
+            position.counter is None
+            or not is_always(position.counter)
+            or can_be_skipped(position, context.system, context.settings.modes)
+        ):
             raise UnknownError(f"the event {name!r} occurs in some jobs only")
         return occurrences[0]
 

@@ -222,7 +222,7 @@ class _RouteExplanation:
         """When a job starts; None if that varies or is unknown."""
         scheduled = self.evaluator.context.scheduled[process]
         found = self.timing.schedules.of(scheduled.core, with_slices=False)
-        if found is None or not found.is_constant:
+        if found is None or not np.array_equal(found.worst[process].begins, found.best[process].begins):
             return None
         begins = found.worst[process].begins
         per_cycle = found.cycle // found.tasks[process].period

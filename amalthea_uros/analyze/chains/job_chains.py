@@ -156,6 +156,10 @@ def _jobs_in(task: ReadWriteTimes, begin: Time, end: Time) -> Numbers:
 def forward(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
     """The first jobs of the last task that use the outputs of jobs of the first task."""
     for task, reader in pairwise(chain):
+        if task.jobs_later is not None:
+            # Jobs of one process run in order.
+            jobs = np.searchsorted(reader.releases, task.releases[jobs], side="right" if task.jobs_later else "left")
+            continue
         # A read sees the data written up to that time.
         found = np.searchsorted(reader.reads, task.writes[jobs], side="left")
         if task.preempts_reader:
@@ -167,8 +171,11 @@ def forward(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
 def backward(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
     """The jobs of the first task whose outputs jobs of the last task use."""
     for writer, task in zip(chain[-2::-1], chain[:0:-1], strict=True):
-        found = np.searchsorted(writer.writes, task.reads[jobs], side="right")
-        if writer.preempts_reader:
-            found = np.maximum(found, np.searchsorted(writer.releases, task.reads[jobs], side="right"))
+        if writer.jobs_later is not None:
+            found = np.searchsorted(writer.releases, task.releases[jobs], side="left" if writer.jobs_later else "right")
+        else:
+            found = np.searchsorted(writer.writes, task.reads[jobs], side="right")
+            if writer.preempts_reader:
+                found = np.maximum(found, np.searchsorted(writer.releases, task.reads[jobs], side="right"))
         jobs = found - 1
     return jobs

@@ -6,7 +6,7 @@ In the steady state these times repeat in each cycle, so that they can be extend
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,11 +23,13 @@ class ReadWriteTimes:
 
     Attributes
     ----------
-    reads : when each job reads, or a lower bound of that
-    writes : when its output becomes visible, or an upper bound of that
+    reads : when each job reads, or a bound of that
+    writes : when its output becomes visible, or a bound of that
     cycle : time after which the last jobs repeat
     until : the end of the time that is covered
     preempts_reader : whether its jobs preempt those of the next task on the same core, so that these cannot read in between
+    jobs_later : if the next task of the chain is a later part of the same process: 0 if a job already uses its own output, 1 if
+        only the jobs after it do; None for another process, which uses what was written when it reads
     """
 
     releases: Numbers
@@ -36,16 +38,17 @@ class ReadWriteTimes:
     cycle: Time
     until: Time
     preempts_reader: bool = False
+    jobs_later: int | None = None
 
     def scaled(self, factor: int) -> ReadWriteTimes:
         """The same in a unit of time that is smaller by a factor."""
-        return ReadWriteTimes(
+        return replace(
+            self,
             releases=self.releases * factor,
             reads=self.reads * factor,
             writes=self.writes * factor,
             cycle=self.cycle * factor,
             until=self.until * factor,
-            preempts_reader=self.preempts_reader,
         )
 
     def extended(self, until: Time) -> ReadWriteTimes:
@@ -60,21 +63,37 @@ class ReadWriteTimes:
             more: Numbers = np.concatenate((times, (times[last:] + shifts).ravel()))
             return more
 
-        return ReadWriteTimes(
+        return replace(
+            self,
             releases=repeated(self.releases),
             reads=repeated(self.reads),
             writes=repeated(self.writes),
-            cycle=self.cycle,
             until=self.until + rounds * self.cycle,
-            preempts_reader=self.preempts_reader,
         )
+
+    def selected(self, jobs: Numbers, cycle: Time) -> ReadWriteTimes:
+        """Only some of the jobs, which repeat after a cycle."""
+        return replace(self, releases=self.releases[jobs], reads=self.reads[jobs], writes=self.writes[jobs], cycle=cycle)
+
+    def has_times_of(self, other: ReadWriteTimes) -> bool:
+        """Whether the jobs read and write at the same times as those of another one."""
+        return np.array_equal(self.reads, other.reads) and np.array_equal(self.writes, other.writes)
 
 
 def reach(chain: Sequence[ReadWriteTimes]) -> Time:
-    """An upper bound of the length of any job chain: at each task up to two periods of waiting, and the time from read to write."""
-    return sum(2 * _longest_gap(task) + int((task.writes - task.reads).max()) for task in chain)
+    """An upper bound of the time between the releases of the jobs of any job chain.
+
+    At each task up to two periods of waiting, and the time from a release to a read or write. With bounds of these times a job can
+    write before it reads, so that the time in between says nothing.
+    """
+    return sum(2 * _longest_gap(task) + _longest_delay(task) for task in chain)
 
 
 def _longest_gap(task: ReadWriteTimes) -> Time:
-    """The maximum time between two consecutive reads."""
-    return int(np.diff(task.reads).max()) if len(task.reads) > 1 else task.cycle
+    """The maximum time between two consecutive releases."""
+    return int(np.diff(task.releases).max()) if len(task.releases) > 1 else task.cycle
+
+
+def _longest_delay(task: ReadWriteTimes) -> Time:
+    """The maximum time from the release of a job until it has read and written."""
+    return int((np.maximum(task.reads, task.writes) - task.releases).max())

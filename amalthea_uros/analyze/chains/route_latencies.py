@@ -59,8 +59,7 @@ class RouteLatencies:
     @property
     def why_unbounded(self) -> str:
         """Why there is no bound of the reaction time; "" if there is one."""
-        irregular = next((timed.task.name for part in self.parts for timed in part if not timed.task.is_regular), None)
-        return f"the maximum time between two activations of {irregular!r} is unknown" if irregular is not None else ""
+        return next((timed.why_irregular for part in self.parts for timed in part if timed.why_irregular), "")
 
     def values(self) -> Iterator[Value]:
         """The values of all methods."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import reduce
 from itertools import pairwise
 from math import lcm
 from typing import TYPE_CHECKING
@@ -16,20 +17,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.analyze.chains import let
-from amalthea_uros.analyze.chains.boundary_times import BoundaryTimes, is_inside, is_logical, kind
+from amalthea_uros.analyze.chains.boundary_times import BoundaryTimes, is_inside, is_logical
+from amalthea_uros.analyze.chains.boundary_windows import BoundaryWindows
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
-from amalthea_uros.analyze.chains.stages import At, Boundary, Fire, Read, Stage
+from amalthea_uros.analyze.chains.stages import SAME_JOB, Boundary, Fire, Pass, Read, Stage
 from amalthea_uros.analyze.chains.timed_stage import ReadWriteBounds, TimedStage
+from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.schedule import MAX_JOBS
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.software import Communication, Process, Trigger
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
+from amalthea_uros.perf.system import System
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.counters import first_effect, is_always
-from amalthea_uros.timing.dataflow.events import JobPhase
+from amalthea_uros.timing.counters import ALWAYS, composed, first_effect, is_always
+from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.dataflow.skipping import can_be_skipped
 from amalthea_uros.timing.demand import MAX_TIME_BASE
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.timing.multiframe import MultiframeDemand
@@ -51,6 +56,7 @@ class StageTiming:
     solution: Solution
     unit: int = field(init=False)
     schedules: CoreSchedules = field(init=False)
+    _blocking: dict[str, Blocking] = field(default_factory=dict)
 
     @property
     def context(self) -> TimingContext:
@@ -74,39 +80,50 @@ class StageTiming:
         UnboundedStageError : a response time in it is unbounded or unknown.
         """
         base, triggered = stages[0], stages[1:]
-        max_delay = sum(self._worst(stage.process) for stage in triggered)
-        min_delay = sum(self._min_delay(stage) for stage in triggered)
-        counters = self._counters(stages)
+        for stage in triggered:
+            if is_logical(stage.leave):
+                raise UnboundedStageError(
+                    f"{stage.process.name!r} is triggered, so that it has no period, as LET communication requires"
+                )
+        max_delay = sum(self._windows(stage).latest(stage.leave) for stage in triggered)
+        min_delay = sum(self._windows(stage).earliest(stage.leave) for stage in triggered)
+        counter = self._counter(stages)
         preempts_reader = self._preempts_reader(base, follower) and not triggered
-        is_countable = all(stage.is_countable for stage in stages)
-        task = self._chain_task(base, max_delay, counters, is_countable, preempts_reader)
+        why_irregular = self._why_irregular(stages)
         releases = known_releases(base.process, self.context.system)
-        if releases is None:
-            return TimedStage(task=task, reason=f"the release times of {base.process.name!r} are unknown")
-        if not is_countable:
-            return TimedStage(task=task, reason=f"it is unknown which jobs of {base.process.name!r} take part")
-        if len(counters) > 1:
-            return TimedStage(task=task, reason=f"several counters select the jobs of {base.process.name!r}")
-        if not all(counter.is_phase_known for counter in counters):
-            return TimedStage(task=task, reason=f"the phase at which {base.process.name!r} takes part is unknown")
-        if self._is_too_long(releases, counters):
-            return TimedStage(task=task, reason=f"the jobs of {base.process.name!r} that take part are too far apart")
-        if is_logical(base.enter) and is_logical(base.leave):
-            read_write = self._logical(releases)
-        else:
-            read_write = self._by_schedule(base, releases) or self._by_response(base, releases)
-        pessimistic, optimistic = _later(read_write.pessimistic, max_delay), _later(read_write.optimistic, min_delay)
-        read_write = replace(
-            read_write,
-            pessimistic=self._taking_part(pessimistic, counters, releases, preempts_reader, read_write.steady_state_start),
-            optimistic=self._taking_part(optimistic, counters, releases, False, read_write.steady_state_start),
-            is_exact=read_write.is_exact and not triggered,
+        read_write = None if releases is None else self._read_write(base, releases)
+        task = self._chain_task(
+            base,
+            counter,
+            response=self._chain_response(base, read_write) + max_delay,
+            preempts_reader=preempts_reader,
+            is_regular=not why_irregular,
         )
-        return TimedStage(task=task, read_write=read_write)
+        if why_irregular:
+            return TimedStage(task=task, reason=why_irregular, why_irregular=why_irregular)
+        if not counter.is_phase_known:
+            return TimedStage(
+                task=replace(task, offset=None), reason=f"the phase at which {base.process.name!r} takes part is unknown"
+            )
+        if releases is None or read_write is None:
+            return TimedStage(task=task, reason=f"the release times of {base.process.name!r} are unknown")
+        if self._is_too_long(releases, counter):
+            return TimedStage(task=task, reason=f"the jobs of {base.process.name!r} that take part are too far apart")
+        later = stages[-1].jobs_later
+        found = replace(
+            read_write,
+            pessimistic=replace(
+                _later(read_write.pessimistic, max_delay),
+                preempts_reader=preempts_reader,
+                jobs_later=later.most if later is not None else None,
+            ),
+            optimistic=replace(_later(read_write.optimistic, min_delay), jobs_later=later.least if later is not None else None),
+        )
+        return TimedStage(task=task, read_write=found.taking_part(counter, releases.period * self.unit))
 
-    def _is_too_long(self, releases: Periodic, counters: Sequence[Counter]) -> bool:
+    def _is_too_long(self, releases: Periodic, counter: Counter) -> bool:
         """Whether two jobs that take part are too far apart in time, or have too many others between them."""
-        max_distance = max((max(counter.prescaler, first_effect(counter)) for counter in counters), default=1)
+        max_distance = max(counter.prescaler, first_effect(counter))
         return max_distance > MAX_JOBS or (releases.offset + 4 * max_distance * releases.period) * self.unit > LIMIT
 
     # Processes
@@ -124,68 +141,82 @@ class StageTiming:
             raise UnboundedStageError(f"the response time of {process.name!r} is unbounded: {response.reason}")
         return response.worst * self.unit
 
-    def _min_delay(self, stage: Stage) -> Time:
-        """The minimum time from the activation of a triggered process to the end of its stage."""
-        match kind(stage.leave):
-            case JobPhase.ACTIVATION | JobPhase.START:
-                return 0
-            case JobPhase.BEFORE | JobPhase.AFTER:
-                return self._min_demand(stage)
-        return self._response(stage.process).best * self.unit
+    def _windows(self, stage: Stage, period: Time = 0) -> BoundaryWindows:
+        self._worst(stage.process)
+        return BoundaryWindows(self.solution, stage, self._response(stage.process), self.unit, period)
 
-    def _min_demand(self, stage: Stage) -> Time:
-        """The minimum demand of a job before the activity at which it leaves the stage."""
-        leave = stage.leave
-        position = leave.occurrence.position if isinstance(leave, At) else leave.position
-        if position is None or not position.is_certain:
-            return 0
-        core = self.context.scheduled[stage.process.name].core
-        demand = self.context.demand_model.of_position(position, core, including=False)
-        return demand.best * self.unit // self.context.time_base(stage.process.name)
-
-    def _counters(self, stages: Sequence[Stage]) -> list[Counter]:
-        """The counters that let only some jobs of the first stage take part, including those of triggers."""
-        found = set(stages[0].counters)
+    def _counter(self, stages: Sequence[Stage]) -> Counter:
+        """The counter that lets only some jobs of the first stage take part, including those of triggers."""
+        found = stages[0].counter or ALWAYS
         for stage, then in pairwise(stages):
-            if isinstance(stage.leave, Fire) and stage.leave.position is not None:
-                trigger = stage.leave.position.activity
-                if isinstance(trigger, Trigger) and trigger.counter is not None:
-                    found.add(trigger.counter)
-            for name in then.process.stimuli:
-                stimulus = self.context.system.stimuli_by_name.get(name)
-                if isinstance(stimulus, InterProcess | EventTriggered) and stimulus.counter is not None:
-                    found.add(stimulus.counter)
-            found |= then.counters
-        return [counter for counter in found if not is_always(counter)]
+            assert isinstance(stage.leave, Fire)
+            fired = stage.leave.position
+            if fired is not None and isinstance(fired.activity, Trigger):
+                found = composed(found, fired.activity.counter or ALWAYS)
+            of_stimuli = [self._counter_of(name) for name in then.process.stimuli]
+            others = [counter for counter in (*of_stimuli, then.counter or ALWAYS) if not is_always(counter)]
+            if others and not self._is_only_cause(fired, then.process):
+                raise UnboundedStageError(f"a counter of {then.process.name!r} also counts activations by others")
+            found = reduce(composed, others, found)
+        return found
 
-    def _chain_task(
-        self, base: Stage, delay: Time, counters: Sequence[Counter], is_countable: bool, preempts_reader: bool
-    ) -> ChainTask:
-        name = base.process.name
-        events = self.solution.event_models.get(name)
-        max_interarrival = events.max_interarrival if events is not None else None
+    def _counter_of(self, stimulus: str) -> Counter:
+        found = self.context.system.stimuli_by_name.get(stimulus)
+        return (found.counter or ALWAYS) if isinstance(found, InterProcess | EventTriggered) else ALWAYS
+
+    def _is_only_cause(self, fired: ActivityPosition | None, triggered: Process) -> bool:
+        """Whether each job of a triggered process is activated at one position, which jobs reach once."""
+        if fired is None or len(triggered.stimuli) > 1:
+            return False
+        causes = self.context.dataflow.fired_at(triggered.stimuli[0])
+        return len(causes) == 1 and causes[0].times == 1 and causes[0].number == fired.number
+
+    def _why_irregular(self, stages: Sequence[Stage]) -> str:
+        """Why there is no maximum time between two jobs of a stage that take part; "" if there is one."""
+        system, modes = self.context.system, self.context.settings.modes
+        for stage in stages:
+            if stage.counter is None:
+                return f"it is unknown which jobs of {stage.process.name!r} take part"
+            if any(can_be_skipped(position, system, modes) for position in stage.positions):
+                return f"jobs of {stage.process.name!r} can take a branch without the access or event of the chain"
+        events = self.solution.event_models.get(stages[0].process.name)
+        if events is None or events.max_interarrival is None:
+            return f"the maximum time between two activations of {stages[0].process.name!r} is unknown"
+        return ""
+
+    def _chain_task(self, base: Stage, counter: Counter, response: Time, preempts_reader: bool, is_regular: bool) -> ChainTask:
         releases = known_releases(base.process, self.context.system)
-        period = (max_interarrival or 0) * self.unit
-        offset = None if releases is None else releases.offset * self.unit
-        for counter in counters:
-            if offset is not None and releases is not None:
-                offset += (first_effect(counter) - 1) * releases.period * self.unit
-            period *= counter.prescaler
-        response = self._worst(base.process)
-        if is_logical(base.leave):
-            if releases is None or response > releases.period * self.unit:
-                raise UnboundedStageError(f"{name!r} does not always end within its period, as LET communication requires")
-            response = releases.period * self.unit
+        offset = None if releases is None else (releases.offset + (first_effect(counter) - 1) * releases.period) * self.unit
         return ChainTask(
-            name=name,
-            period=period,
-            is_regular=max_interarrival is not None and is_countable,
-            response=response + delay,
-            offset=offset
-            if len(counters) < 2 and is_countable and all(counter.is_phase_known for counter in counters)
-            else None,
+            name=base.process.name,
+            period=self._max_interarrival(base.process) * counter.prescaler,
+            is_regular=is_regular,
+            response=response,
+            offset=offset,
             preempts_reader=preempts_reader,
         )
+
+    def _max_interarrival(self, process: Process) -> Time:
+        """The maximum time between two activations; 0 if there is none."""
+        events = self.solution.event_models.get(process.name)
+        return ((events.max_interarrival if events is not None else None) or 0) * self.unit
+
+    def _chain_response(self, base: Stage, read_write: ReadWriteBounds | None) -> Time:
+        """The maximum time from the release of a job until it leaves a stage."""
+        worst = self._worst(base.process)
+        if isinstance(base.leave, Pass):
+            # A job passes the effect on to itself, or else to the next one at the latest.
+            return 0 if base.jobs_later == SAME_JOB else self._max_interarrival(base.process)
+        if is_logical(base.leave):
+            name, period = base.process.name, _period(base.process, self.context.system)
+            if period is None:
+                raise UnboundedStageError(f"{name!r} has no period, as LET communication requires")
+            if worst > period * self.unit:
+                raise UnboundedStageError(f"{name!r} does not always end within its period, as LET communication requires")
+            return period * self.unit
+        if read_write is None:
+            return self._windows(base).latest(base.leave)
+        return int((read_write.pessimistic.writes - read_write.pessimistic.releases).max())
 
     def _preempts_reader(self, base: Stage, follower: Stage | None) -> bool:
         """Whether the jobs of a stage preempt those of the next one, so that these cannot read before they have written."""
@@ -196,118 +227,97 @@ class StageTiming:
             return False  # a job cannot read its own future output
         if first is None or then is None or first.core != then.core or first.server or then.server or first.rank <= then.rank:
             return False
+        if self._blocking_on(first.core).level(first).rank <= then.rank:
+            return False  # while something below keeps the writer off, or the writer waits for it, the reader can start
         # A reader that reads later than at its start may read just when the writer is released.
         return isinstance(follower.enter, Read) and follower.enter.communication is Communication.IMPLICIT
 
+    def _blocking_on(self, core: str) -> Blocking:
+        if core not in self._blocking:
+            here = [item for item in self.context.on_core(core) if item.server is None]
+            self._blocking[core] = Blocking.of(here, self.solution)
+        return self._blocking[core]
+
     # Read and write times
+
+    def _read_write(self, stage: Stage, releases: Periodic) -> ReadWriteBounds:
+        """The times of all jobs of a process."""
+        if is_logical(stage.enter) and is_logical(stage.leave):
+            return self._logical(releases)
+        return self._by_schedule(stage, releases) or self._by_response(stage, releases)
 
     def _logical(self, releases: Periodic) -> ReadWriteBounds:
         period, offset = releases.period * self.unit, releases.offset * self.unit
         times = let.read_write_times(period, offset, period)
-        return ReadWriteBounds(pessimistic=times, optimistic=times, steady_state_start=offset, is_exact=True, is_logical=True)
+        return ReadWriteBounds(pessimistic=times, optimistic=times, steady_state_start=offset, is_logical=True)
 
     def _by_schedule(self, stage: Stage, releases: Periodic) -> ReadWriteBounds | None:
         scheduled = self.context.scheduled.get(stage.process.name)
         if scheduled is None:
             return None
-        found = self.schedules.of(scheduled.core, any(map(is_inside, (stage.enter, stage.leave))))
+        inside = any(map(is_inside, (stage.enter, stage.leave)))
+        found = self.schedules.of(scheduled.core, inside)
         if found is None:
             return None
         name, period = stage.process.name, found.tasks[stage.process.name].period
-        early = BoundaryTimes(self.context, stage, found.best[name], period, MultiframeDemand.best_of)
-        late = BoundaryTimes(self.context, stage, found.worst[name], period, MultiframeDemand.worst_of)
+        best, worst = MultiframeDemand.best_of, MultiframeDemand.worst_of
+        early = BoundaryTimes(self.context, stage, found.best[name], period, best)
+        late = BoundaryTimes(self.context, stage, found.worst[name], period, worst, found.busy_above(name) if inside else None)
         time_base = self.context.demand_model.time_base(scheduled.core)
 
         def read_write_times(reads: Numbers, writes: Numbers) -> ReadWriteTimes:
-            return self._unified(
-                ReadWriteTimes(
-                    releases=found.worst[name].releases, reads=reads, writes=writes, cycle=found.cycle, until=found.until
-                ),
-                time_base,
+            return ReadWriteTimes(
+                releases=self._unified(early.jobs.releases, time_base, is_upper=False),
+                reads=reads,
+                writes=writes,
+                cycle=found.cycle * self.unit // time_base,
+                until=found.until * self.unit // time_base,
             )
 
-        certain = all(position.is_certain for position in stage.positions) or not any(
-            map(is_inside, (stage.enter, stage.leave))
-        )
+        def lower(boundary: Boundary) -> Numbers:
+            return self._unified(early.at(boundary), time_base, is_upper=False)
+
+        def upper(boundary: Boundary) -> Numbers:
+            return self._unified(late.at(boundary), time_base, is_upper=True)
+
         return ReadWriteBounds(
-            pessimistic=read_write_times(early.at(stage.enter, False), late.at(stage.leave, True)),
-            optimistic=read_write_times(late.at(stage.enter, True), early.at(stage.leave, False)),
+            pessimistic=read_write_times(lower(stage.enter), upper(stage.leave)),
+            optimistic=read_write_times(upper(stage.enter), lower(stage.leave)),
             steady_state_start=found.steady_state_start * self.unit // time_base,
-            is_exact=found.is_constant and certain,
         )
 
-    def _unified(self, times: ReadWriteTimes, time_base: int) -> ReadWriteTimes:
-        """The times in the unit that all cores share; rounded outwards if that is coarser."""
+    def _unified(self, times: Numbers, time_base: int, is_upper: bool) -> Numbers:
+        """Times of a core in the unit that all cores share; rounded up or down if that is coarser."""
         if self.unit % time_base == 0:
-            factor = self.unit // time_base
-            return times if factor == 1 else times.scaled(factor)
-        return ReadWriteTimes(
-            releases=times.releases // time_base,
-            reads=times.reads // time_base,
-            writes=-(-times.writes // time_base),
-            cycle=times.cycle // time_base,
-            until=times.until // time_base,
-        )
+            return times * (self.unit // time_base)
+        return -(-times // time_base) if is_upper else times // time_base
 
     def _by_response(self, stage: Stage, releases: Periodic) -> ReadWriteBounds:
-        response, demand = self._response(stage.process), self.context.demands[stage.process.name]
-        scheduled = self.context.scheduled[stage.process.name]
-        time_base = self.context.demand_model.time_base(scheduled.core)
         period, offset = releases.period * self.unit, releases.offset * self.unit
         release_times = offset + period * np.arange(2, dtype=np.int64)
-        best, worst = response.best * self.unit, self._worst(stage.process)
-        # After its start a job still executes at least its best-case demand.
-        start = max(0, worst - demand.best * self.unit // time_base)
+        windows = self._windows(stage, period)
 
-        def at(boundary: Boundary, is_late: bool) -> Numbers:
-            match kind(boundary):
-                case JobPhase.ACTIVATION:
-                    return release_times
-                case JobPhase.START:
-                    return release_times + (start if is_late else 0)
-                case JobPhase.END:
-                    return release_times + (worst if is_late else best)
-                case None:
-                    return release_times + period
-            return release_times + (worst if is_late else 0)
-
-        def read_write_times(reads: Numbers, writes: Numbers) -> ReadWriteTimes:
+        def read_write_times(read: Time, write: Time) -> ReadWriteTimes:
+            reads, writes = release_times + read, release_times + write
             return ReadWriteTimes(releases=release_times, reads=reads, writes=writes, cycle=period, until=offset + 2 * period)
 
         return ReadWriteBounds(
-            pessimistic=read_write_times(at(stage.enter, False), at(stage.leave, True)),
-            optimistic=read_write_times(at(stage.enter, True), at(stage.leave, False)),
+            pessimistic=read_write_times(windows.earliest(stage.enter), windows.latest(stage.leave)),
+            optimistic=read_write_times(windows.latest(stage.enter), windows.earliest(stage.leave)),
             steady_state_start=offset,
         )
-
-    def _taking_part(
-        self,
-        times: ReadWriteTimes,
-        counters: Sequence[Counter],
-        releases: Periodic,
-        preempts_reader: bool,
-        steady_state_start: Time,
-    ) -> ReadWriteTimes:
-        """The read and write times of only those jobs that take part."""
-        if counters:
-            (counter,) = counters
-            cycle = lcm(times.cycle, releases.period * self.unit * counter.prescaler)
-            lead = first_effect(counter) * releases.period * self.unit
-            times = times.extended(max(times.until, steady_state_start + lead) + 2 * cycle)
-            first, numbers = first_effect(counter), np.arange(1, len(times.releases) + 1)
-            taking_part = (numbers >= first) & ((numbers - first) % counter.prescaler == 0)
-            times = ReadWriteTimes(
-                releases=times.releases[taking_part],
-                reads=times.reads[taking_part],
-                writes=times.writes[taking_part],
-                cycle=cycle,
-                until=times.until,
-            )
-        return replace(times, preempts_reader=preempts_reader)
 
 
 def _later(times: ReadWriteTimes, delay: Time) -> ReadWriteTimes:
     return replace(times, writes=times.writes + delay) if delay else times
+
+
+def _period(process: Process, system: System) -> Time | None:
+    """The period of a process with a single periodic stimulus, with or without jitter."""
+    match [system.stimuli_by_name.get(name) for name in process.stimuli]:
+        case [Periodic(period=period)]:
+            return period
+    return None
 
 
 def in_picoseconds(value: Fraction | Time, unit: int, is_upper: bool) -> Time:

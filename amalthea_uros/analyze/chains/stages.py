@@ -1,12 +1,18 @@
-"""A route through a chain as stages: the part that each job contributes, from its read to its write."""
+"""A route through a chain as stages: the part that each job contributes, from its read to its write.
+
+If counters let different jobs of a process reach two positions, the effect waits at the first one for a job that reaches the other
+one. So these are two stages, although they belong to the same process.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
-from amalthea_uros.perf.software import Communication, LabelAccess, Process
+from amalthea_uros.perf.software import Communication, Group, LabelAccess, Process
 from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.timing.counters import ALWAYS
 from amalthea_uros.timing.dataflow.events import EventOccurrence
 from amalthea_uros.timing.dataflow.links import Link, LinkKind
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
@@ -46,7 +52,23 @@ class At:
     is_end: bool
 
 
-Boundary = Read | Write | Fire | At
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """Where a job passes the effect on within its process: to a later position of the same job, or to a later job."""
+
+
+Boundary = Read | Write | Fire | At | Pass
+
+
+@dataclass(frozen=True, slots=True)
+class JobsLater:
+    """After how many jobs of a process, at least and at most, a later stage in it uses what a job passes on."""
+
+    least: int
+    most: int
+
+
+SAME_JOB, NEXT_JOB, SAME_OR_NEXT_JOB = JobsLater(0, 0), JobsLater(1, 1), JobsLater(0, 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,32 +78,22 @@ class Stage:
     Attributes
     ----------
     enter, leave : the boundaries of that part
+    positions : those that a job must reach to take part
     is_triggered : whether the previous stage activates it
+    jobs_later : how the next stage gets the output, if it belongs to the same process
     """
 
     process: Process
     enter: Boundary
     leave: Boundary
+    positions: tuple[ActivityPosition, ...] = ()
     is_triggered: bool = False
+    jobs_later: JobsLater | None = None
 
     @property
-    def positions(self) -> list[ActivityPosition]:
-        """The positions that a job must reach to take part."""
-        found = [
-            boundary.occurrence.position if isinstance(boundary, At) else boundary.position
-            for boundary in (self.enter, self.leave)
-        ]
-        return [position for position in found if position is not None]
-
-    @property
-    def counters(self) -> set[Counter]:
-        """The counters that let only some jobs take part."""
-        return {position.counter for position in self.positions if position.counter is not None}
-
-    @property
-    def is_countable(self) -> bool:
-        """Whether the counters are those of its process alone, so that it is known how often its jobs take part."""
-        return all(position.counter is not None for position in self.positions)
+    def counter(self) -> Counter | None:
+        """The counter that lets only some jobs take part, the same at all positions of a stage; None if it is unknown."""
+        return self.positions[0].counter if self.positions else ALWAYS
 
 
 def stages(route: Route, communication: Communication | None) -> list[Stage]:
@@ -94,21 +106,81 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
     how = communication or Communication.IMPLICIT
     found: list[Stage] = []
     enter: Boundary = At(route.occurrences[0], how, is_end=False)
-    is_triggered = False
-    for link, before in zip(route.links, route.occurrences, strict=False):
+    is_triggered, passed = False, [route.occurrences[0].position]
+    for link, (before, then) in zip(route.links, pairwise(route.occurrences), strict=True):
         if link.kind is LinkKind.JOB:
+            passed.append(then.position)
             continue
-        leave = (
-            Fire(link.write, link.is_before)
-            if link.kind is LinkKind.TRIGGER
-            else Write(_communication(link.write, communication), link.write)
+        is_trigger = link.kind is LinkKind.TRIGGER
+        write, read = (_communication(position, communication) for position in (link.write, link.read))
+        leave = Fire(link.write, link.is_before) if is_trigger else Write(write, link.write)
+        is_same = before.process.name == then.process.name and not is_trigger
+        later = _jobs_later(link, write, read) if is_same else None
+        found += _within(
+            Stage(before.process, enter, leave, is_triggered=is_triggered, jobs_later=later), [*passed, link.write]
         )
-        found.append(Stage(before.process, enter, leave, is_triggered))
-        is_triggered = link.kind is LinkKind.TRIGGER
-        enter = Read(_communication(link.read, communication), link.read)
+        is_triggered, passed = is_trigger, [link.read, then.position]
+        enter = Read(read, link.read)
     last = route.occurrences[-1]
-    found.append(Stage(last.process, enter, At(last, how, is_end=True), is_triggered))
-    return found
+    return found + _within(Stage(last.process, enter, At(last, how, is_end=True), is_triggered=is_triggered), passed)
+
+
+def _within(stage: Stage, passed: Sequence[ActivityPosition | None]) -> list[Stage]:
+    """A stage, divided where different jobs reach the positions that it passes, or the order of these is uncertain."""
+    parts: list[list[ActivityPosition]] = [[]]
+    links: list[JobsLater] = []
+    for position in passed:
+        if position is None:
+            continue
+        if parts[-1]:
+            before = parts[-1][-1]
+            later = _later_in_job(before, position)
+            if later != SAME_JOB or before.counter != position.counter:
+                parts.append([])
+                links.append(later)
+        parts[-1].append(position)
+    last = len(parts) - 1
+    return [
+        replace(
+            stage,
+            enter=Pass() if number else stage.enter,
+            leave=stage.leave if number == last else Pass(),
+            positions=tuple(part),
+            is_triggered=stage.is_triggered and not number,
+            jobs_later=stage.jobs_later if number == last else links[number],
+        )
+        for number, part in enumerate(parts)
+    ]
+
+
+def _later_in_job(first: ActivityPosition, then: ActivityPosition) -> JobsLater:
+    """How the effect gets from one position of a process to another one that is meant to be later in the job."""
+    return SAME_JOB if first.number <= then.last and _is_order_certain(first, then) else SAME_OR_NEXT_JOB
+
+
+def _jobs_later(link: Link, write: Communication, read: Communication) -> JobsLater | None:
+    """How data get from a job to another part of its own process; None if the times of both decide."""
+    logical = {write, read} & {Communication.LET}
+    if logical:
+        return NEXT_JOB if write is read else None
+    if link.write is None or link.read is None:
+        return NEXT_JOB
+    if link.write.is_certain and link.read.is_certain:
+        # Within a job the data flow directly, also between accesses that are implicit.
+        return NEXT_JOB if link.read.number < link.write.number else SAME_JOB
+    return SAME_OR_NEXT_JOB
+
+
+def _is_order_certain(first: ActivityPosition, then: ActivityPosition) -> bool:
+    """Whether the order of two positions is the same in all jobs."""
+    container = None
+    for (activities, index), (others, other) in zip(first.outer, then.outer, strict=False):
+        if activities is not others:
+            return False
+        if index != other:
+            return not isinstance(container, Group) or container.ordered
+        container = activities[index]
+    return True
 
 
 def _communication(position: ActivityPosition | None, communication: Communication | None) -> Communication:

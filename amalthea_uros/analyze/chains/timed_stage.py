@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import lcm
+
+import numpy as np
 
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
+from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.timing.counters import first_effect, is_always
 from amalthea_uros.units import Time
 
 
@@ -18,15 +23,39 @@ class ReadWriteBounds:
     pessimistic : earliest reads and latest writes
     optimistic : latest reads and earliest writes
     steady_state_start : time from which both repeat
-    is_exact : whether both are the actual times
     is_logical : whether they depend only on releases and periods
     """
 
     pessimistic: ReadWriteTimes
     optimistic: ReadWriteTimes
     steady_state_start: Time
-    is_exact: bool = False
     is_logical: bool = False
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether both are the actual times."""
+        return self.pessimistic.has_times_of(self.optimistic) and self.pessimistic.jobs_later == self.optimistic.jobs_later
+
+    def taking_part(self, counter: Counter, period: Time) -> ReadWriteBounds:
+        """The times of only those jobs that a counter lets take part.
+
+        Parameters
+        ----------
+        period : of the process
+        """
+        if is_always(counter):
+            return self
+        first, prescaler = first_effect(counter), counter.prescaler
+        begin = self.steady_state_start + first * period
+
+        def selected(times: ReadWriteTimes) -> ReadWriteTimes:
+            cycle = lcm(times.cycle, period * prescaler)
+            longer = times.extended(max(times.until, begin) + 2 * cycle)
+            return longer.selected(np.arange(first - 1, len(longer.releases), prescaler), cycle)
+
+        return replace(
+            self, pessimistic=selected(self.pessimistic), optimistic=selected(self.optimistic), steady_state_start=begin
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,11 +67,13 @@ class TimedStage:
     task : as the bounds see it
     read_write : None if they are unknown
     reason : why they are unknown
+    why_irregular : why there is no maximum time between two jobs that take part; "" if there is one
     """
 
     task: ChainTask
     read_write: ReadWriteBounds | None = None
     reason: str = ""
+    why_irregular: str = ""
 
     @property
     def is_exact(self) -> bool:

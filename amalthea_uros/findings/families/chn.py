@@ -41,4 +41,11 @@ KINDS = (
         rationale="The stimulus and response of the chain are used; those of its first or last segment are ignored.",
         remedy="Use the stimulus of the chain in its first segment, and its response in the last one.",
     ),
+    FindingKind(
+        id="CHN006",
+        title="failure in the evaluation of a chain or constraint",
+        severity=Severity.ERROR,
+        rationale="An error in this program; the chain or constraint is unknown, and everything else is analysed.",
+        remedy="Report it to the authors of this program, with the model if possible.",
+    ),
 )

@@ -168,6 +168,11 @@ class Dataflow:
             self._named[key] = _grouped(self.events.positions(process), names_of)
         return self._named[key]
 
+    def fired_at(self, stimulus: str) -> list[ActivityPosition]:
+        """The positions at which processes fire a stimulus."""
+        found = (each for process in self.system.processes for each in self._triggers(process))
+        return [firing.position for firing in found if firing.stimulus == stimulus]
+
     def _stimuli(self, process: str) -> tuple[str, ...]:
         return self.system.processes[process].stimuli
 

@@ -94,7 +94,7 @@ def built(tasks, chain):
 def run(tasks, until, random, communication):
     """(start, read, write, end) of each job of each task, in order."""
     found = {task.name: [] for task in tasks}
-    waiting, running = [], {}
+    waiting, running, accessing = [], {}, []
     triggered = []
     for now in range(until):
         for rank, task in enumerate(tasks):
@@ -103,6 +103,18 @@ def run(tasks, until, random, communication):
                 spent = [random.randint(best, worst) for best, worst in task.parts]
                 waiting.append({"rank": (rank, now), "task": task, "release": now, "spent": spent, "done": 0, "times": {}})
         triggered = []
+        for access in list(accessing):
+            # Whoever arrives just then: an access comes before it, when the core is had again, or somewhere in between.
+            job, kind, since = access
+            if job["task"].preemption is Preemption.NON_PREEMPTIVE or not any(
+                other["task"].core == job["task"].core and other["rank"] < job["rank"] for other in waiting
+            ):
+                # Nothing is read after the end of a job; what it writes there can become visible later.
+                latest = min(now, job["times"].get("end", now)) if kind == "read" else now
+                job["times"][kind] = random.choice([since, latest, random.randint(since, latest)])
+                accessing.remove(access)
+                if kind == "write":
+                    job["times"][kind] = max(job["times"][kind], job["times"]["read"])
         for core in {task.core for task in tasks}:
             here = [job for job in waiting if job["task"].core == core]
             if not here:
@@ -112,32 +124,36 @@ def run(tasks, until, random, communication):
                 job = min(here, key=lambda job: job["rank"])
             running[core] = job
             times, (before, between, after) = job["times"], job["spent"]
-            times.setdefault("start", now)
-            if job["done"] == before:
-                times.setdefault("read", now)
-            if before + between == 0:
-                times.setdefault("write", now)
             total = before + between + after
-            if total:
-                job["done"] += 1
-            if job["done"] == before + between:
-                times.setdefault("write", now + 1)
+            if "start" not in times:
+                times["start"] = now
+                # Who has not executed anything yet has just got the core.
+                times |= {kind: now for kind, reached in (("read", before), ("write", before + between)) if not reached}
+            job["done"] += 1
+            accessing += [
+                (job, kind, now + 1)
+                for kind, reached in (("read", before), ("write", before + between))
+                if reached and reached == job["done"]
+            ]
             if job["done"] == total:
-                times.setdefault("read", now + 1)
-                end = now + bool(total)
                 waiting.remove(job)
-                found[job["task"].name].append(moments(job, times, end, communication))
+                times["end"] = now + 1
+                found[job["task"].name].append(job)
                 if job["task"].triggers:
                     triggered.append(job["task"].triggers)
-    return found
+    return {
+        name: [moments(job, communication) for job in jobs if {"read", "write"} <= job["times"].keys()]
+        for name, jobs in found.items()
+    }
 
 
-def moments(job, times, end, communication):
+def moments(job, communication):
+    start, read, write, end = (job["times"][kind] for kind in ("start", "read", "write", "end"))
     match communication:
         case Communication.IMPLICIT:
-            return times["start"], times["start"], end, end
+            return start, start, end, end
         case Communication.EXPLICIT:
-            return times["start"], times["read"], times["write"], end
+            return start, read, write, end
     release, period = job["release"], job["task"].period
     return release, release, release + period, release + period
 
@@ -180,7 +196,8 @@ def check(drawn, communication):
     tasks, chain = drawn
     # A task that takes no time in some jobs has no moment of its own in units of time.
     assume(all(sum(best for best, _ in task.parts) for task in tasks))
-    result, values, _, _ = evaluate(built(tasks, chain), communication=communication)
+    result, values, _, rules = evaluate(built(tasks, chain), communication=communication)
+    assert "CHN006" not in rules
     if result.reason:
         # A job may outlast the logical execution time; what triggers each other at high load may not settle.
         assert communication is Communication.LET or any(task.triggers for task in tasks)
@@ -206,21 +223,21 @@ ANY = [Preemption.PREEMPTIVE, Preemption.NON_PREEMPTIVE]
 
 
 @pytest.mark.parametrize("communication", Communication)
-@settings(max_examples=60)
+@settings(max_examples=80)
 @given(systems(["one"], ALWAYS, varying=True, triggered=False))
 def test_one_core(communication, drawn):
     check(drawn, communication)
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@settings(max_examples=60)
+@settings(max_examples=80)
 @given(systems(["one", "two"], ANY, varying=True, triggered=False))
 def test_two_cores_and_tasks_that_are_not_interrupted(communication, drawn):
     check(drawn, communication)
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@settings(max_examples=60)
+@settings(max_examples=80)
 @given(systems(["one", "two"], ANY, varying=True, triggered=True))
 # The triggered task writes before it executes anything.
 @example(
@@ -238,26 +255,31 @@ def test_triggers(communication, drawn):
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@settings(max_examples=60)
+@settings(max_examples=80)
 @given(systems(["one", "two"], ALWAYS, varying=False, triggered=False))
 def test_constant_execution_times_are_met_exactly(communication, drawn):
     tasks, chain = drawn
     result, values, claims, _ = evaluate(built(tasks, chain), communication=communication)
-    assert claims == {"exact"}, result.why
-    jobs = run(tasks, 400, Random(0), communication)
-    chain_times = [jobs[name] for name in chain]
-    found = [
-        (end - before, end - start)
-        for before, start, end in reactions(chain_times, triggered_links(tasks, chain))
-        if before >= 100
-    ]
-    assert max(found)[0] == values["max_reaction_time"]
-    assert max(reduced for _, reduced in found) == values["max_reduced_reaction_time"]
-    assert min(reduced for _, reduced in found) == values["min_first_to_first"]
-    aged = [
-        (overwritten - begin, end - begin)
-        for begin, end, overwritten in ages(chain_times, triggered_links(tasks, chain))
-        if begin >= 100
-    ]
-    assert max(aged)[0] == values["max_data_age"]
-    assert max(reduced for _, reduced in aged) == values["max_reduced_data_age"]
+    # Explicit accesses at which somebody else arrives can be made before or after that.
+    assert claims == {"exact"} or (claims == {"bound"} and communication is Communication.EXPLICIT), result.why
+    reacted, aged = [], []
+    for seed in range(1 if claims == {"exact"} else 5):
+        jobs = run(tasks, 400, Random(seed), communication)
+        chain_times, links = [jobs[name] for name in chain], triggered_links(tasks, chain)
+        reacted += [(end - before, end - start) for before, start, end in reactions(chain_times, links) if before >= 100]
+        aged += [(over - begin, end - begin) for begin, end, over in ages(chain_times, links) if begin >= 100]
+    observed = {
+        "max_reaction_time": max(reacted)[0],
+        "max_reduced_reaction_time": max(reduced for _, reduced in reacted),
+        "max_data_age": max(aged)[0],
+        "max_reduced_data_age": max(reduced for _, reduced in aged),
+        "min_first_to_first": min(reduced for _, reduced in reacted),
+        "min_last_to_last": min(reduced for _, reduced in aged),
+    }
+    for quantity, value in observed.items():
+        if claims == {"exact"}:
+            assert values[quantity] == value
+        elif quantity.startswith("max"):
+            assert values[quantity] >= value
+        else:
+            assert values[quantity] <= value

@@ -401,7 +401,8 @@ class TestWhatCarries:
         assert values["min_first_to_first"] <= latency <= values["max_reduced_reaction_time"]
 
     def test_a_frame_on_a_bus(self):
-        # A bus is a core whose frames are non-preemptive tasks: the frame waits for a longer one of lower priority.
+        # A bus is a core whose frames are non-preemptive tasks; the longer frame of lower priority follows this one, and has been sent
+        # before this one comes again.
         tasks = [
             ("sensor", 10, [ticks(1), write("raw")], "one"),
             ("frame", 10, [read("raw"), ticks(2), write("received")], "bus"),
@@ -415,8 +416,8 @@ class TestWhatCarries:
         )
         chain, values, claims, _ = evaluate(replace(built, software=replace(built.software, tasks=frames)))
         assert chain.routes == ("sensor start -[data raw]-> frame terminate -[data received]-> actuator terminate",)
-        assert claims == {"bound"}
-        # Written at 1; read by the frame of 10, which is there by 17; used by the actuator of 20, out at 21.
+        assert claims == {"exact"}
+        # Written at 1; read by the frame of 10, which is there at 12; used by the actuator of 20, out at 21.
         assert values["max_reduced_reaction_time"] == 21
 
     def test_a_critical_section(self):
