@@ -15,8 +15,8 @@ from opponent.to_perf import MICROSECOND, to_perf
 from amalthea_uros.analyze.results import Analysis, Claim
 from amalthea_uros.analyze.system import analyze_system
 
-#: How many readings are played at first.
-FEW_READINGS = 4
+#: How many readings are played at first, and at most to confirm a suspicion: systems with hundreds of them are not worth the time.
+FEW_READINGS, MOST_READINGS = 4, 48
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,7 +92,7 @@ def false_claims(system: PlainSystem, plays: int, tally: Tally | None = None) ->
         tally.add_analysis(analysis, constructs_of(system))
     if not refuted(analysis, observe(system, range(plays), FEW_READINGS)):
         return []
-    return refuted(analysis, observe(system, range(plays)))
+    return refuted(analysis, observe(system, range(plays), MOST_READINGS))
 
 
 def refuted(analysis: Analysis, observed: Observation) -> list[FalseClaim]:

@@ -239,8 +239,9 @@ class Generator:
         rng, style = self.rng, self.style
         is_deep = place.depth >= 3
         if not is_deep and some(rng, style.group):
-            ordered = {} if not some(rng, style.unordered) else {"ordered": False}
-            return [{"group": self._body(place.inside()), **ordered}]
+            if some(rng, style.unordered):
+                return [{"group": [_whole(self._items(place.inside())) for _ in range(rng.randint(1, 3))], "ordered": False}]
+            return [{"group": self._body(place.inside())}]
         if not is_deep and some(rng, style.mask) and not place.is_masked:
             return [{"group": self._body(place.inside(is_masked=True)), "interruptible": False}]
         if not is_deep and some(rng, style.switch):
@@ -302,6 +303,11 @@ class Generator:
             if position:
                 body.insert(read_at, {"read": f"L{position - 1}"})
         system["chain"] = {"processes": [process["name"] for process in chosen], "communication": communication}
+
+
+def _whole(items: list[Item]) -> Item:
+    """One item for several, such as a critical section, that no other order may tear apart."""
+    return items[0] if len(items) == 1 else {"group": items}
 
 
 def _loads(system: PlainSystem) -> dict[str, float]:

@@ -9,6 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 
 from opponent.claims import FalseClaim, Tally, false_claims
+from opponent.constructs import constructs_of
 from opponent.describe import described
 from opponent.generator import random_system
 from opponent.shrink import shrink
@@ -17,10 +18,12 @@ from opponent.systems import PlainSystem
 Found = tuple[int, list[FalseClaim], Tally]
 
 
-def hunt(seed: int, plays: int) -> Found:
-    """The false claims about the system of a seed."""
-    tally = Tally()
-    return seed, false_claims(random_system(seed), plays, tally), tally
+def hunt(seed: int, plays: int, without: frozenset[str]) -> Found:
+    """The false claims about the system of a seed, unless it has a construct that is left out."""
+    system, tally = random_system(seed), Tally()
+    if without & constructs_of(system):
+        return seed, [], tally
+    return seed, false_claims(system, plays, tally), tally
 
 
 def kind(claim: FalseClaim) -> tuple[str, ...]:
@@ -43,6 +46,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--seeds", default="0..10000", metavar="FROM..TO", help="the last one is not included")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--plays", type=int, default=4, help="under each reading")
+    parser.add_argument("--without", nargs="*", default=(), metavar="CONSTRUCT", help="skip systems with these")
     parser.add_argument(
         "--shrink", type=int, default=3, metavar="N", help="show the smallest systems of N failures of each kind"
     )
@@ -51,7 +55,7 @@ def _arguments() -> argparse.Namespace:
 
 def _results(arguments: argparse.Namespace) -> Iterator[Found]:
     first, end = map(int, arguments.seeds.split(".."))
-    seeds, one = range(first, end), partial(hunt, plays=arguments.plays)
+    seeds, one = range(first, end), partial(hunt, plays=arguments.plays, without=frozenset(arguments.without))
     if arguments.jobs == 1:
         yield from map(one, seeds)
         return

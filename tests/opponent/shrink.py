@@ -88,7 +88,7 @@ def _leave_out(system: PlainSystem, body: list[Item], index: int) -> bool:
 def _open(system: PlainSystem, body: list[Item], index: int) -> bool:
     """What is inside, instead of a group, a switch or a call."""
     item = body[index]
-    if "group" in item:
+    if "group" in item and not any("request" in inner for inner in item["group"]):
         body[index : index + 1] = item["group"]
     elif "switch" in item:
         body[index : index + 1] = item["switch"][-1][1]
