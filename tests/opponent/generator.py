@@ -65,7 +65,11 @@ class Style:
             "point": 0.5,
             "varying": 0.35,
         }
-        return cls(**{name: probability for name, probability in usual.items() if some(rng, 0.4)})
+        chosen = {name: probability for name, probability in usual.items() if some(rng, 0.4)}
+        # Counters and schedule points need others to occur at all.
+        if "call" in chosen or "trigger" in chosen:
+            chosen |= {"counter": usual["counter"]} if some(rng, 0.4) else {}
+        return cls(**chosen | ({"point": usual["point"]} if some(rng, 0.5) else {}))
 
 
 @dataclass(slots=True)
