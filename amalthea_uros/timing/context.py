@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TypeVar
 
-from amalthea_uros.perf.os import Scheduler
+from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation import Activations
+from amalthea_uros.timing.allocation import allocated_cores, effective_priority
 from amalthea_uros.timing.critical_sections import semaphores_of
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
@@ -18,6 +20,19 @@ from amalthea_uros.timing.notes import Notes, UnknownDemandError
 from amalthea_uros.timing.releases import response_time_limits
 from amalthea_uros.timing.scheduling import NotSchedulableError, ScheduledProcess, Scheduling, Server
 from amalthea_uros.timing.settings import Memory, Settings
+
+T = TypeVar("T")
+
+#: Servers that go on with a later deadline when their budget is used up (Abeni and Buttazzo 1998).
+LENDING_SERVERS = (Policy.CONSTANT_BANDWIDTH_SERVER, Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH)
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """The core and the priority of a process; None if it has none or several."""
+
+    core: str | None = None
+    priority: int | None = None
 
 
 @dataclass
@@ -71,6 +86,30 @@ class TimingContext:
     def time_base(self, process: str) -> int:
         """Time units per picosecond on the core of a process."""
         return self.demand_model.time_base(self.scheduled[process].core)
+
+    def placement(self, process: str) -> Placement:
+        """Where a process runs and with which priority, as far as it is known."""
+        scheduled = self.scheduled.get(process)
+        if scheduled is not None:
+            return Placement(scheduled.core, scheduled.priority)
+        return self._placements.get(process, Placement())
+
+    @cached_property
+    def _placements(self) -> Mapping[str, Placement]:
+        """The same for all processes, also for those whose scheduling cannot be analysed."""
+        cores, mapping = allocated_cores(self.system), self.system.mapping
+        priorities: dict[str, set[int | None]] = {}
+        for task in mapping.tasks:
+            priorities.setdefault(task.task, set()).add(effective_priority(task, self.system))
+        for isr in mapping.isrs:
+            priorities.setdefault(isr.isr, set()).add(isr.priority)
+        return {name: Placement(_only(cores.get(name, ())), _only(found)) for name, found in priorities.items()}
+
+    def can_borrow(self, process: str) -> bool:
+        """Whether a process can execute more than the budget of its server, so that no overload of the server is certain."""
+        scheduled = self.scheduled.get(process)
+        server = self.servers.get(scheduled.server or "") if scheduled is not None else None
+        return server is not None and server.scheduler.policy in LENDING_SERVERS
 
     def on_core(self, core: str) -> list[ScheduledProcess]:
         """The processes of a core."""
@@ -174,3 +213,8 @@ class TimingContext:
                     self.notes.warning("ANA003", message, scheduled.process)
                     self.mark_unknown(scheduled.name, f"it shares the semaphore {name!r} with other cores or servers")
                     self.demands.pop(scheduled.name, None)
+
+
+def _only(values: Collection[T]) -> T | None:
+    """The only value; None if there are none or several."""
+    return next(iter(values)) if len(values) == 1 else None
