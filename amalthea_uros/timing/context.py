@@ -20,6 +20,7 @@ from amalthea_uros.timing.notes import Notes, UnknownDemandError
 from amalthea_uros.timing.releases import response_time_limits
 from amalthea_uros.timing.scheduling import NotSchedulableError, ScheduledProcess, Scheduling, Server
 from amalthea_uros.timing.settings import Memory, Settings
+from amalthea_uros.timing.stated_demand import states_execution_time
 
 T = TypeVar("T")
 
@@ -169,6 +170,8 @@ class TimingContext:
         for name, scheduled in self.scheduled.items():
             try:
                 demand = model.of_process(scheduled.process, scheduled.core)
+                if not states_execution_time(scheduled.process, self.system):
+                    raise UnknownDemandError("it has no execution time, and neither have the runnables that it calls")
                 scheduler = self._deciding(name, scheduled.core)
                 if scheduler is not None:
                     decision = model.of_decision(scheduler, scheduled.core)
