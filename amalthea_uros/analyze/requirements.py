@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from amalthea_uros.analyze.implausible_limits import note_implausible
 from amalthea_uros.analyze.process_verdicts import worst_response
 from amalthea_uros.analyze.results import Claim, ProcessResult, RequirementResult
 from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
@@ -18,7 +19,9 @@ def evaluate_requirements(system: System, processes: Mapping[str, ProcessResult]
     for requirement in system.constraints.requirements:
         limit = requirement.limit
         if isinstance(limit, TimeLimit):
-            yield _judged(requirement, limit, processes.get(requirement.process or ""))
+            result = _judged(requirement, limit, processes.get(requirement.process or ""))
+            note_implausible(result, requirement, notes)
+            yield result
             continue
         reason = f"it limits {limit.metric}, which is not a time"
         notes.warning("ANA009", f"the requirement {requirement.name!r} is not evaluated: {reason}", requirement)

@@ -250,8 +250,14 @@ class TestRequirements:
         ],
     )
     def test_absurd_limits(self, bound, value, verdict):
-        found, _ = self.judge(process="T", limit=TimeLimit(metric=TimeMetric.RESPONSE_TIME, value=value * US, bound=bound))
-        assert found.verdict == verdict
+        limit = TimeLimit(metric=TimeMetric.RESPONSE_TIME, value=value * US, bound=bound)
+        built = one_core(
+            ("T", 100, [ticks(10)]),
+            constraints=Constraints(requirements=(Requirement(name="R", process="T", limit=limit),)),
+        )
+        analysis = analyze_system(built)
+        assert analysis.requirements["R"].verdict == verdict
+        assert [finding.rule for finding in analysis.findings] == ["ANA010"]
 
 
 class TestSummary:

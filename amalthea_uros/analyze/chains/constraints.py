@@ -15,6 +15,7 @@ from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
 from amalthea_uros.analyze.chains.runnable_order import satisfies_order
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
+from amalthea_uros.analyze.implausible_limits import note_implausible
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, RequirementResult, Value
 from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
 from amalthea_uros.perf.constraints import (
@@ -61,6 +62,8 @@ class ConstraintEvaluator:
         for constraint in (*constraints.constraints, *constraints.data_ages, *constraints.orders):
             try:
                 found = list(self._one(constraint))
+                for result in found:
+                    note_implausible(result, constraint, self.evaluation.context.notes)
                 # What limits nothing is not met.
                 yield from found or [_unknown(constraint, "it states no limit, or nothing in the model is limited by it")]
             except (UnknownError, UnresolvedError, UnboundedStageError) as error:
