@@ -60,7 +60,7 @@ def _reason(requirement: Requirement, limit: TimeLimit, process: ProcessResult |
     if requirement.runnable is not None and requirement.process is None:
         return f"{requirement.runnable!r} is a runnable; only limits on tasks and interrupt service routines are evaluated"
     if process is None:
-        return f"the process {requirement.process!r} is not defined in the model"
+        return "the process that it limits is not defined, or was left out when reading"
     is_upper = limit.bound is Bound.UPPER
     if (ends.upper if is_upper else ends.lower) is None:
         return process.reason or f"the {limit.metric} of {process.name!r} is not computed"

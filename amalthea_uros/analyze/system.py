@@ -107,10 +107,10 @@ def _note_ignored(solution: Solution) -> None:
 def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> ProcessResult:
     """The result of a process; execution times are in picoseconds."""
     context, response = solution.context, solution.responses.get(name)
-    process, demand = context.system.processes[name], context.demands.get(name)
+    process, demand = context.system.processes[name], context.stated_demand(name)
     placement = context.placement(name)
     time_base = context.demand_model.time_base(placement.core) if placement.core else 1
-    events = solution.event_models.get(name)
+    events = solution.event_models.get(name) or (context.stated_activations(name) if response is None else None)
     scheduled = context.scheduled.get(name)
     stated = scheduled.deadline if scheduled is not None and scheduled.deadline is not None else limits.get(name)
     implicit = implicit_deadline(events) if stated is None and events is not None else None

@@ -8,12 +8,14 @@ from functools import cached_property
 from typing import TypeVar
 
 from amalthea_uros.perf.os import Policy, Scheduler
+from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation import Activations
+from amalthea_uros.timing.activation import Activations, UnknownActivationError
 from amalthea_uros.timing.allocation import allocated_cores, effective_priority
 from amalthea_uros.timing.critical_sections import semaphores_of
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
+from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.limits import MAX_INPUT
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
@@ -105,6 +107,27 @@ class TimingContext:
         for isr in mapping.isrs:
             priorities.setdefault(isr.isr, set()).add(isr.priority)
         return {name: Placement(_only(cores.get(name, ())), _only(found)) for name, found in priorities.items()}
+
+    def stated_demand(self, process: str) -> MultiframeDemand | None:
+        """The demand of a process on its core, also if its scheduling cannot be analysed; None if it is unknown."""
+        core, model = self.placement(process).core, self.system.processes[process]
+        if process in self.demands or core is None or not states_execution_time(model, self.system):
+            return self.demands.get(process)
+        try:
+            return self.demand_model.of_process(model, core)
+        except UnknownDemandError:
+            return None
+
+    def stated_activations(self, process: str) -> EventModel | None:
+        """The activations of a process, if they do not depend on response times; None otherwise."""
+        model = self.system.processes[process]
+        stimuli = [self.system.stimuli_by_name.get(name) for name in model.stimuli]
+        if any(isinstance(stimulus, InterProcess | EventTriggered) for stimulus in stimuli):
+            return None
+        try:
+            return self.activations.of(model)
+        except UnknownActivationError:
+            return None
 
     def can_borrow(self, process: str) -> bool:
         """Whether a process can execute more than the budget of its server, so that no overload of the server is certain."""

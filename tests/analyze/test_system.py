@@ -337,7 +337,7 @@ class TestWhatIsNotKnown:
         )
         analysis = analyze_system(replace(built, os=Os(systems=(OperatingSystem(name="OS", schedulers=schedulers),))))
         found = by_name(analysis)
-        assert found["free"].reason == "several cores can execute it"
+        assert found["free"].reason == "several cores can execute it: one, two"
         assert found["fixed"].reason == "depends on 'free', which could not be analysed"
         assert found["elsewhere"].response.worst is not None
         assert [processor.worst is None for processor in analysis.processors] == [True, True, False]

@@ -232,7 +232,7 @@ class TestRequirements:
     @pytest.mark.parametrize(
         ("stated", "reason"),
         [
-            ({"process": "none"}, "the process 'none' is not defined in the model"),
+            ({"process": "none"}, "the process that it limits is not defined, or was left out when reading"),
             ({"runnable": "r"}, "'r' is a runnable; only limits on tasks and interrupt service routines are evaluated"),
         ],
     )
