@@ -64,7 +64,7 @@ class TestUnknown:
     """A deadline between what is certain, 15 ms, and the bound: an interrupt at 0 and at 20, if it ever comes so often."""
 
     UNKNOWN = (
-        f"{HEAD}isrs:\n  - {{name: I, sporadic: 20 ms, execution_time: 6 ms, priority: 1}}\n"
+        f"{HEAD}isrs:\n  - {{name: I, sporadic: {{min: 20 ms, max: 1 s}}, execution_time: 6 ms, priority: 1}}\n"
         "tasks:\n  - {name: U, period: 25 ms, execution_time: 15 ms, priority: 1, deadline: 20 ms}\n"
     )
 
