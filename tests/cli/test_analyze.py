@@ -144,7 +144,7 @@ def test_a_chain():
     run = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--all-phases")
     assert run.returncode == 0
     assert "Executor_Task_start -[data memory_1]-> Message_Factor_finish -[data memory_2]->" in run.stdout
-    assert "max reduced reaction time    20.029 ms  exact" in run.stdout
+    assert "max reduced reaction time (reaction)    20.029 ms  exact" in run.stdout
     assert "Davare" not in run.stdout
     every = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--method", "all")
     assert "sum of periods and response times (Davare and others 2007)" in every.stdout
