@@ -37,10 +37,12 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.results import RequirementResult as RequirementResult
     from amalthea_uros.analyze.results import Response as Response
     from amalthea_uros.analyze.results import Value as Value
-    from amalthea_uros.analyze.results import Verdict as Verdict
     from amalthea_uros.analyze.sensitivity import Sensitivity as Sensitivity
     from amalthea_uros.analyze.sensitivity import sensitivity as sensitivity
+    from amalthea_uros.analyze.summary import Schedulable as Schedulable
+    from amalthea_uros.analyze.summary import Summary as Summary
     from amalthea_uros.analyze.system import analyze_system as analyze_system
+    from amalthea_uros.analyze.verdicts import Verdict as Verdict
     from amalthea_uros.bridge.build import build_model as build_model
     from amalthea_uros.bridge.extract import Extraction as Extraction
     from amalthea_uros.bridge.extract import extract as extract
@@ -88,10 +90,11 @@ _NAMES = {
         "RequirementResult",
         "Response",
         "Value",
-        "Verdict",
     ),
     "analyze.sensitivity": ("Sensitivity", "sensitivity"),
+    "analyze.summary": ("Schedulable", "Summary"),
     "analyze.system": ("analyze_system",),
+    "analyze.verdicts": ("Verdict",),
     "bridge.build": ("build_model",),
     "bridge.extract": ("Extraction", "extract"),
     "diagnostics": ("Finding", "Location", "Severity"),

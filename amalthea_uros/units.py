@@ -28,6 +28,7 @@ NANOSECOND: Time = 1000 * PICOSECOND
 MICROSECOND: Time = 1000 * NANOSECOND
 MILLISECOND: Time = 1000 * MICROSECOND
 SECOND: Time = 1000 * MILLISECOND
+HOUR: Time = 3600 * SECOND
 
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S*)\s*", re.ASCII)
@@ -74,7 +75,7 @@ TIME = Dimension(
         "ms": MILLISECOND,
         "s": SECOND,
         "min": 60 * SECOND,
-        "h": 3600 * SECOND,
+        "h": HOUR,
     },
     "10 ms",
     "picoseconds",

@@ -14,8 +14,10 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import permutations
 
-from amalthea_uros.analyze.results import Analysis, Claim, ProcessResult, Results, Verdict, require_analysis
+from amalthea_uros.analyze.results import Analysis, Claim, ProcessResult, Results, require_analysis
+from amalthea_uros.analyze.summary import FAILURES
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation import UnknownActivationError
@@ -30,8 +32,6 @@ MAX_PERMUTED = 6
 
 #: Names of tasks, lowest priority first.
 Order = Sequence[str]
-
-_MISSES = (Verdict.MISSED, Verdict.UNBOUNDED)
 
 
 class Outcome(StrEnum):
@@ -277,10 +277,10 @@ def _worse(before: Analysis, after: Analysis) -> Iterator[str]:
     """The names of processes and requirements whose verdict gets worse."""
     old = _verdicts(before)
     for key, verdict in _verdicts(after).items():
-        if verdict is not Verdict.MET and verdict is not old[key] and old[key] not in _MISSES:
+        if verdict is not Verdict.MET and verdict is not old[key] and old[key] not in FAILURES:
             yield key[0]
 
 
-def _verdicts(analysis: Analysis) -> Mapping[tuple[str, str, str], Verdict]:
+def _verdicts(analysis: Analysis) -> Mapping[tuple[str, str, str], Verdict | None]:
     found = {(process.name, "", "deadline"): process.verdict for process in analysis.processes}
     return found | {(each.name, each.object, each.quantity): each.verdict for each in analysis.requirements}

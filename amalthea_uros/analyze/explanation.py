@@ -11,8 +11,9 @@ import numpy as np
 from amalthea_uros.analyze.execution_shares import ExecutionShare, execution_shares
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core import periodic_tasks
-from amalthea_uros.analyze.results import Analysis, ProcessResult, Response, Verdict
+from amalthea_uros.analyze.results import Analysis, ProcessResult, Response
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.summary import FAILURES
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.scheduling import ScheduledProcess, Server
 from amalthea_uros.units import Time
@@ -65,9 +66,7 @@ def explain_process(analysis: Analysis, name: str) -> ProcessExplanation:
     """Explain the response time of a process."""
     process, context = analysis.processes[name], analysis.solution.context
     scheduled = context.scheduled.get(name)
-    is_late = process.verdict in (Verdict.MISSED, Verdict.UNBOUNDED) or (
-        process.response is not None and process.response.worst is None
-    )
+    is_late = process.verdict in FAILURES or (process.response is not None and process.response.worst is None)
     server = context.servers.get(scheduled.server or "") if scheduled is not None else None
     return ProcessExplanation(
         process=process,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -17,18 +18,20 @@ from amalthea_uros.analyze.results import (
     Response,
     Results,
     Value,
-    Verdict,
 )
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.summary import summarize
+from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.phases import Occurrence, phase_count, phase_variants
+from amalthea_uros.units import Time
 
 #: With more combinations of phases, or more jobs in all of them, any job can be the one that takes what comes from outside.
 MAX_COMBINATIONS = 1000
 MAX_JOBS = 1_000_000
 
 #: The verdict over all phases is the first of these that occurs.
-_WORST_FIRST = (Verdict.MISSED, Verdict.UNBOUNDED, Verdict.UNKNOWN, Verdict.MET)
+_WORST_FIRST = (Verdict.MISSED, Verdict.UNBOUNDED, Verdict.UNKNOWN, Verdict.MET, None)
 
 T = TypeVar("T")
 
@@ -59,13 +62,15 @@ def merged(analyses: Sequence[Analysis], solution: Solution) -> Analysis:
     for each in zip(*(analysis.processes for analysis in analyses), strict=True):
         processes.append(_process(each))
         worst[each[0].name] = analyses[each.index(max(each, key=_badness))].solution
+    requirements = Results(_requirements(analyses))
     return replace(
         first,
         solution=solution,
         worst_solutions=worst,
         processes=Results(processes),
         chains=Results(map(merged_chain, zip(*(analysis.chains for analysis in analyses), strict=True))),
-        requirements=Results(_requirements(analyses)),
+        requirements=requirements,
+        summary=summarize(first.processors, processes, requirements),
         assumptions=_each_once(analyses, lambda analysis: analysis.assumptions),
         findings=_each_once(analyses, lambda analysis: analysis.findings),
     )
@@ -84,11 +89,10 @@ def _badness(result: ProcessResult) -> tuple[int, int]:
 
 def _process(results: Sequence[ProcessResult]) -> ProcessResult:
     worst = max(results, key=_badness)
+    judged = min(results, key=lambda result: _WORST_FIRST.index(result.verdict))
+    worst = replace(worst, verdict=judged.verdict, failure=judged.failure, reason=judged.reason)
     responses = [result.response for result in results if result.response is not None]
-    verdict = min((result.verdict for result in results), key=_WORST_FIRST.index)
-    if worst.response is None:
-        return replace(worst, verdict=verdict)
-    return replace(worst, response=_response(worst.response, responses), verdict=verdict)
+    return worst if worst.response is None else replace(worst, response=_response(worst.response, responses))
 
 
 def _response(worst: Response, responses: Sequence[Response]) -> Response:
@@ -138,16 +142,26 @@ def _worst(values: Sequence[Value]) -> Value:
 
 
 def _requirements(analyses: Sequence[Analysis]) -> Iterator[RequirementResult]:
-    """The worst verdict on each limit; a limit that is unknown in one phase is also shown as unknown."""
-    found: dict[tuple[str, str, str, bool], list[RequirementResult]] = {}
+    """The worst verdict on each limit, and the ends over all phases."""
+    found: dict[tuple[Any, ...], list[RequirementResult]] = {}
     for analysis in analyses:
+        count: Counter[tuple[Any, ...]] = Counter()
         for result in analysis.requirements:
-            found.setdefault((result.name, result.object, result.quantity, result.is_upper), []).append(result)
-    for results in found.values():
-        yield min(results, key=_rank)
+            key = (result.name, result.object, result.quantity, result.is_upper)
+            count[key] += 1
+            # Several limits can look alike; a limit that is unknown in one phase can be missing in another.
+            found.setdefault((*key, count[key]), []).append(result)
+    yield from map(_requirement, found.values())
 
 
-def _rank(result: RequirementResult) -> tuple[int, int]:
-    """Less for a worse verdict and value."""
-    value = result.value or 0
-    return _WORST_FIRST.index(result.verdict), -value if result.is_upper else value
+def _requirement(results: Sequence[RequirementResult]) -> RequirementResult:
+    worst = min(results, key=lambda result: _WORST_FIRST.index(result.verdict))
+    extreme = max if worst.is_upper else min
+    lower, upper = [result.lower for result in results], [result.upper for result in results]
+    return replace(worst, lower=_extreme(lower, extreme), upper=_extreme(upper, extreme))
+
+
+def _extreme(ends: Sequence[Time | None], extreme: Callable[[Sequence[Time]], Time]) -> Time | None:
+    """The greatest or least of ends that are all known."""
+    known = [end for end in ends if end is not None]
+    return extreme(known) if len(known) == len(ends) else None

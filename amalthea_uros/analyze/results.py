@@ -9,11 +9,13 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import TYPE_CHECKING, Protocol, SupportsIndex, TypeVar, overload
 
+from amalthea_uros.analyze.verdicts import Failure, Verdict
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.units import Frequency, Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.solution import Solution
+    from amalthea_uros.analyze.summary import Summary
 
 
 class HasName(Protocol):
@@ -78,6 +80,7 @@ class Response:
     window : length of the busy window up to the end of the worst job
     completions : latest ends of the jobs of the busy window, from its start; empty if unknown
     terms : the parts of the worst case: own, interference, blocking; they add up to it
+    is_overload : whether `worst` is None because, in the long run, more work is activated than can be executed
     """
 
     worst: Time | None
@@ -90,26 +93,29 @@ class Response:
     completions: tuple[Time, ...] = ()
     terms: Mapping[str, Time] = field(default_factory=dict)
     reason: str = ""
-
-
-class Verdict(StrEnum):
-    """Whether a deadline, requirement or constraint is met."""
-
-    MET = "met"
-    MISSED = "missed"
-    UNBOUNDED = "unbounded"
-    UNKNOWN = "unknown"
+    is_overload: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProcessorResult:
-    """A core: its clock, and its load in the best, mean and worst case (1 is full); None if it is unknown."""
+    """A core: its clock, and its load in the best, mean and worst case (1 is full); None if it is unknown.
+
+    Attributes
+    ----------
+    at_least : the part of the worst-case load that is known; equal to it if everything is known
+    """
 
     name: str
     frequency: Frequency | None
     best: Fraction | None
     mean: Fraction | None
     worst: Fraction | None
+    at_least: Fraction
+
+    @property
+    def is_overloaded(self) -> bool:
+        """Whether more work is activated than the core can execute, whatever the unknown part of the load is."""
+        return self.at_least > 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,7 +124,14 @@ class ProcessResult:
 
     Attributes
     ----------
+    processor, priority, wcet : also shown if the response time is unknown, as far as the model states them
+    least_wcet : an execution time that some job can take for certain; less than `wcet` if counters keep calls apart
     response : None if it is unknown, for the `reason`
+    deadline : the stated one, or else the period; None for activations without a period
+    is_implicit : whether the deadline is the period
+    verdict : None if there is no deadline, and no activation is lost
+    failure : what is wrong if the verdict is missed or unbounded
+    reason : why something is unknown, or what is wrong
     min_interarrival, max_interarrival : time from one activation to the next; None if it is unknown
     """
 
@@ -132,10 +145,20 @@ class ProcessResult:
     wcet: Time | None
     response: Response | None
     deadline: Time | None
-    verdict: Verdict
+    verdict: Verdict | None
+    least_wcet: Time | None = None
+    is_implicit: bool = False
+    failure: Failure | None = None
     reason: str = ""
     min_interarrival: Time | None = None
     max_interarrival: Time | None = None
+
+    @property
+    def margin(self) -> Time | None:
+        """Distance of the worst-case response time from the deadline; negative if it is later."""
+        if self.deadline is None or self.response is None or self.response.worst is None:
+            return None
+        return self.deadline - self.response.worst
 
 
 class Quantity(StrEnum):
@@ -210,6 +233,7 @@ class RequirementResult:
     Attributes
     ----------
     limit : None if it is not a limit of a time
+    lower, upper : between these the limited maximum or minimum lies; equal if it is exact, None if that end is unknown
     reason : why the verdict is unknown
     """
 
@@ -218,9 +242,15 @@ class RequirementResult:
     quantity: str
     is_upper: bool
     limit: Time | None
-    value: Time | None
     verdict: Verdict
+    lower: Time | None = None
+    upper: Time | None = None
     reason: str = ""
+
+    @property
+    def value(self) -> Time | None:
+        """The safe end: an upper bound of a maximum, a lower bound of a minimum."""
+        return self.upper if self.is_upper else self.lower
 
     @property
     def margin(self) -> Time | None:
@@ -239,6 +269,7 @@ class Analysis:
     solution : the response times with their timing context, for explanations and proposals; for unknown phases, any job may take
         what comes from outside
     worst_solutions : for each process the solution of the phase in which its response time is the worst; empty if all are known
+    summary : whether everything is met, and what is missed or unknown
     assumptions : on which the numbers are based
     findings : what the analysis does not take into account
     """
@@ -249,6 +280,7 @@ class Analysis:
     processes: Results[ProcessResult]
     chains: Results[ChainResult]
     requirements: Results[RequirementResult]
+    summary: Summary
     assumptions: tuple[str, ...]
     findings: tuple[Finding, ...]
     worst_solutions: Mapping[str, Solution] = field(default_factory=dict, repr=False, compare=False)
@@ -265,12 +297,6 @@ class Analysis:
         KeyError : there is no such process; the text lists similar names.
         """
         return self.processes[process]
-
-    @property
-    def misses(self) -> bool:
-        """Whether a deadline, requirement or constraint is missed."""
-        verdicts = (*(p.verdict for p in self.processes), *(r.verdict for r in self.requirements))
-        return any(verdict in (Verdict.MISSED, Verdict.UNBOUNDED) for verdict in verdicts)
 
 
 def require_analysis(analysis: Analysis) -> None:

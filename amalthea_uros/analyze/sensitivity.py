@@ -11,8 +11,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from amalthea_uros.analyze.results import Analysis, require_analysis
+from amalthea_uros.analyze.results import Analysis, RequirementResult, require_analysis
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.timing.settings import Settings
 
 #: Absolute resolution of factors below 1, relative resolution of factors above 1.
@@ -63,9 +64,29 @@ def _max_factor_of(name: str, analysis: Analysis) -> Fraction | None:
 
 
 def _holds(analysis: Analysis, factor: Fraction, settings: Settings) -> bool:
-    """Whether nothing is missed with changed settings; the analysis itself is used for a factor of 1."""
+    """Whether everything is met with changed settings, apart from what is unknown anyway; a factor of 1 changes nothing."""
     changed = analysis if factor == 1 else analyze_system(analysis.solution.context.system, settings)
-    return not changed.misses
+    return not changed.summary.overloaded and _bounded(analysis) <= _met(changed)
+
+
+def _bounded(analysis: Analysis) -> set[Key]:
+    """What is not unknown for lack of information: a bound beyond a limit must not count as met."""
+    processes = {process.name for process in analysis.processes if process.response is not None}
+    limits = {_key(limit) for limit in analysis.requirements if limit.value is not None or limit.verdict is not Verdict.UNKNOWN}
+    return processes | limits
+
+
+def _met(analysis: Analysis) -> set[Key]:
+    processes = {process.name for process in analysis.processes if process.verdict in (Verdict.MET, None)}
+    return processes | {_key(limit) for limit in analysis.requirements if limit.verdict is Verdict.MET}
+
+
+#: A process, or a limit of a requirement: requirements can have the same name.
+Key = str | tuple[str, str, str, bool]
+
+
+def _key(limit: RequirementResult) -> Key:
+    return limit.name, limit.object, limit.quantity, limit.is_upper
 
 
 def _max_factor(holds: Callable[[Fraction], bool]) -> Fraction | None:

@@ -9,14 +9,20 @@ from fractions import Fraction
 from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.phases import merged, merged_chain, solutions_for_phases
+from amalthea_uros.analyze.process_verdicts import judged
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.requirements import evaluate_requirements
-from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessorResult, ProcessResult, Response, Results, Verdict
+from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessorResult, ProcessResult, Results
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.summary import summarize
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.deadlines import ASSUMPTION, implicit_deadline
+from amalthea_uros.timing.load import activation_rates
+from amalthea_uros.timing.load import loads as known_loads
 from amalthea_uros.timing.overheads import COUNTED
 from amalthea_uros.timing.phases import (
     Occurrence,
@@ -64,12 +70,14 @@ def _analysis(solution: Solution) -> Analysis:
     chains = Results(_chain(chain, evaluation) for chain in system.events.chains)
     verdicts = evaluate_requirements(system, {process.name: process for process in processes}, context.notes)
     requirements = Results((*verdicts, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
+    processors = Results(_processors(solution))
     return Analysis(
         solution=solution,
-        processors=Results(_processors(solution)),
+        processors=processors,
         processes=processes,
         chains=chains,
         requirements=requirements,
+        summary=summarize(processors, processes, requirements),
         assumptions=tuple(context.notes.assumptions),
         findings=tuple(context.notes.found),
     )
@@ -110,57 +118,76 @@ def _note_ignored(solution: Solution) -> None:
 def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> ProcessResult:
     """The result of a process; execution times are in picoseconds."""
     context, response = solution.context, solution.responses.get(name)
-    scheduled, demand, process = context.scheduled.get(name), context.demands.get(name), context.system.processes[name]
-    deadline = scheduled.deadline if scheduled is not None and scheduled.deadline is not None else limits.get(name)
-    time_base = context.time_base(name) if scheduled else 1
-    events = solution.event_models.get(name)
-    return ProcessResult(
+    process, demand = context.system.processes[name], context.stated_demand(name)
+    placement = context.placement(name)
+    time_base = context.demand_model.time_base(placement.core) if placement.core else 1
+    events = solution.event_models.get(name) or (context.stated_activations(name) if response is None else None)
+    scheduled = context.scheduled.get(name)
+    stated = scheduled.deadline if scheduled is not None and scheduled.deadline is not None else limits.get(name)
+    implicit = implicit_deadline(events) if stated is None and events is not None else None
+    if implicit is not None:
+        context.notes.assume(ASSUMPTION)
+    found = ProcessResult(
         name=name,
         is_isr=not isinstance(process, Task),
-        processor=scheduled.core if scheduled else None,
-        priority=scheduled.priority if scheduled else None,
+        processor=placement.core,
+        priority=placement.priority,
         preemption=str(preemption(scheduled) if scheduled else getattr(process, "preemption", Preemption.PREEMPTIVE)),
         bcet=demand.best // time_base if demand else None,
         acet=demand.mean / time_base if demand else None,
         wcet=-(-demand.worst // time_base) if demand else None,
+        least_wcet=demand.least_worst // time_base if demand else None,
         response=response,
-        deadline=deadline,
-        verdict=_verdict(response, deadline),
+        deadline=implicit if stated is None else stated,
+        is_implicit=implicit is not None,
+        verdict=None,
         reason=response.reason if response is not None else solution.reasons.get(name, ""),
         min_interarrival=events.delta_min(2) if events is not None else None,
         max_interarrival=events.max_interarrival if events is not None else None,
     )
-
-
-def _verdict(response: Response | None, deadline: Time | None) -> Verdict:
-    if response is None:
-        return Verdict.UNKNOWN
-    if response.worst is None:
-        return Verdict.UNBOUNDED
-    if deadline is None:
-        return Verdict.UNKNOWN
-    return Verdict.MET if response.worst <= deadline else Verdict.MISSED
+    return judged(found, process, events, context.can_borrow(name))
 
 
 def _processors(solution: Solution) -> Iterator[ProcessorResult]:
-    """The load of each core; unknown if the demand or activation of a process on it is unknown."""
+    """The load of each core; unknown if the demand or activation of a process that can run on it is unknown."""
     context = solution.context
-    demands = context.demands
+    allowed = allocated_cores(context.system)
+    known = {core for core in context.system.cores if _is_load_known(core, allowed, solution)}
+    shares: Mapping[str, Mapping[str, Fraction]] = {}
+    if len(known) < len(context.system.cores):
+        shares = known_loads(allowed, activation_rates(context.system, context.activations), context.demand_model)
     for core in context.system.cores:
-        here = [scheduled.name for scheduled in context.on_core(core)]
-        is_known = all(map(solution.is_known, here))
-        is_known = (
-            is_known and (core, True) not in context.unanalysable_cores and (core, False) not in context.unanalysable_cores
-        )
-        time_base = context.demand_model.time_base(core)
-        rates = {name: solution.event_models[name].rate / time_base for name in here} if is_known else {}
+        best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
         yield ProcessorResult(
             name=core,
             frequency=context.demand_model.frequency(core),
-            best=_sum(demands[name].mean_best * rate for name, rate in rates.items()) if is_known else None,
-            mean=_sum(demands[name].mean * rate for name, rate in rates.items()) if is_known else None,
-            worst=_sum(demands[name].mean_worst * rate for name, rate in rates.items()) if is_known else None,
+            best=best,
+            mean=mean,
+            worst=worst,
+            at_least=_sum(shares.get(core, {}).values()) if worst is None else worst,
         )
+
+
+def _is_load_known(core: str, allowed: Mapping[str, frozenset[str]], solution: Solution) -> bool:
+    """Whether all processes that can run on a core run nowhere else, and their demand and activations are known."""
+    context = solution.context
+    if (core, True) in context.unanalysable_cores or (core, False) in context.unanalysable_cores:
+        return False
+    here = {scheduled.name for scheduled in context.on_core(core)}
+    return all(name in here for name, cores in allowed.items() if core in cores) and all(map(solution.is_known, here))
+
+
+def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction, Fraction]:
+    """The best, mean and worst load of a core."""
+    context = solution.context
+    time_base = context.demand_model.time_base(core)
+    names = [scheduled.name for scheduled in context.on_core(core)]
+    rates = [(context.demands[name], solution.event_models[name].rate / time_base) for name in names]
+    return (
+        _sum(demand.mean_best * rate for demand, rate in rates),
+        _sum(demand.mean * rate for demand, rate in rates),
+        _sum(demand.mean_worst * rate for demand, rate in rates),
+    )
 
 
 def _sum(values: Iterable[Fraction]) -> Fraction:

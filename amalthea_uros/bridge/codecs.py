@@ -174,7 +174,8 @@ def _name_of(value: Element | None, context: Extracting, element: Element) -> st
     name = context.names.get(value)
     if name is None or value in context.dropped:
         what = getattr(value, "name", None) or value
-        why = "is not part of the model" if name is None else "was not extracted"
+        is_there = value.document is not None and value.unresolved is None
+        why = "was not extracted" if name else "is not used by the analysis" if is_there else "is not part of the model"
         context.note("EXT003", f"reference ignored: {type(value).__name__} {what!r} {why}", element)
         return None
     return name

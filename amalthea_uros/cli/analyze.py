@@ -13,8 +13,10 @@ import click
 
 from amalthea_uros.analyze.chains.explanation import EXPLAINED
 from amalthea_uros.analyze.results import Quantity
-from amalthea_uros.cli.output import Output, output_option, show_findings, write_outputs
+from amalthea_uros.analyze.summary import Schedulable
+from amalthea_uros.cli.output import Output, output_option, show_findings, shows_text, write_outputs
 from amalthea_uros.perf.software import Communication
+from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail, explain
 from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.units import Frequency, Time, parse_frequency, parse_time
@@ -22,6 +24,13 @@ from amalthea_uros.units import Frequency, Time, parse_frequency, parse_time
 T = TypeVar("T")
 
 _COMMUNICATION = {str(how).lower(): how for how in Communication}
+
+#: The closing verdicts that make the exit code 1.
+_FAILING = {
+    "missed": (Schedulable.NO,),
+    "unknown": (Schedulable.NO, Schedulable.UNKNOWN),
+    "never": (),
+}
 
 
 class Assignment(click.ParamType[tuple[str, T]]):
@@ -129,6 +138,13 @@ def _phase(text: str) -> Time:
     is_flag=True,
     help="Show by how much execution times can increase before a limit is missed.",
 )
+@click.option(
+    "--fail-on",
+    type=click.Choice(list(_FAILING)),
+    default="missed",
+    show_default=True,
+    help="What makes the exit code 1: something is missed, lost or overloaded; or also unknown; or nothing.",
+)
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
 @output_option(AnalysisResult)
 def command(
@@ -144,13 +160,15 @@ def command(
     explained: str | None,
     quantity: str,
     with_sensitivity: bool,
+    fail_on: str,
     with_priorities: bool,
     outputs: tuple[Output, ...],
 ) -> None:
     """Compute response times, loads, end-to-end latencies of event chains, and verdicts.
 
     MODEL_OR_YAML is an app.yaml, one or more .amxmi files, or a folder of .amxmi files. Each number has a method and a claim
-    (exact, or a safe bound), and the assumptions are listed. Exit code 1 if a deadline or requirement is missed.
+    (exact, or a safe bound), and the assumptions are listed. The last line says whether all deadlines, requirements and constraints
+    are met; the exit code is 1 if one of them is missed, an activation is lost, or a core is overloaded.
     """
     settings = Settings(
         dict(frequencies),
@@ -168,4 +186,7 @@ def command(
     as_text = result.explanation or (chain_detail(result, chain) if chain is not None else None)
     show_findings(result.findings)
     write_outputs(outputs, result, as_text)
-    sys.exit(1 if result.analysis.misses else 0)
+    schedulable = result.analysis.summary.schedulable
+    if schedulable is not Schedulable.YES and (as_text is not None or not shows_text(outputs)):
+        click.echo(closing_line(result.analysis.summary), err=True)
+    sys.exit(1 if schedulable in _FAILING[fail_on] else 0)

@@ -76,6 +76,11 @@ def write_outputs(outputs: Iterable[Output], result: object, as_text: object | N
             _write_file(output.path, output.format, shown)
 
 
+def shows_text(outputs: Iterable[Output]) -> bool:
+    """Whether a result is shown to a person on standard output."""
+    return any(output.format == formats.TEXT and output.path is None for output in outputs)
+
+
 def _write_file(path: Path, name: str, result: object) -> None:
     from amalthea_uros.xmi.files import FileText, write_text
 

@@ -8,21 +8,24 @@ from amalthea_uros.analyze.results import ChainResult, Quantity, Value
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import time_text
 
+#: The headline quantities: `reaction` and `data age` are what the limits of these names are compared with.
 _COLUMNS = {
     "min": Quantity.MIN_FIRST_TO_FIRST,
     "mean": Quantity.MEAN_FIRST_TO_FIRST,
-    "max": Quantity.MAX_REDUCED_REACTION_TIME,
-    "reaction time": Quantity.MAX_REACTION_TIME,
-    "data age": Quantity.MAX_DATA_AGE,
-    "reduced data age": Quantity.MAX_REDUCED_DATA_AGE,
+    "reaction": Quantity.MAX_REDUCED_REACTION_TIME,
+    "data age": Quantity.MAX_REDUCED_DATA_AGE,
 }
+_NAMES = {quantity: column for column, quantity in _COLUMNS.items() if quantity.is_upper}
+HEADING = (
+    "Event chains (from the stimulus to the first response based on it; data age: from the latest stimulus to each response)"
+)
 
 
 def write_chains(terminal: Terminal, chains: Sequence[ChainResult]) -> None:
     """Write a row for each chain."""
     if not chains:
         return
-    terminal.heading("Event chains (min, mean, max: first to first; others: max)")
+    terminal.heading(HEADING)
     rows = [(chain.name, *cells(chain, _COLUMNS)) for chain in chains]
     terminal.table(("chain", *_COLUMNS, ""), rows, right=range(1, len(_COLUMNS) + 1))
 
@@ -37,3 +40,9 @@ def cells(chain: ChainResult, columns: Iterable[str]) -> tuple[str, ...]:
 def value_text(value: Value | None) -> str:
     """A latency, or a dash."""
     return "-" if value is None or value.value is None else time_text(value.value)
+
+
+def quantity_text(quantity: Quantity) -> str:
+    """The full name of a quantity, with the short one of the tables and limits if it has one."""
+    name = quantity.replace("_", " ")
+    return f"{name} ({_NAMES[quantity]})" if quantity in _NAMES else name

@@ -49,9 +49,9 @@ class Chain(Section):
     end: Moment = Field("finish", alias="to")
     """Event of the last member that ends the chain."""
     reaction: Limits | None = None
-    """Limits on the reaction time."""
+    """Limits on the reaction: from the start event to the end of the first job whose output is based on it."""
     age: Limits | None = None
-    """Limits on the data age."""
+    """Limits on the data age: from the start event on which an output is based to that output."""
 
     @model_validator(mode="after")
     def _is_one_of_three(self) -> Self:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TypeVar
 
-from amalthea_uros.perf.os import Scheduler
+from amalthea_uros.perf.os import Policy, Scheduler
+from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation import Activations
+from amalthea_uros.timing.activation import Activations, UnknownActivationError
+from amalthea_uros.timing.allocation import allocated_cores, effective_priority
 from amalthea_uros.timing.critical_sections import Locks, Protection, protection_of
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
+from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.limits import MAX_INPUT
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
@@ -19,7 +23,21 @@ from amalthea_uros.timing.releases import response_time_limits
 from amalthea_uros.timing.scheduling import NotSchedulableError, ScheduledProcess, Scheduling, Server
 from amalthea_uros.timing.server_calls import with_direct_calls
 from amalthea_uros.timing.settings import Memory, Settings
+from amalthea_uros.timing.stated_demand import states_execution_time
 from amalthea_uros.timing.stretches import KeptOff, StretchWalk, UnclearLocksError
+
+T = TypeVar("T")
+
+#: Servers that go on with a later deadline when their budget is used up (Abeni and Buttazzo 1998).
+LENDING_SERVERS = (Policy.CONSTANT_BANDWIDTH_SERVER, Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH)
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """The core and the priority of a process; None if it has none or several."""
+
+    core: str | None = None
+    priority: int | None = None
 
 
 @dataclass
@@ -79,6 +97,51 @@ class TimingContext:
     def time_base(self, process: str) -> int:
         """Time units per picosecond on the core of a process."""
         return self.demand_model.time_base(self.scheduled[process].core)
+
+    def placement(self, process: str) -> Placement:
+        """Where a process runs and with which priority, as far as it is known."""
+        scheduled = self.scheduled.get(process)
+        if scheduled is not None:
+            return Placement(scheduled.core, scheduled.priority)
+        return self._placements.get(process, Placement())
+
+    @cached_property
+    def _placements(self) -> Mapping[str, Placement]:
+        """The same for all processes, also for those whose scheduling cannot be analysed."""
+        cores, mapping = allocated_cores(self.system), self.system.mapping
+        priorities: dict[str, set[int | None]] = {}
+        for task in mapping.tasks:
+            priorities.setdefault(task.task, set()).add(effective_priority(task, self.system))
+        for isr in mapping.isrs:
+            priorities.setdefault(isr.isr, set()).add(isr.priority)
+        return {name: Placement(_only(cores.get(name, ())), _only(found)) for name, found in priorities.items()}
+
+    def stated_demand(self, process: str) -> MultiframeDemand | None:
+        """The demand of a process on its core, also if its scheduling cannot be analysed; None if it is unknown."""
+        core, model = self.placement(process).core, self.system.processes[process]
+        if process in self.demands or core is None or not states_execution_time(model, self.system):
+            return self.demands.get(process)
+        try:
+            return self.demand_model.of_process(model, core)
+        except UnknownDemandError:
+            return None
+
+    def stated_activations(self, process: str) -> EventModel | None:
+        """The activations of a process, if they do not depend on response times; None otherwise."""
+        model = self.system.processes[process]
+        stimuli = [self.system.stimuli_by_name.get(name) for name in model.stimuli]
+        if any(isinstance(stimulus, InterProcess | EventTriggered) for stimulus in stimuli):
+            return None
+        try:
+            return self.activations.of(model)
+        except UnknownActivationError:
+            return None
+
+    def can_borrow(self, process: str) -> bool:
+        """Whether a process can execute more than the budget of its server, so that no overload of the server is certain."""
+        scheduled = self.scheduled.get(process)
+        server = self.servers.get(scheduled.server or "") if scheduled is not None else None
+        return server is not None and server.scheduler.policy in LENDING_SERVERS
 
     def on_core(self, core: str) -> list[ScheduledProcess]:
         """The processes of a core."""
@@ -140,6 +203,8 @@ class TimingContext:
         for name, scheduled in self.scheduled.items():
             try:
                 demand = model.of_process(scheduled.process, scheduled.core)
+                if not states_execution_time(scheduled.process, self.system):
+                    raise UnknownDemandError("it has no execution time, and neither have the runnables that it calls")
                 scheduler = self._deciding(name, scheduled.core)
                 if scheduler is not None:
                     decision = model.of_decision(scheduler, scheduled.core)
@@ -213,3 +278,8 @@ class TimingContext:
             if len({(scheduled.core, scheduled.server) for scheduled in here}) > 1:
                 for scheduled in here:
                     self._mark_unclear(scheduled.name, f"it shares the semaphore {semaphore!r} with other cores or servers")
+
+
+def _only(values: Collection[T]) -> T | None:
+    """The only value; None if there are none or several."""
+    return next(iter(values)) if len(values) == 1 else None

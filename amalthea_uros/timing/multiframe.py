@@ -70,6 +70,12 @@ class MultiframeDemand:
         return self.max_demand(1)
 
     @property
+    def least_worst(self) -> Time:
+        """A demand that some job certainly can have: counters can keep frames of different jobs apart for ever."""
+        always = sum(frame.worst for frame in self.frames if frame.prescaler == 1)
+        return always + max((frame.worst for frame in self.frames if frame.prescaler > 1), default=0)
+
+    @property
     def best(self) -> Time:
         """The best-case execution time of a single job."""
         return self.min_demand(1)

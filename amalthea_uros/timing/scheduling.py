@@ -16,6 +16,7 @@ from amalthea_uros.perf.os import SERVERS, Duration, Parameter, ParameterValue, 
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.allocation import deciding_scheduler
 from amalthea_uros.timing.notes import Notes
 from amalthea_uros.units import Time
 
@@ -117,17 +118,33 @@ class NotSchedulableError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _Parameters:
-    """The parameters of a process or scheduler for the scheduler above it."""
+    """The parameters of a process or scheduler for the scheduler above it.
 
+    Attributes
+    ----------
+    owner : what they belong to, for messages
+    """
+
+    owner: str
     priority: int | None
     deadline: Time | None
     period: Time | None
     parameters: Sequence[Parameter]
 
+    def required(self, value: int | None, what: str) -> int:
+        """A value that must be set; times must be greater than 0."""
+        if value is None or (what != "priority" and value <= 0):
+            raise NotSchedulableError(f"{self.owner} has no {what}")
+        return value
+
     def of(self, scheduler: Scheduler, *names: str) -> ParameterValue | None:
         """The first of the named parameters that is set, here or for the whole scheduler."""
-        values = {p.name: p.values[0] for p in (*scheduler.parameters, *self.parameters) if len(p.values) == 1}
-        return next((values[name] for name in names if name in values), None)
+        return _of(scheduler, self.parameters, *names)
+
+
+def _of(scheduler: Scheduler, parameters: Sequence[Parameter], *names: str) -> ParameterValue | None:
+    values = {p.name: p.values[0] for p in (*scheduler.parameters, *parameters) if len(p.values) == 1}
+    return next((values[name] for name in names if name in values), None)
 
 
 @dataclass(slots=True)
@@ -154,9 +171,9 @@ class Scheduling:
         process = self.system.processes.get(allocation.task)
         scheduler = self.system.schedulers.get(allocation.scheduler)
         if process is None or scheduler is None:
-            raise NotSchedulableError("its task or scheduler is not defined in the model")
+            raise NotSchedulableError(f"the scheduler {allocation.scheduler!r} is not defined, or was left out when reading")
         deadline = self.limits.get(process.name) if allocation.deadline is None else allocation.deadline
-        parameters = _Parameters(allocation.priority, deadline, self._period(process), allocation.parameters)
+        parameters = _Parameters("it", allocation.priority, deadline, self._period(process), allocation.parameters)
         found = self._under(scheduler, parameters, ())
         return ScheduledProcess(
             process=process,
@@ -190,16 +207,31 @@ class Scheduling:
         if base.equal_priority is not EqualPriority.FIFO:
             message = f"{scheduler.name!r} cannot be analysed: its parent schedules by {base.equal_priority}"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError(f"schedulers below {base.equal_priority} cannot be analysed")
+            raise NotSchedulableError(f"the parent of its scheduler {scheduler.name!r} schedules by {base.equal_priority}")
         if policy is None:
             message = f"the scheduler {scheduler.name!r} has no policy; assuming fixed-priority preemptive scheduling"
             self.notes.warning("ANA001", message, scheduler)
+        if policy in _NEEDING_PRIORITY and parameters.priority is None and self._serves_one(scheduler):
+            # Nothing competes with what is alone.
+            parameters = replace(parameters, priority=0)
         by_policy = _BY_POLICY.get(policy)
         if by_policy is None:
             message = f"the policy {policy!r} of the scheduler {scheduler.name!r} cannot be analysed"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError(f"its scheduling policy {policy} cannot be analysed")
+            raise NotSchedulableError(f"there is no analysis for the policy {policy} of its scheduler {scheduler.name!r}")
         return by_policy(scheduler, parameters, base)
+
+    def _serves_one(self, scheduler: Scheduler) -> bool:
+        """Whether a scheduler decides for a single task or scheduler; groupings decide nothing."""
+        children = [
+            other.name
+            for other in self.system.schedulers.values()
+            if other.parent is not None
+            and standard_policy(other.policy) != Policy.GROUPING
+            and _decides(scheduler, other.parent.scheduler, self.system)
+        ]
+        tasks = [task.task for task in self.system.mapping.tasks if _decides(scheduler, task.scheduler, self.system)]
+        return len(children) + len(tasks) == 1
 
     def _policy(self, scheduler: Scheduler) -> str | None:
         """The standard name of the policy of a scheduler."""
@@ -215,6 +247,7 @@ class Scheduling:
             raise NotSchedulableError(f"the grouping {scheduler.name!r} has no parent scheduler")
         parent, of_group = self._parent(scheduler)
         merged = _Parameters(
+            owner=parameters.owner,
             priority=of_group.priority if parameters.priority is None else parameters.priority,
             deadline=of_group.deadline if parameters.deadline is None else parameters.deadline,
             period=parameters.period,
@@ -230,7 +263,7 @@ class Scheduling:
         if scheduler.policy not in SERVERS and self._is_shared(parent, parameters.priority):
             message = f"{scheduler.name!r} shares its priority in {parent.name!r} with others"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError("schedulers that share a priority cannot be analysed")
+            raise NotSchedulableError(f"its scheduler {scheduler.name!r} shares its priority in {parent.name!r} with others")
         return self._under(parent, parameters, above)
 
     def _parent(self, scheduler: Scheduler) -> tuple[Scheduler, _Parameters]:
@@ -239,9 +272,10 @@ class Scheduling:
         if parent is None:
             raise NotSchedulableError(f"the parent scheduler of {scheduler.name!r} is not defined in the model")
         association = scheduler.parent
-        period = _time(_Parameters(None, None, None, association.parameters).of(scheduler, *PERIOD))
+        period = _time(_of(scheduler, association.parameters, *PERIOD))
         deadline = period if association.deadline is None else association.deadline
-        return parent, _Parameters(association.priority, deadline, period, association.parameters)
+        owner = f"its scheduler {scheduler.name!r}, below {parent.name!r},"
+        return parent, _Parameters(owner, association.priority, deadline, period, association.parameters)
 
     def _is_shared(self, parent: Scheduler, priority: int | None) -> bool:
         """Whether several schedulers or tasks have a priority, under a policy that uses it."""
@@ -256,11 +290,12 @@ class Scheduling:
     def _server(self, scheduler: Scheduler, above: tuple[str, ...]) -> Server:
         if scheduler.name not in self.servers:
             found = self._of_scheduler(scheduler, above)
-            parameters = _Parameters(None, None, None, scheduler.parent.parameters if scheduler.parent else ())
+            stated = scheduler.parent.parameters if scheduler.parent else ()
+            parameters = _Parameters(f"the server {scheduler.name!r}", None, None, None, stated)
             self.servers[scheduler.name] = Server(
                 scheduler=scheduler,
-                budget=_required(_time(parameters.of(scheduler, *CAPACITY)), "capacity"),
-                period=_required(_time(parameters.of(scheduler, *PERIOD)), "period"),
+                budget=parameters.required(_time(parameters.of(scheduler, *CAPACITY)), "capacity"),
+                period=parameters.required(_time(parameters.of(scheduler, *PERIOD)), "period"),
                 core=self._core(scheduler, ()),
                 server=found.server,
                 rank=found.rank,
@@ -277,16 +312,15 @@ class Scheduling:
             served = served or root.cores
         cores = [core for core in served if core in wanted] if wanted else list(served)
         if len(cores) != 1:
-            reason = "several cores can execute it" if cores else "no core executes it"
-            message = f"the scheduler {scheduler.name!r} has {len(served)} cores; only tasks on a single core are analysed"
-            self.notes.warning("ANA002", message, scheduler)
+            reason = _no_single_core(scheduler, served, wanted, cores)
+            self.notes.warning("ANA002", f"tasks of the scheduler {scheduler.name!r} are not analysed: {reason}", scheduler)
             raise NotSchedulableError(reason)
         roots = [s.name for s in self.system.schedulers.values() if s.parent is None and cores[0] in s.cores]
         others = [name for name in roots if name != root.name]
         if others:
             message = f"the core {cores[0]!r} is shared by the schedulers {root.name!r} and {others[0]!r}"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError("its core is shared by two schedulers")
+            raise NotSchedulableError(f"its core {cores[0]!r} is shared by the schedulers {root.name!r} and {others[0]!r}")
         return cores[0]
 
     def isr(self, name: str, controller_name: str, priority: int | None) -> ScheduledProcess:
@@ -294,9 +328,12 @@ class Scheduling:
         process = self.system.processes.get(name)
         controller = self.system.interrupt_controllers.get(controller_name)
         if process is None or controller is None:
-            raise NotSchedulableError("its interrupt controller is not defined in the model")
+            raise NotSchedulableError(
+                f"the interrupt controller {controller_name!r} is not defined, or was left out when reading"
+            )
         if len(controller.cores) != 1:
-            raise NotSchedulableError("several cores can execute it" if controller.cores else "no core executes it")
+            cores = f"several cores can execute it: {', '.join(controller.cores)}"
+            raise NotSchedulableError(cores if controller.cores else f"{controller_name!r} is not responsible for a core")
         rank = (1, priority or 0)
         return ScheduledProcess(process=process, core=controller.cores[0], is_isr=True, priority=priority, rank=rank)
 
@@ -305,18 +342,22 @@ def _time(value: ParameterValue | None) -> Time | None:
     return value.time if isinstance(value, Duration) else None
 
 
-def _required(value: int | None, what: str) -> int:
-    """A value that must be set; times must be greater than 0."""
-    if value is None or (what != "priority" and value <= 0):
-        raise NotSchedulableError(f"it has no {what}")
-    return value
+def _no_single_core(scheduler: Scheduler, served: Sequence[str], wanted: Sequence[str], cores: Sequence[str]) -> str:
+    """Why it is not one core that executes a task."""
+    if cores:
+        return f"several cores can execute it: {', '.join(cores)}"
+    if not served:
+        return f"its scheduler {scheduler.name!r} is not responsible for a core"
+    return (
+        f"its affinity is to {', '.join(wanted)}, but its scheduler {scheduler.name!r} is responsible for {', '.join(served)}"
+    )
 
 
 # Policies
 
 
 def _fixed_priority(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
-    return replace(base, rank=(*base.rank, _required(parameters.priority, "priority")))
+    return replace(base, rank=(*base.rank, parameters.required(parameters.priority, "priority")))
 
 
 def _osek(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
@@ -326,23 +367,30 @@ def _osek(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext
 
 def _round_robin(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
     found = _fixed_priority(scheduler, parameters, base)
-    length = _required(_time(parameters.of(scheduler, "timeSliceLength")), "timeSliceLength")
+    length = parameters.required(_time(parameters.of(scheduler, "timeSliceLength")), "timeSliceLength")
     return replace(found, equal_priority=EqualPriority.ROUND_ROBIN, slice=length)
 
 
 def _deadline_monotonic(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
-    return replace(base, rank=(*base.rank, -_required(parameters.deadline, "deadline")))
+    return replace(base, rank=(*base.rank, -parameters.required(parameters.deadline, "deadline")))
 
 
 def _rate_monotonic(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
     period = _time(parameters.of(scheduler, "period")) or parameters.period
-    return replace(base, rank=(*base.rank, -_required(period, "period")))
+    return replace(base, rank=(*base.rank, -parameters.required(period, "period")))
 
 
 def _earliest_deadline_first(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
-    return replace(base, equal_priority=EqualPriority.EDF, deadline=_required(parameters.deadline, "deadline"))
+    return replace(base, equal_priority=EqualPriority.EDF, deadline=parameters.required(parameters.deadline, "deadline"))
 
 
+def _decides(scheduler: Scheduler, below: str, system: System) -> bool:
+    deciding = deciding_scheduler(below, system)
+    return deciding is not None and deciding.name == scheduler.name
+
+
+#: The policies for which what they serve needs a priority.
+_NEEDING_PRIORITY = (None, Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN)
 #: The scheduling by each policy; without a policy, fixed priorities are assumed.
 _BY_POLICY: Mapping[str | None, Callable[[Scheduler, _Parameters, SchedulingContext], SchedulingContext]] = {
     None: _fixed_priority,

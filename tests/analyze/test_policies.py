@@ -179,7 +179,7 @@ class TestSchedulersBelowEachOther:
     @pytest.mark.parametrize("policy", [Policy.OSEK, "AUTOSAR", "osek", "FPP"])
     def test_two_children_of_one_priority_are_not_analysed(self, policy):
         built = system([root(policy), under("child", Policy.OSEK, 5)], self.TASKS)
-        assert "share a priority" in worst(built)["urgent"]
+        assert "shares its priority in 'root' with others" in worst(built)["urgent"]
 
     @pytest.mark.parametrize(
         ("policy", "inside", "below"),

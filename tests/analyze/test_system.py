@@ -8,8 +8,8 @@ import pytest
 from support import ROOT, SHARED
 
 from amalthea_uros import describe, extract, load
-from amalthea_uros.analyze.results import Verdict
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.perf import stimuli as perf_stimuli
 from amalthea_uros.perf.constraints import Bound, Constraints, CountLimit, CountMetric, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.distributions import Boundaries, Constant, Uniform
@@ -63,7 +63,7 @@ class TestTheThesis:
         assert control.acet / MS == Fraction("0.004")
         assert {requirement.verdict for requirement in analysis.requirements} == {"met"}
         assert analysis.requirements[0].margin == MS - 29 * US
-        assert not analysis.misses
+        assert analysis.summary.schedulable == "yes"
 
     def test_the_built_model_gives_the_same_as_its_description(self):
         for sample in SAMPLES.glob("*.yaml"):
@@ -337,7 +337,7 @@ class TestWhatIsNotKnown:
         )
         analysis = analyze_system(replace(built, os=Os(systems=(OperatingSystem(name="OS", schedulers=schedulers),))))
         found = by_name(analysis)
-        assert found["free"].reason == "several cores can execute it"
+        assert found["free"].reason == "several cores can execute it: one, two"
         assert found["fixed"].reason == "depends on 'free', which could not be analysed"
         assert found["elsewhere"].response.worst is not None
         assert [processor.worst is None for processor in analysis.processors] == [True, True, False]
@@ -363,15 +363,16 @@ class TestVerdicts:
         built = one_core(("high", 100, [ticks(20)]), ("low", 100, [ticks(10)]), constraints=self.requirement(limit))
         analysis = analyze_system(built)
         assert analysis.requirements[0].verdict == by_name(analysis)["low"].verdict == verdict
-        assert analysis.misses == (verdict == "missed")
+        assert (analysis.summary.schedulable == "no") == (verdict == "missed")
 
     def test_overload(self):
         built = one_core(("high", 100, [ticks(70)]), ("low", 100, [ticks(40)]), constraints=self.requirement(100))
         analysis = analyze_system(built)
         assert by_name(analysis)["high"].response.worst == 70 * US
-        assert by_name(analysis)["low"].verdict == analysis.requirements[0].verdict == "unbounded"
+        low = by_name(analysis)["low"]
+        assert (low.verdict, low.failure, analysis.requirements[0].verdict) == ("unbounded", "overload", "missed")
         assert analysis.processors[0].worst == Fraction("1.1")
-        assert analysis.misses
+        assert analysis.summary.schedulable == "no"
 
 
 class TestRequirements:

@@ -32,6 +32,8 @@ def test_the_machine_readable_result(path, tmp_path):
             "quantity": "response time",
             "limit_ps": 10**9,
             "value_ps": 29_000_000,
+            "lower_ps": 29_000_000,
+            "upper_ps": 29_000_000,
             "margin_ps": 971_000_000,
             "verdict": "met",
             "reason": "",
@@ -42,6 +44,8 @@ def test_the_machine_readable_result(path, tmp_path):
             "quantity": "reaction",
             "limit_ps": 25 * 10**9,
             "value_ps": 20_029_000_000,
+            "lower_ps": 20_029_000_000,
+            "upper_ps": 20_029_000_000,
             "margin_ps": 4_971_000_000,
             "verdict": "met",
             "reason": "",
@@ -159,7 +163,7 @@ def test_a_chain():
     run = amuros("analyze", ADVANCED, "--chain", "factor-to-output")
     assert run.returncode == 0
     assert "Executor_Task_start -[data memory_1]-> Message_Factor_finish -[data memory_2]->" in run.stdout
-    assert "max reduced reaction time    20.029 ms  exact" in run.stdout
+    assert "max reduced reaction time (reaction)    20.029 ms  exact" in run.stdout
     assert "Davare" not in run.stdout
     every = amuros("analyze", ADVANCED, "--chain", "factor-to-output", "--method", "all")
     assert "sum of periods and response times, over all 20 phases (Davare and others 2007)" in every.stdout

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import permutations
 
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
 from amalthea_uros.analyze.chains.runnable_order import satisfies_order
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
-from amalthea_uros.analyze.results import ChainResult, Quantity, RequirementResult, Value, Verdict
+from amalthea_uros.analyze.implausible_limits import note_implausible
+from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, RequirementResult, Value
+from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
 from amalthea_uros.perf.constraints import (
     ChainEnd,
     ChainSynchronization,
@@ -59,7 +62,11 @@ class ConstraintEvaluator:
         constraints = self.evaluation.context.system.constraints
         for constraint in (*constraints.constraints, *constraints.data_ages, *constraints.orders):
             try:
-                yield from self._one(constraint)
+                found = list(self._one(constraint))
+                for result in found:
+                    note_implausible(result, constraint, self.evaluation.context.notes)
+                # What limits nothing is not met.
+                yield from found or [_unknown(constraint, "it states no limit, or nothing in the model is limited by it")]
             except (UnknownError, UnresolvedError, UnboundedStageError) as error:
                 yield _unknown(constraint, str(error))
             except Exception as error:
@@ -93,13 +100,12 @@ class ConstraintEvaluator:
         if chain is None:
             raise UnknownError(f"the chain {constraint.chain!r} is not defined in the model")
         minimum, maximum = _AGE if constraint.kind is LatencyKind.AGE else _REACTION
-        kind = str(constraint.kind)
+        kind = "data age" if constraint.kind is LatencyKind.AGE else "reaction"
+        ends = _Latencies(chain.values, minimum, maximum)
         if constraint.maximum is not None:
-            value = _time(chain.value(maximum))
-            yield _result(constraint, chain.name, kind, constraint.maximum, value, chain.reason)
+            yield _result(constraint, chain.name, kind, constraint.maximum, ends.of_maximum, chain.reason)
         if constraint.minimum is not None:
-            value = _time(chain.value(minimum))
-            yield _result(constraint, chain.name, kind, constraint.minimum, value, chain.reason, is_upper=False)
+            yield _result(constraint, chain.name, kind, constraint.minimum, ends.of_minimum, chain.reason, is_upper=False)
 
     def _delay(self, constraint: DelayConstraint) -> Iterator[RequirementResult]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
@@ -109,13 +115,12 @@ class ConstraintEvaluator:
                 raise UnknownError(
                     "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
                 )
-        values = {value.quantity: value for value in self.evaluation.pair(source, target)}
-        minimum, maximum = _REACTION
+        ends = _Latencies(self.evaluation.pair(source, target), *_REACTION)
         what = f"{constraint.source} to {constraint.target}"
         if constraint.upper is not None:
-            yield _result(constraint, what, "delay", constraint.upper, _time(values.get(maximum)))
+            yield _result(constraint, what, "delay", constraint.upper, ends.of_maximum)
         if constraint.lower is not None:
-            yield _result(constraint, what, "delay", constraint.lower, _time(values.get(minimum)), is_upper=False)
+            yield _result(constraint, what, "delay", constraint.lower, ends.of_minimum, is_upper=False)
 
     def _chain_synchronization(self, constraint: ChainSynchronization) -> RequirementResult:
         found = [self.chains.get(name) for name in constraint.chains]
@@ -125,15 +130,13 @@ class ConstraintEvaluator:
             raise UnknownError("it needs at least two chains that are defined in the model")
         is_start = constraint.end is ChainEnd.STIMULUS
         ends = [chain.stimulus if is_start else chain.response for chain in chains]
-        value: Time | None
         if not is_start and len({chain.stimulus for chain in chains}) == 1:
-            # From the same stimulus: the latest response of one chain minus the earliest of another.
-            latest = [_time(each.value(_REACTION[1])) for each in found if each is not None]
-            earliest = [_time(each.value(_REACTION[0])) for each in found if each is not None]
-            value = _difference(latest, earliest)
+            spread = _spread([_Latencies(each.values, *_REACTION) for each in found if each is not None])
         else:
-            value = self.windows.spread([end for end in ends if end is not None])
-        return _result(constraint, ", ".join(constraint.chains), f"spread at the {constraint.end}", constraint.tolerance, value)
+            spread = self.windows.spread([end for end in ends if end is not None])
+        return _result(
+            constraint, ", ".join(constraint.chains), f"spread at the {constraint.end}", constraint.tolerance, spread
+        )
 
     def _data_age(self, constraint: DataAgeConstraint) -> Iterator[RequirementResult]:
         """The age of the data written by the runnable at each read of them."""
@@ -151,12 +154,12 @@ class ConstraintEvaluator:
         earliest = _cycles(constraint.earliest, constraint.earliest_cycle, cycle)
         for name in sorted(readers):
             read = LabelEvent(name="read", label=constraint.label, change=LabelChange.READ, process=name)
-            values = {value.quantity: value for value in self.evaluation.pair(written, read)}
+            ends = _Latencies(self.evaluation.pair(written, read), *_AGE)
             what = f"{constraint.label} in {name}"
             if latest is not None:
-                yield _result(constraint, what, "age", latest, _time(values.get(_AGE[1])))
+                yield _result(constraint, what, "data age", latest, ends.of_maximum)
             if earliest is not None:
-                yield _result(constraint, what, "age", earliest, _time(values.get(_AGE[0])), is_upper=False)
+                yield _result(constraint, what, "data age", earliest, ends.of_minimum, is_upper=False)
 
     # Events
 
@@ -166,18 +169,20 @@ class ConstraintEvaluator:
         if activations is None:
             raise UnknownError(f"the activation pattern of {occurrence.process.name!r} is unknown")
         early, late = self.windows.of(occurrence)
-        span = max(1, constraint.span)
+        moves, span = late - early, max(1, constraint.span)
         if constraint.upper is not None:
-            longest = _longest(activations, span)
-            value = None if longest is None else longest + late - early
-            yield _result(constraint, constraint.event, "repetition", constraint.upper, value)
+            longest = Ends(None, _longest(activations, span))
+            if isinstance(activations, Periodic):
+                # Other event models only bound the activations.
+                longest = Ends(longest.upper, longest.upper)
+            yield _result(constraint, constraint.event, "repetition", constraint.upper, _moved(longest, moves))
         if constraint.lower is not None:
-            value = max(0, activations.delta_min(span + 1) - (late - early))
-            yield _result(constraint, constraint.event, "repetition", constraint.lower, value, is_upper=False)
+            shortest = activations.delta_min(span + 1)
+            ends = Ends(shortest, shortest if isinstance(activations, Periodic) else None)
+            yield _result(constraint, constraint.event, "repetition", constraint.lower, _moved(ends, moves), is_upper=False)
         if constraint.jitter is not None:
             own = activations.jitter if isinstance(activations, Periodic) and is_strictly_periodic(activations) else None
-            value = None if own is None else own + late - early
-            yield _result(constraint, constraint.event, "jitter", constraint.jitter, value)
+            yield _result(constraint, constraint.event, "jitter", constraint.jitter, _moved(Ends(own, own), moves))
 
     # Order
 
@@ -198,39 +203,65 @@ class ConstraintEvaluator:
                 quantity="order of runnables",
                 is_upper=True,
                 limit=None,
-                value=None,
                 verdict=Verdict.MET if holds else Verdict.MISSED,
             )
 
 
-def _unknown(constraint: Named, reason: str) -> RequirementResult:
-    return RequirementResult(
-        name=constraint.name,
-        object="",
-        quantity=type(constraint).__name__,
-        is_upper=True,
-        limit=None,
-        value=None,
-        verdict=Verdict.UNKNOWN,
-        reason=reason,
-    )
+@dataclass(frozen=True, slots=True)
+class _Latencies:
+    """Between which ends the maximum and the minimum of a latency lie."""
+
+    values: Sequence[Value]
+    minimum: Quantity
+    maximum: Quantity
+
+    @property
+    def of_maximum(self) -> Ends:
+        """An exact value, or from a lower bound of all latencies up to an upper bound."""
+        lowest, highest = self._find(self.minimum), self._find(self.maximum)
+        if highest is not None and highest.value is not None and highest.claim is Claim.EXACT:
+            return Ends.exactly(highest.value)
+        return Ends(_time(lowest), _time(highest))
+
+    @property
+    def of_minimum(self) -> Ends:
+        """An exact value, or from a lower bound up to an upper bound of all latencies; no latency is negative."""
+        lowest, highest = self._find(self.minimum), self._find(self.maximum)
+        if lowest is not None and lowest.value is not None and lowest.claim is Claim.EXACT:
+            return Ends.exactly(lowest.value)
+        return Ends(_time(lowest) or 0, _time(highest))
+
+    def _find(self, quantity: Quantity) -> Value | None:
+        return next((value for value in self.values if value.quantity is quantity), None)
 
 
 def _result(
-    constraint: Named, what: str, quantity: str, limit: Time, value: Time | None, reason: str = "", is_upper: bool = True
+    constraint: Named, what: str, quantity: str, limit: Time, ends: Ends, reason: str = "", is_upper: bool = True
 ) -> RequirementResult:
-    if not is_upper and value is None and not reason:
-        value = 0  # no latency is negative
-    holds = value is not None and (value <= limit if is_upper else value >= limit)
+    verdict = decide(ends, limit, is_upper)
     return RequirementResult(
         name=constraint.name,
         object=what,
         quantity=quantity,
         is_upper=is_upper,
         limit=limit,
-        value=value,
-        verdict=Verdict.UNKNOWN if value is None else Verdict.MET if holds else Verdict.MISSED,
-        reason=reason if value is None else "",
+        lower=ends.lower,
+        upper=ends.upper,
+        verdict=verdict,
+        reason=(reason or undecided(ends, is_upper)) if verdict is Verdict.UNKNOWN else "",
+    )
+
+
+def _unknown(constraint: Named, reason: str) -> RequirementResult:
+    """The result of a constraint that cannot be evaluated."""
+    return RequirementResult(
+        name=constraint.name,
+        object="",
+        quantity=type(constraint).__name__,
+        is_upper=True,
+        limit=None,
+        verdict=Verdict.UNKNOWN,
+        reason=reason,
     )
 
 
@@ -238,10 +269,25 @@ def _time(value: Value | None) -> Time | None:
     return value.value if value is not None else None
 
 
-def _difference(latest: Sequence[Time | None], earliest: Sequence[Time | None]) -> Time | None:
-    if None in latest or None in earliest:
-        return None
-    return max(time for time in latest if time is not None) - min(time for time in earliest if time is not None)
+def _spread(latencies: Sequence[_Latencies]) -> Ends:
+    """Between which ends the maximum distance of the responses to one stimulus lies.
+
+    In the case of the greatest latency of a chain, another one takes at most its maximum.
+    """
+    latest, earliest = [each.of_maximum for each in latencies], [each.of_minimum for each in latencies]
+    uppers = [ends.upper for ends in latest if ends.upper is not None]
+    lowers = [ends.lower for ends in earliest if ends.lower is not None]
+    upper = max(uppers) - min(lowers) if len(uppers) == len(latest) and lowers else None
+    apart = [
+        one.lower - other.upper for one, other in permutations(latest, 2) if one.lower is not None and other.upper is not None
+    ]
+    return Ends(max(0, *apart) if apart else 0, upper)
+
+
+def _moved(distance: Ends, by: Time) -> Ends:
+    """A distance of activations as one of events that follow them after varying times."""
+    lower, upper = distance.lower, distance.upper
+    return Ends(None if lower is None else max(0, lower - by), None if upper is None else upper + by)
 
 
 def _cycles(time: Time | None, cycles: int | None, period: Time | None) -> Time | None:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.verdicts import Ends
 from amalthea_uros.perf.events import Event, EventSet
 from amalthea_uros.timing.counters import is_always
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
@@ -70,8 +71,8 @@ class EventWindows:
                 return response.best, response.worst
         return 0, response.worst
 
-    def spread(self, events: Sequence[str]) -> Time:
-        """The maximum time between corresponding occurrences of events of processes with the same period."""
+    def spread(self, events: Sequence[str]) -> Ends:
+        """The maximum time between corresponding occurrences of events of processes with the same period: between which ends."""
         windows = []
         periods = set()
         for name in events:
@@ -87,4 +88,5 @@ class EventWindows:
             raise UnknownError("it has no events")
         if len(periods) > 1:
             raise UnknownError("its events have different periods, so their occurrences do not correspond")
-        return max(late for _, late in windows) - min(early for early, _ in windows)
+        apart = max(early for early, _ in windows) - min(late for _, late in windows)
+        return Ends(max(0, apart), max(late for _, late in windows) - min(early for early, _ in windows))

@@ -86,4 +86,4 @@ def unbounded(best: Time, higher: Interference, task: Task, method: str, source:
     reason = f"overload: tasks at this priority or higher need {100 * rate:.1f} % of the core"
     if higher.supply.rate < 1:
         reason += f", and their server provides {100 * float(higher.supply.rate):.1f} %"
-    return Response(worst=None, best=best, method=method, source=source, reason=reason)
+    return Response(worst=None, best=best, method=method, source=source, reason=reason, is_overload=True)

@@ -38,9 +38,9 @@ KINDS = (
         title="process with unknown execution demand",
         severity=Severity.WARNING,
         rationale=(
-            "Loops, waiting for events or for other processes, incomplete activities, ticks without bounds, or a core without a clock "
-            "frequency make the demand unbounded, so the response times of this process and of lower priorities on its core "
-            "are unknown."
+            "Without ticks or execution needs, the demand is not stated; loops, waiting for events or for other processes, "
+            "incomplete activities, ticks without bounds, or a core without a clock frequency make it unbounded. The response "
+            "times of this process and of lower priorities on its core are unknown."
         ),
         remedy="Complete the activities, set bounds for ticks, avoid loops and waiting, and set the clock frequency of the core.",
     ),
@@ -67,7 +67,10 @@ KINDS = (
         id="ANA007",
         title="activations that can be lost",
         severity=Severity.WARNING,
-        rationale="More jobs can be pending than the activation limit allows. The bounds do not cover lost activations.",
+        rationale=(
+            "More jobs can be pending than the activation limit allows. The bounds do not cover lost activations. If it is "
+            "certain that activations are lost, the process fails, and so does the analysis."
+        ),
         remedy="Raise the activation limit, or activate the task less often.",
     ),
     FindingKind(
@@ -84,7 +87,14 @@ KINDS = (
         id="ANA009",
         title="requirement that is not evaluated",
         severity=Severity.WARNING,
-        rationale="Only time limits are evaluated.",
+        rationale="Only time limits are evaluated. The verdict on others is unknown.",
         remedy="Use a time limit, or verify the requirement by other means.",
+    ),
+    FindingKind(
+        id="ANA010",
+        title="implausible limit",
+        severity=Severity.WARNING,
+        rationale="A negative limit can never be met, or is always met; one of more than a year is met by everything.",
+        remedy="Correct the value or the unit of the limit.",
     ),
 )

@@ -5,7 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.analyze.results import ChainResult, ProcessResult
+from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult
+from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.findings import finding_json, joined
 from amalthea_uros.report.json import explanation
 from amalthea_uros.services.analyze import AnalysisResult
@@ -25,6 +26,7 @@ def content(result: AnalysisResult) -> dict[str, Any]:
                     "bcet": _number(processor.best),
                     "acet": _number(processor.mean),
                     "wcet": _number(processor.worst),
+                    "wcet_at_least": _number(processor.at_least),
                 },
             }
             for processor in analysis.processors
@@ -38,12 +40,15 @@ def content(result: AnalysisResult) -> dict[str, Any]:
                 "quantity": requirement.quantity,
                 "limit_ps": requirement.limit,
                 "value_ps": requirement.value,
+                "lower_ps": requirement.lower,
+                "upper_ps": requirement.upper,
                 "margin_ps": requirement.margin,
                 "verdict": requirement.verdict,
                 "reason": requirement.reason,
             }
             for requirement in analysis.requirements
         ],
+        "summary": _summary_json(analysis),
     }
     if result.explanation is not None:
         found["explanation"] = explanation.content(result.explanation)
@@ -58,6 +63,20 @@ def content(result: AnalysisResult) -> dict[str, Any]:
             for p in result.proposals
         ]
     return found
+
+
+def _summary_json(analysis: Analysis) -> dict[str, Any]:
+    summary = analysis.summary
+    tightest = summary.tightest
+    return {
+        "schedulable": summary.schedulable,
+        "missed": summary.missed,
+        "unknown": len(summary.unknown),
+        "judged": summary.judged,
+        "overloaded": [processor.name for processor in analysis.processors if processor.is_overloaded],
+        "tightest": None if tightest is None else {"name": tightest.name, "margin_ps": tightest.margin},
+        "text": closing_line(analysis.summary),
+    }
 
 
 def _number(value: Fraction | None) -> float | None:
@@ -78,7 +97,9 @@ def _process_json(process: ProcessResult) -> dict[str, Any]:
         "bcrt_ps": response.best if response else None,
         "wcrt_ps": response.worst if response else None,
         "deadline_ps": process.deadline,
+        "deadline_is_period": process.is_implicit,
         "verdict": process.verdict,
+        "failure": process.failure,
         "reason": process.reason,
         "method": response.method if response else None,
         "source": response.source if response else None,

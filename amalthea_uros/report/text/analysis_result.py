@@ -6,19 +6,21 @@ from fractions import Fraction
 from math import ceil
 
 from amalthea_uros.analyze.assignment import Outcome, Proposal
-from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, RequirementResult, Verdict
+from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
+from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.latencies import write_chains
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.units import Time, frequency_text, time_text
 
 BAR = 20
-_BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET)
+_BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET, None)
 
 
 def write(result: AnalysisResult, terminal: Terminal) -> None:
-    """Write tables of loads, response times, chains and requirements, worst first, with methods and assumptions."""
+    """Write tables of loads, response times, chains and requirements, worst first, with methods, assumptions and the verdict."""
     analysis = result.analysis
     _processors(terminal, analysis)
     _processes(terminal, analysis)
@@ -32,6 +34,7 @@ def write(result: AnalysisResult, terminal: Terminal) -> None:
         terminal.heading("Assumptions")
         for sentence in analysis.assumptions:
             terminal.line(f"  {sentence}")
+    terminal.heading(closing_line(analysis.summary))
 
 
 def _processors(terminal: Terminal, analysis: Analysis) -> None:
@@ -42,8 +45,9 @@ def _processors(terminal: Terminal, analysis: Analysis) -> None:
     rows = []
     for processor in used:
         clock = frequency_text(processor.frequency) if processor.frequency else "?"
-        loads = [_percent(load) for load in (processor.best, processor.mean, processor.worst)]
-        rows.append((processor.name, clock, *loads, _bar(processor)))
+        rows.append(
+            (processor.name, clock, _percent(processor.best), _percent(processor.mean), _worst(processor), _bar(processor))
+        )
     terminal.table(("core", "clock", "best", "mean", "worst", ""), rows, right=(1, 2, 3, 4))
 
 
@@ -51,12 +55,18 @@ def _percent(load: Fraction | None) -> str:
     return "?" if load is None else f"{float(load):.3%}"
 
 
+def _worst(processor: ProcessorResult) -> str:
+    """The worst load, or the part of it that is known."""
+    if processor.worst is not None or not processor.at_least:
+        return _percent(processor.worst)
+    return f"at least {_percent(processor.at_least)}"
+
+
 def _bar(processor: ProcessorResult) -> str:
-    """The worst load as a bar, with an exclamation mark above 100 %."""
-    if processor.worst is None:
-        return ""
-    filled = ceil(processor.worst * BAR)
-    return "#" * min(filled, BAR) + "." * (BAR - filled) + ("!" if processor.worst > 1 else "")
+    """The worst load as far as it is known as a bar, with an exclamation mark above 100 %."""
+    filled = min(BAR, ceil(processor.at_least * BAR))
+    rest = ("." if processor.worst is not None else "?") * (BAR - filled)
+    return "#" * filled + rest + ("!" if processor.is_overloaded else "")
 
 
 def _processes(terminal: Terminal, analysis: Analysis) -> None:
@@ -73,8 +83,8 @@ def _processes(terminal: Terminal, analysis: Analysis) -> None:
                 _time(process.wcet),
                 _time(response.best if response else None),
                 _time(response.worst if response else None),
-                _time(process.deadline, "-"),
-                process.verdict if process.verdict is not Verdict.UNKNOWN or response is None else "-",
+                f"{'period ' if process.is_implicit else ''}{_time(process.deadline, '-')}",
+                process.failure or process.verdict or "-",
                 process.reason or (str(response.claim) if response else ""),
             )
         )
@@ -105,13 +115,14 @@ def _requirements(terminal: Terminal, analysis: Analysis) -> None:
             requirement.name,
             f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity,
             _limit(requirement),
-            _time(requirement.value),
+            _value(requirement),
             requirement.verdict,
             _margin(requirement),
+            requirement.reason,
         )
         for requirement in ordered
     ]
-    terminal.table(("requirement", "what", "limit", "value", "verdict", "margin"), rows, right=(3, 5))
+    terminal.table(("requirement", "what", "limit", "value", "verdict", "margin", ""), rows, right=(3, 5))
 
 
 def _limit(requirement: RequirementResult) -> str:
@@ -120,8 +131,16 @@ def _limit(requirement: RequirementResult) -> str:
     return ("at most " if requirement.is_upper else "at least ") + time_text(requirement.limit)
 
 
+def _value(requirement: RequirementResult) -> str:
+    """The maximum or minimum that is limited: its safe end, or both ends if it lies between them and the verdict is not met."""
+    lower, upper = requirement.lower, requirement.upper
+    if lower == upper or requirement.verdict is Verdict.MET or lower is None or upper is None:
+        return _time(requirement.value)
+    return f"{time_text(lower)} to {time_text(upper)}"
+
+
 def _margin(requirement: RequirementResult) -> str:
-    return requirement.reason if requirement.margin is None else time_text(requirement.margin)
+    return "" if requirement.margin is None or requirement.verdict is Verdict.UNKNOWN else time_text(requirement.margin)
 
 
 def _sensitivity(terminal: Terminal, found: Sensitivity | None) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.analyze.results import Quantity
-from amalthea_uros.report.latencies import value_text
+from amalthea_uros.report.latencies import quantity_text, value_text
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.analyze import ChainDetail
 
@@ -20,7 +20,7 @@ def write(detail: ChainDetail, terminal: Terminal) -> None:
     if values:
         ordered = sorted(values, key=lambda value: list(Quantity).index(value.quantity))
         rows = [
-            (value.quantity.replace("_", " "), value_text(value), value.claim, f"{value.method} ({value.source})")
+            (quantity_text(value.quantity), value_text(value), value.claim, f"{value.method} ({value.source})")
             for value in ordered
         ]
         terminal.table(("quantity", "value", "claim", "method"), rows, right=(1,))

@@ -6,7 +6,7 @@ from amalthea_uros.report.latencies import cells
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.chains import PathsResult
 
-_COLUMNS = ("min", "max", "data age")
+_COLUMNS = ("min", "reaction", "data age")
 
 
 def write(result: PathsResult, terminal: Terminal) -> None:

@@ -43,8 +43,8 @@ def evaluate(*constraints, built=None, data_ages=(), orders=(), chains=()):
         # From the start of the producer at 0 or 10 to the end of the consumer at 10 or 30.
         (LatencyKind.REACTION, 10, 20, [("reaction", 20, "met"), ("reaction", 10, "met")]),
         (LatencyKind.REACTION, 11, 19, [("reaction", 20, "missed"), ("reaction", 10, "missed")]),
-        (LatencyKind.AGE, 10, 10, [("age", 10, "met"), ("age", 10, "met")]),
-        (LatencyKind.AGE, None, 9, [("age", 10, "missed")]),
+        (LatencyKind.AGE, 10, 10, [("data age", 10, "met"), ("data age", 10, "met")]),
+        (LatencyKind.AGE, None, 9, [("data age", 10, "missed")]),
     ],
 )
 def test_latencies_of_a_chain(kind, minimum, maximum, expected):
@@ -70,8 +70,24 @@ def test_a_delay_whose_occurrences_belong_together_one_by_one():
 
 def test_repetition():
     # The consumer starts at 5 after every 20; by its response time of 10 and its 5 it might start 5 later.
-    repetition = RepetitionConstraint(name="R", event=EVENTS[2].name, span=2, lower=35 * US, upper=44 * US, jitter=5 * US)
-    assert evaluate(repetition) == [("repetition", 45, "missed"), ("repetition", 35, "met"), ("jitter", 5, "met")]
+    repetition = RepetitionConstraint(name="R", event=EVENTS[2].name, span=2, lower=35 * US, upper=45 * US, jitter=5 * US)
+    assert evaluate(repetition) == [("repetition", 45, "met"), ("repetition", 35, "met"), ("jitter", 5, "met")]
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "verdict"),
+    # Two periods are 40, and starts move by up to 5: the true value, 40, is between 35 and 45.
+    [(None, 44, "unknown"), (None, 35, "unknown"), (None, 34, "missed"), (36, None, "unknown"), (46, None, "missed")],
+)
+def test_a_bound_beyond_a_limit_is_unknown(lower, upper, verdict):
+    repetition = RepetitionConstraint(
+        name="R", event=EVENTS[2].name, span=2, lower=lower and lower * US, upper=upper and upper * US
+    )
+    assert [found[2] for found in evaluate(repetition)] == [verdict]
+
+
+def test_a_constraint_without_a_limit_is_not_met():
+    assert evaluate(LatencyConstraint(name="L", chain="chain")) == [("LatencyConstraint", None, "unknown")]
 
 
 def test_repetition_of_sporadic_events():
@@ -108,10 +124,10 @@ def test_chains_that_should_end_together():
 @pytest.mark.parametrize(
     ("limits", "expected"),
     [
-        ({"latest": 4 * US}, [("age", 4, "met")]),
-        ({"latest": 3 * US}, [("age", 4, "missed")]),
-        ({"latest_cycle": 1, "earliest_cycle": 0}, [("age", 4, "met"), ("age", 4, "met")]),
-        ({"earliest_cycle": 1}, [("age", 4, "missed")]),
+        ({"latest": 4 * US}, [("data age", 4, "met")]),
+        ({"latest": 3 * US}, [("data age", 4, "missed")]),
+        ({"latest_cycle": 1, "earliest_cycle": 0}, [("data age", 4, "met"), ("data age", 4, "met")]),
+        ({"earliest_cycle": 1}, [("data age", 4, "missed")]),
     ],
 )
 def test_how_long_data_are_valid(limits, expected):

@@ -32,7 +32,7 @@ def _percent(share: Fraction | int) -> str:
 RULE = SystemRule(
     id="TIM-OVERLOAD",
     title="overloaded processing unit",
-    severity=Severity.WARNING,
+    severity=Severity.ERROR,
     check=_check,
     rationale="If every job takes its worst-case execution time, more work is activated than the processing unit can execute: the "
     "response times of processes of low priority, and the latencies of chains through them, have no upper bound.",

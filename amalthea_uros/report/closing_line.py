@@ -1,0 +1,102 @@
+"""The verdict on a whole system in one line."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from amalthea_uros.analyze.process_verdicts import worst_response
+from amalthea_uros.analyze.results import ProcessorResult, ProcessResult, RequirementResult
+from amalthea_uros.analyze.summary import Judged, Schedulable, Summary
+from amalthea_uros.analyze.verdicts import Ends, Failure
+from amalthea_uros.report.wording import counted
+from amalthea_uros.units import time_text
+
+#: Reasons that are only consequences of others end like this.
+_CONSEQUENCE = "could not be analysed"
+
+
+def closing_line(summary: Summary) -> str:
+    """Whether everything is met, such as "Schedulable: yes"; otherwise what fails, or how much is unknown and why."""
+    unknown = _unknown(summary)
+    match summary.schedulable:
+        case Schedulable.YES:
+            return f"Schedulable: yes{_tightest(summary)}"
+        case Schedulable.NO:
+            return "Schedulable: " + "; ".join(filter(None, (f"no: {_failures(summary)}", unknown)))
+    return f"Schedulable: {unknown}"
+
+
+def _tightest(summary: Summary) -> str:
+    item = summary.tightest
+    if item is None or item.margin is None:
+        return ""
+    limit = item.deadline if isinstance(item, ProcessResult) else item.limit
+    if limit is None or (isinstance(item, RequirementResult) and not item.is_upper):
+        return f"; tightest: {item.name}, {time_text(item.margin)} left"
+    return f"; tightest: {item.name}, {time_text(item.margin)} of {time_text(limit)} left"
+
+
+def _failures(summary: Summary) -> str:
+    """The first failure, and the number of the others."""
+    sentences = [*map(_core_failure, summary.overloaded), *map(_failure, summary.failing)]
+    others = len(sentences) - 1
+    return sentences[0] + (f"; {counted(others, 'other failure')}" if others else "")
+
+
+def _core_failure(core: ProcessorResult) -> str:
+    return f"the load of {core.name} is {'at least ' if core.worst is None else ''}{float(core.at_least):.1%}"
+
+
+def _failure(item: Judged) -> str:
+    if isinstance(item, RequirementResult):
+        return _violation(item)
+    if item.failure is Failure.OVERLOAD:
+        return f"{item.name}: {item.reason}"
+    if item.failure is Failure.LOST and item.deadline is None:
+        return f"{item.name} loses activations: {item.reason}"
+    kind = "period" if item.is_implicit else "deadline"
+    text = f"{item.name} responds after {_ends_text(worst_response(item))}, {kind} {time_text(item.deadline or 0)}"
+    return f"{text}, and loses activations" if item.failure is Failure.LOST else text
+
+
+def _violation(requirement: RequirementResult) -> str:
+    what = f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity
+    if requirement.limit is None:
+        return f"{what} violates {requirement.name}"
+    ends = Ends(requirement.lower, requirement.upper)
+    limit = f"limit {'at most' if requirement.is_upper else 'at least'} {time_text(requirement.limit)}"
+    return f"{what} is {_ends_text(ends, requirement.is_upper)}, {limit}" + (
+        f" ({requirement.reason})" if requirement.reason else ""
+    )
+
+
+def _ends_text(ends: Ends, is_upper: bool = True) -> str:
+    """The end of a maximum or minimum that violates its limit."""
+    if ends.upper is None and is_upper:
+        return "unbounded"
+    known = ends.lower if is_upper else ends.upper
+    text = time_text(known or 0)
+    return text if ends.lower == ends.upper else f"at {'least' if is_upper else 'most'} {text}"
+
+
+def _unknown(summary: Summary) -> str:
+    """How much is unknown, and the most frequent cause."""
+    if not summary.judged:
+        return "unknown: no deadline, requirement or constraint can be judged"
+    if not summary.unknown:
+        return ""
+    count = f"unknown: {len(summary.unknown)} of {summary.judged}"
+    causes = _causes(summary)
+    if not causes:
+        return count
+    (reason, _), *others = causes.most_common()
+    first = next(item.name for item in summary.unknown if item.reason == reason)
+    more = f", and {counted(len(others), 'other cause')}" if others else ""
+    return f"{count}, because of {first!r}: {reason}{more}"
+
+
+def _causes(summary: Summary) -> Counter[str]:
+    """The reasons of unknown verdicts with their numbers; without consequences of others if there is anything else."""
+    reasons = Counter(item.reason for item in summary.unknown if item.reason)
+    roots = Counter({reason: number for reason, number in reasons.items() if not reason.endswith(_CONSEQUENCE)})
+    return roots or reasons

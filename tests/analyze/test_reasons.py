@@ -1,0 +1,68 @@
+"""Why something is unknown: each reason names its cause, and what is known nevertheless is shown."""
+
+import pytest
+from test_policies import root, system, ticks
+from test_system import by_name
+
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.os import Parent, Policy, Scheduler
+from amalthea_uros.perf.software import Trigger
+from amalthea_uros.perf.stimuli import InterProcess
+from amalthea_uros.units import MICROSECOND as US
+
+PARTITION = Scheduler(name="partition", policy=Policy.OSEK, parent=Parent(scheduler="root"))
+OTHER = Scheduler(name="other", policy=Policy.OSEK, parent=Parent(scheduler="root", priority=1))
+
+
+def analysed(schedulers, **allocation):
+    tasks = [("T", 100, [ticks(10)], {"scheduler": "root", "priority": 248} | allocation)]
+    return by_name(analyze_system(system(schedulers, tasks)))["T"]
+
+
+@pytest.mark.parametrize(
+    ("schedulers", "allocation", "reason"),
+    [
+        (
+            [root(), PARTITION, OTHER],
+            {"scheduler": "partition"},
+            "its scheduler 'partition', below 'root', has no priority",
+        ),
+        ([root("PfairPD2")], {}, "there is no analysis for the policy PfairPD2 of its scheduler 'root'"),
+        ([root()], {"cores": ("elsewhere",)}, "its affinity is to elsewhere, but its scheduler 'root' is responsible for core"),
+        ([Scheduler(name="root", policy=Policy.OSEK)], {}, "its scheduler 'root' is not responsible for a core"),
+        ([root()], {"scheduler": "none"}, "the scheduler 'none' is not defined, or was left out when reading"),
+    ],
+)
+def test_a_cause(schedulers, allocation, reason):
+    found = analysed(schedulers, **allocation)
+    assert (found.reason, found.verdict) == (reason, "unknown")
+
+
+def test_what_is_known_of_a_task_that_cannot_be_scheduled():
+    found = analysed([root("PfairPD2")])
+    assert (found.processor, found.priority, found.bcet, found.wcet) == ("core", 248, 10 * US, 10 * US)
+    assert (found.deadline, found.min_interarrival) == (100 * US, 100 * US)
+
+
+def test_activations_that_depend_on_an_unknown_task_are_not_shown():
+    triggers = [("source", 100, [ticks(1), Trigger(stimulus="every T")], {"scheduler": "root"})]
+    tasks = [*triggers, ("T", None, [ticks(10)], {"scheduler": "root"})]
+    built = system([root("PfairPD2")], tasks, stimuli=[InterProcess(name="every T")])
+    found = by_name(analyze_system(built))["T"]
+    assert (found.wcet, found.deadline, found.min_interarrival) == (10 * US, None, None)
+
+
+class TestAlone:
+    def test_a_task_alone_on_its_core_needs_no_priority(self):
+        assert analysed([root()], priority=None).response.worst == 10 * US
+
+    def test_nor_does_one_alone_in_a_group(self):
+        group = Scheduler(name="group", policy=Policy.GROUPING, parent=Parent(scheduler="root"))
+        assert analysed([root(), group], scheduler="group", priority=None).response.worst == 10 * US
+
+    def test_nor_does_a_partition_alone_on_its_core(self):
+        assert analysed([root(), PARTITION], scheduler="partition").response.worst == 10 * US
+
+    def test_one_of_two_tasks_needs_it(self):
+        tasks = [(name, 100, [ticks(10)], {"scheduler": "root"}) for name in ("T", "U")]
+        assert {process.reason for process in analyze_system(system([root()], tasks)).processes} == {"it has no priority"}
