@@ -2,17 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 
-from amalthea_uros.analyze.results import ProcessResult, RequirementResult, Verdict
-from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
+from amalthea_uros.analyze import metrics
+from amalthea_uros.analyze.results import (
+    CallbackResult,
+    JobMetric,
+    Metric,
+    ProcessResult,
+    RequirementResult,
+    Results,
+    Verdict,
+)
+from amalthea_uros.perf.constraints import Bound, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.notes import Notes
 from amalthea_uros.units import Time
 
+#: What the analysis computes; a running time is bounded by the net execution time, and each kind of waiting by all waiting.
+_METRICS = {
+    TimeMetric.RESPONSE_TIME: JobMetric.RESPONSE_TIME,
+    TimeMetric.NET_EXECUTION_TIME: JobMetric.NET_EXECUTION_TIME,
+    TimeMetric.CORE_EXECUTION_TIME: JobMetric.NET_EXECUTION_TIME,
+    TimeMetric.RUNNING_TIME: JobMetric.NET_EXECUTION_TIME,
+    TimeMetric.GROSS_EXECUTION_TIME: JobMetric.GROSS_EXECUTION_TIME,
+    TimeMetric.START_DELAY: JobMetric.INITIAL_PENDING_TIME,
+    TimeMetric.READY_TIME: JobMetric.READY_TIME,
+    TimeMetric.WAITING_TIME: JobMetric.WAITING_TIME,
+    TimeMetric.PARKING_TIME: JobMetric.WAITING_TIME,
+    TimeMetric.POLLING_TIME: JobMetric.WAITING_TIME,
+    TimeMetric.LATENESS: JobMetric.LATENESS,
+    TimeMetric.ACTIVATE_TO_ACTIVATE: JobMetric.ACTIVATE_TO_ACTIVATE,
+    TimeMetric.START_TO_START: JobMetric.START_TO_START,
+    TimeMetric.END_TO_END: JobMetric.END_TO_END,
+    TimeMetric.END_TO_START: JobMetric.END_TO_START,
+}
 
-def evaluate_requirements(system: System, processes: Mapping[str, ProcessResult], notes: Notes) -> Iterator[RequirementResult]:
+
+def evaluate_requirements(
+    system: System, processes: Results[ProcessResult], callbacks: Sequence[CallbackResult], notes: Notes
+) -> Iterator[RequirementResult]:
     """The verdict on each time limit; other limits are reported as not evaluated."""
+    by_name = {process.name: process for process in processes}
     for requirement in system.constraints.requirements:
         limit = requirement.limit
         if not isinstance(limit, TimeLimit):
@@ -23,8 +54,10 @@ def evaluate_requirements(system: System, processes: Mapping[str, ProcessResult]
             )
             continue
         is_upper = limit.bound is Bound.UPPER
-        process = processes.get(requirement.process or "")
-        value = None if process is None else _value(process, limit.metric, is_upper)
+        process = by_name.get(requirement.process or "")
+        calls = [callback for callback in callbacks if callback.name == requirement.runnable]
+        metric = _metric([process] if process is not None else calls, limit.metric)
+        value = None if metric is None else metric.max if is_upper else metric.min
         yield RequirementResult(
             name=requirement.name,
             object=requirement.process or requirement.runnable or "",
@@ -33,64 +66,24 @@ def evaluate_requirements(system: System, processes: Mapping[str, ProcessResult]
             limit=limit.value,
             value=value,
             verdict=_verdict(process, limit, value),
+            reason="" if value is not None else _reason(requirement, [process] if process is not None else calls),
         )
 
 
-def _value(process: ProcessResult, metric: TimeMetric, is_upper: bool) -> Time | None:
-    """The maximum or minimum of a metric; None if it is unbounded or unknown."""
-    minimum, maximum = _range(process, metric)
-    return maximum if is_upper else minimum
+def _metric(holders: Sequence[ProcessResult | CallbackResult], metric: TimeMetric) -> Metric | None:
+    """The metric of a process, or of a runnable in all processes that call it; None if it is unknown."""
+    name = _METRICS.get(metric)
+    if name is None or not holders or not all(name in holder.metrics for holder in holders):
+        return None
+    return metrics.merged([holder.metrics for holder in holders])[name]
 
 
-def _range(process: ProcessResult, metric: TimeMetric) -> tuple[Time | None, Time | None]:
-    """The minimum and maximum of a metric, or safe bounds of them."""
-    bcet, wcet = process.bcet, process.wcet
-    match metric:
-        case TimeMetric.NET_EXECUTION_TIME | TimeMetric.RUNNING_TIME | TimeMetric.CORE_EXECUTION_TIME:
-            return bcet, wcet
-        case TimeMetric.ACTIVATE_TO_ACTIVATE:
-            return process.min_interarrival, process.max_interarrival
-    response = process.response
-    if response is None or bcet is None:
-        return None, None
-    best, worst = response.best, response.worst
-    if worst is None:
-        return (best if metric is TimeMetric.RESPONSE_TIME else None), None
-    # A job also executes for at least its best case, so that it cannot wait for longer than the rest of the response time.
-    waiting = worst - bcet
-    match metric:
-        case TimeMetric.RESPONSE_TIME:
-            return best, worst
-        case TimeMetric.GROSS_EXECUTION_TIME:
-            return bcet, worst
-        case TimeMetric.START_DELAY | TimeMetric.READY_TIME:
-            return 0, waiting
-        case TimeMetric.WAITING_TIME | TimeMetric.PARKING_TIME | TimeMetric.POLLING_TIME:
-            # Processes that wait for events are unknown, and with priority ceilings no process waits for a semaphore.
-            return 0, 0
-        case TimeMetric.LATENESS if process.deadline is not None:
-            return best - process.deadline, worst - process.deadline
-    return _between_jobs(process, metric, waiting, best, worst)
-
-
-def _between_jobs(
-    process: ProcessResult, metric: TimeMetric, waiting: Time, best: Time, worst: Time
-) -> tuple[Time | None, Time | None]:
-    """Times from one job to the next: the time between their activations, and the variation of their starts and ends."""
-    if process.min_interarrival is None:
-        return None, None
-    match metric:
-        case TimeMetric.START_TO_START:
-            return max(0, process.min_interarrival - waiting), _plus(process.max_interarrival, waiting)
-        case TimeMetric.END_TO_END:
-            return max(0, process.min_interarrival - (worst - best)), _plus(process.max_interarrival, worst - best)
-        case TimeMetric.END_TO_START:
-            return process.min_interarrival - worst, _plus(process.max_interarrival, waiting - best)
-    return None, None
-
-
-def _plus(value: Time | None, more: Time) -> Time | None:
-    return None if value is None else value + more
+def _reason(requirement: Requirement, holders: Sequence[ProcessResult | CallbackResult]) -> str:
+    """Why a metric is unknown."""
+    if not holders and requirement.runnable is not None:
+        return f"no process of the model calls {requirement.runnable!r}"
+    stated = next((holder.reason for holder in holders if holder.reason), "")
+    return stated or f"the {requirement.limit.metric} of {(requirement.process or requirement.runnable)!r} is unknown"
 
 
 def _verdict(process: ProcessResult | None, limit: TimeLimit, value: Time | None) -> Verdict:

@@ -6,9 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
+from amalthea_uros.analyze.callbacks import CallbackEvaluator
 from amalthea_uros.analyze.chains import counter_phases
 from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
+from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.metrics import MetricEvaluator
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.requirements import evaluate_requirements
 from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessorResult, ProcessResult, Response, Results, Verdict
@@ -34,16 +37,18 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     context = TimingContext.of(system, settings)
     solution = solve(context)
     _note_ignored(solution)
-    limits = response_time_limits(system)
-    processes = Results(_process(name, solution, limits) for name in system.processes)
     evaluation = ChainEvaluator(solution)
+    schedules = evaluation.timing.schedules
+    processes = Results(_processes(solution, schedules))
+    callbacks = Results(CallbackEvaluator(solution, schedules).all())
     chains = Results(_chains(evaluation))
-    verdicts = evaluate_requirements(system, {process.name: process for process in processes}, context.notes)
+    verdicts = evaluate_requirements(system, processes, callbacks, context.notes)
     requirements = Results((*verdicts, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
     return Analysis(
         solution=solution,
         processors=Results(_processors(solution)),
         processes=processes,
+        callbacks=callbacks,
         chains=chains,
         requirements=requirements,
         assumptions=tuple(context.notes.assumptions),
@@ -94,6 +99,15 @@ def _note_ignored(solution: Solution) -> None:
                 f"{name!r} can have {jobs} pending activations, more than its activation limit {limit}; the others are lost"
             )
             notes.warning("ANA007", message, process)
+
+
+def _processes(solution: Solution, schedules: CoreSchedules) -> Iterator[ProcessResult]:
+    """The results of all processes."""
+    system = solution.context.system
+    limits, metrics = response_time_limits(system), MetricEvaluator(solution, schedules)
+    for name in system.processes:
+        found = _process(name, solution, limits)
+        yield replace(found, metrics=metrics.of(found))
 
 
 def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> ProcessResult:

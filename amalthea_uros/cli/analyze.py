@@ -108,6 +108,7 @@ def _clock(text: str) -> Frequency:
     help="Show by how much execution times can increase before a limit is missed.",
 )
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
+@click.option("--metrics", "with_metrics", is_flag=True, help="Show minimum, mean and maximum of all metrics of each process.")
 @output_option(AnalysisResult)
 def command(
     paths: tuple[Path, ...],
@@ -122,6 +123,7 @@ def command(
     process: str | None,
     with_sensitivity: bool,
     with_priorities: bool,
+    with_metrics: bool,
     outputs: tuple[Output, ...],
 ) -> None:
     """Compute response times, loads, end-to-end latencies of event chains, and verdicts.
@@ -138,7 +140,12 @@ def command(
         all_phases=all_phases,
     )
     result = analyze_files(
-        paths, settings, with_sensitivity=with_sensitivity, with_priorities=with_priorities, all_methods=method == "all"
+        paths,
+        settings,
+        with_sensitivity=with_sensitivity,
+        with_priorities=with_priorities,
+        all_methods=method == "all",
+        with_metrics=with_metrics,
     )
     as_text = _detail(result, process, chain)
     show_findings(result.findings)

@@ -28,6 +28,7 @@ class AnalysisResult:
     findings : problems found while reading the files, and what the analysis could not take into account
     sensitivity, proposals : None if they were not requested
     all_methods : whether the values of all methods are shown, or the tightest ones
+    with_metrics : whether the metrics of all processes are shown
     """
 
     paths: tuple[Path, ...]
@@ -38,6 +39,7 @@ class AnalysisResult:
     sensitivity: Sensitivity | None = None
     proposals: tuple[Proposal, ...] | None = None
     all_methods: bool = False
+    with_metrics: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +65,7 @@ def analyze_files(
     with_sensitivity: bool = False,
     with_priorities: bool = False,
     all_methods: bool = False,
+    with_metrics: bool = False,
 ) -> AnalysisResult:
     """Analyze an `app.yaml` or AMALTHEA models.
 
@@ -71,6 +74,7 @@ def analyze_files(
     with_sensitivity : also find out by how much execution times may grow
     with_priorities : also propose priorities that meet all deadlines
     all_methods : show the values of all methods for chains
+    with_metrics : show the metrics of all processes
 
     Raises
     ------
@@ -93,6 +97,7 @@ def analyze_files(
         sensitivity=sensitivity(analysis) if with_sensitivity else None,
         proposals=tuple(propose_priorities(analysis)) if with_priorities else None,
         all_methods=all_methods,
+        with_metrics=with_metrics,
     )
 
 
