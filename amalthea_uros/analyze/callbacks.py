@@ -187,7 +187,8 @@ class _CallSite:
         repeating = found.cycle // found.tasks[name].period
         if not self.is_simple:
             # Somewhere between the start and the end of the job.
-            anywhere = Span(releases, (jobs[0].begins, jobs[1].ends)).metric(repeating, time_base, is_attained=False)
+            earliest = jobs[0].begins + self._demand([self.call]).best
+            anywhere = Span(releases, (earliest, jobs[1].ends)).metric(repeating, time_base, is_attained=False)
             return replace(anywhere, mean=None)
         count, counter = len(releases[0]), self.counter
         executed, others = self._demand((*self.position.before, self.call)), self._besides_activities(count)

@@ -227,7 +227,7 @@ def _spans(process: ProcessResult, found: CoreSchedule, time_base: int) -> dict[
         JobMetric.WAITING_TIME: Span(nothing, nothing),
         JobMetric.ACTIVATE_TO_ACTIVATE: Span(releases, following(releases)),
         JobMetric.START_TO_START: Span(begins, following(begins), shortest),
-        JobMetric.END_TO_END: Span(ends, following(ends), following(net)[0]),
+        JobMetric.END_TO_END: Span(ends, following(ends), np.append(shortest[1:], shortest[-repeating])),
         JobMetric.END_TO_START: Span(ends, following(begins), nothing[0]),
     }
     due = _due(process)
