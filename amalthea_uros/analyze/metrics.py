@@ -12,7 +12,7 @@ means of ever longer runs.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -87,22 +87,32 @@ class Span:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class MetricEvaluator:
     """Finds the metrics of processes."""
 
     solution: Solution
     schedules: CoreSchedules
+    _lossy: dict[str, bool] = field(default_factory=dict)
 
     def of(self, process: ProcessResult) -> dict[JobMetric, Metric]:
         """The metrics of a process."""
-        found = None if process.processor is None else self.schedules.of(process.processor, with_slices=False)
-        if found is None or process.name not in found.tasks or any(map(self._loses_activations, found.tasks)):
-            return dict(self._bounds(process))
-        return _by_schedule(process, found, self.solution.context.time_base(process.name))
+        core = process.processor
+        found = None if core is None else self.schedules.of(core, with_slices=False)
+        if core is None or found is None or self._is_lossy(core):
+            metrics = dict(self._bounds(process))
+        else:
+            metrics = _by_schedule(process, found, self.solution.context.time_base(process.name))
+        return metrics | dict(_by_deadline(process, metrics.get(JobMetric.RESPONSE_TIME)))
+
+    def _is_lossy(self, core: str) -> bool:
+        """Whether processes on a core lose activations, so that the jobs are not those of the schedule."""
+        if core not in self._lossy:
+            self._lossy[core] = any(self._loses_activations(item.name) for item in self.solution.context.on_core(core))
+        return self._lossy[core]
 
     def _loses_activations(self, name: str) -> bool:
-        """Whether more jobs can be pending than its activation limit allows; the jobs that are left are not those of the schedule."""
+        """Whether more jobs can be pending than the activation limit of a process allows."""
         process, response = self.solution.context.system.processes[name], self.solution.responses.get(name)
         if not isinstance(process, Task) or response is None:
             return False
@@ -127,10 +137,11 @@ class MetricEvaluator:
         if response is None:
             return
         best, worst = response.best, response.worst
-        is_exact = response.claim is Claim.EXACT and worst is not None
-        yield JobMetric.RESPONSE_TIME, Metric(min=best, max=worst, attained=(best, worst or 0) if is_exact else None)
         if worst is None:
+            yield JobMetric.RESPONSE_TIME, Metric(min=best, max=None)
             return
+        is_exact = response.claim is Claim.EXACT and not self._is_lossy(process.processor or "")
+        yield JobMetric.RESPONSE_TIME, Metric(min=best, max=worst, attained=(best, worst) if is_exact else None)
         # A job also executes for at least its best case, so that it cannot wait for longer than the rest of the response time.
         waiting = worst - bcet
         yield JobMetric.GROSS_EXECUTION_TIME, Metric(min=bcet, max=worst)
@@ -138,18 +149,36 @@ class MetricEvaluator:
             yield metric, Metric(min=0, max=waiting)
         # Processes that wait for events are unknown.
         yield JobMetric.WAITING_TIME, Metric(min=0, max=waiting) if self._waits(process.name) else _ZERO
-        due = _due(process)
-        if due is not None:
-            yield JobMetric.SLACK_TIME, Metric(min=due - worst, max=due - best)
-        if process.deadline is not None:
-            yield JobMetric.LATENESS, Metric(min=best - process.deadline, max=worst - process.deadline)
         if not self._loses_activations(process.name):
             yield from _between_jobs(process, waiting, best, worst)
 
 
-def _due(process: ProcessResult) -> Time | None:
-    """The deadline, or else the minimum time to the next activation."""
-    return process.deadline if process.deadline is not None else process.min_interarrival
+def _by_deadline(process: ProcessResult, response: Metric | None) -> Iterator[tuple[JobMetric, Metric]]:
+    """The metrics that compare the response time with the deadline; for slack, by default the minimum time to the next activation."""
+    if response is None or response.max is None or response.min is None:
+        return
+    mean, attained, deadline = response.mean, response.attained, process.deadline
+    due = deadline if deadline is not None else process.min_interarrival
+    if due is not None:
+        yield (
+            JobMetric.SLACK_TIME,
+            Metric(
+                min=due - response.max,
+                max=due - response.min,
+                mean=None if mean is None else due - mean,
+                attained=None if attained is None else (due - attained[1], due - attained[0]),
+            ),
+        )
+    if deadline is not None:
+        yield (
+            JobMetric.LATENESS,
+            Metric(
+                min=response.min - deadline,
+                max=response.max - deadline,
+                mean=None if mean is None else mean - deadline,
+                attained=None if attained is None else (attained[0] - deadline, attained[1] - deadline),
+            ),
+        )
 
 
 def _between_jobs(process: ProcessResult, waiting: Time, best: Time, worst: Time) -> Iterator[tuple[JobMetric, Metric]]:
@@ -170,7 +199,7 @@ def _by_schedule(process: ProcessResult, found: CoreSchedule, time_base: int) ->
     """The metrics of a process by the schedules of its core."""
     period = found.tasks[process.name].period
     is_attained = process.response is not None and process.response.claim is Claim.EXACT
-    spans = _spans(process, found, time_base)
+    spans = _spans(process.name, found)
     metrics = {name: span.metric(found.cycle // period, time_base, is_attained) for name, span in spans.items()}
     means = _means(metrics, process, Fraction(period, time_base))
     return {
@@ -188,22 +217,17 @@ def _means(metrics: Mapping[JobMetric, Metric], process: ProcessResult, period: 
     preempted, pending = metrics[JobMetric.PREEMPTION_TIME].mean, metrics[JobMetric.INITIAL_PENDING_TIME].mean
     if preempted is None:
         return means
-    response, due = preempted + process.acet, _due(process)
-    means[JobMetric.RESPONSE_TIME] = response
-    if due is not None:
-        means[JobMetric.SLACK_TIME] = due - response
-    if process.deadline is not None:
-        means[JobMetric.LATENESS] = response - process.deadline
+    means[JobMetric.RESPONSE_TIME] = response = preempted + process.acet
     if pending is not None:
         means[JobMetric.GROSS_EXECUTION_TIME] = response - pending
         means[JobMetric.END_TO_START] = period - (response - pending)
     return means
 
 
-def _spans(process: ProcessResult, found: CoreSchedule, time_base: int) -> dict[JobMetric, Span]:
+def _spans(name: str, found: CoreSchedule) -> dict[JobMetric, Span]:
     """The metrics of the jobs of a process as times between two points."""
-    jobs = (found.best[process.name], found.worst[process.name])
-    demand, repeating = found.tasks[process.name].demand, found.cycle // found.tasks[process.name].period
+    jobs, task = (found.best[name], found.worst[name]), found.tasks[name]
+    repeating = found.cycle // task.period
 
     def following(times: Both) -> Both:
         """The times of the next jobs; the schedule repeats after its last job."""
@@ -211,13 +235,13 @@ def _spans(process: ProcessResult, found: CoreSchedule, time_base: int) -> dict[
 
     releases, begins, ends = (both(getattr(each, name) for each in jobs) for name in ("releases", "begins", "ends"))
     net = both(
-        schedule.demands_of_jobs(demand, len(each.releases), demand_of)
+        schedule.demands_of_jobs(task.demand, len(each.releases), demand_of)
         for each, demand_of in zip(jobs, (MultiframeDemand.best_of, MultiframeDemand.worst_of), strict=True)
     )
     idle = both(end - own for end, own in zip(ends, net, strict=True))
     nothing = both(np.zeros_like(each) for each in net)
     shortest = net[0]
-    spans = {
+    return {
         JobMetric.NET_EXECUTION_TIME: Span(nothing, net),
         JobMetric.GROSS_EXECUTION_TIME: Span(begins, ends, shortest),
         JobMetric.RESPONSE_TIME: Span(releases, ends),
@@ -230,12 +254,6 @@ def _spans(process: ProcessResult, found: CoreSchedule, time_base: int) -> dict[
         JobMetric.END_TO_END: Span(ends, following(ends), np.append(shortest[1:], shortest[-repeating])),
         JobMetric.END_TO_START: Span(ends, following(begins), nothing[0]),
     }
-    due = _due(process)
-    if due is not None:
-        spans[JobMetric.SLACK_TIME] = Span(ends, both(each + due * time_base for each in releases))
-    if process.deadline is not None:
-        spans[JobMetric.LATENESS] = Span(both(each + process.deadline * time_base for each in releases), ends)
-    return spans
 
 
 def both(times: Iterable[Numbers]) -> Both:
