@@ -99,7 +99,7 @@ class MetricEvaluator:
         """The metrics of a process."""
         core = process.processor
         found = None if core is None else self.schedules.of(core, with_slices=False)
-        if core is None or found is None or self._is_lossy(core):
+        if core is None or found is None or process.name not in found.tasks or self._is_lossy(core):
             metrics = dict(self._bounds(process))
         else:
             metrics = _by_schedule(process, found, self.solution.context.time_base(process.name))
