@@ -29,8 +29,11 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.assignment import Proposal as Proposal
     from amalthea_uros.analyze.assignment import propose_priorities as propose_priorities
     from amalthea_uros.analyze.results import Analysis as Analysis
+    from amalthea_uros.analyze.results import CallbackResult as CallbackResult
     from amalthea_uros.analyze.results import ChainResult as ChainResult
     from amalthea_uros.analyze.results import Claim as Claim
+    from amalthea_uros.analyze.results import JobMetric as JobMetric
+    from amalthea_uros.analyze.results import Metric as Metric
     from amalthea_uros.analyze.results import ProcessorResult as ProcessorResult
     from amalthea_uros.analyze.results import ProcessResult as ProcessResult
     from amalthea_uros.analyze.results import Quantity as Quantity
@@ -82,8 +85,11 @@ _NAMES = {
     "analyze.assignment": ("Proposal", "propose_priorities"),
     "analyze.results": (
         "Analysis",
+        "CallbackResult",
         "ChainResult",
         "Claim",
+        "JobMetric",
+        "Metric",
         "ProcessResult",
         "ProcessorResult",
         "Quantity",

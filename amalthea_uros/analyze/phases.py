@@ -8,9 +8,11 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any, TypeVar
 
+from amalthea_uros.analyze import metrics
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.results import (
     Analysis,
+    CallbackResult,
     ChainResult,
     Claim,
     ProcessResult,
@@ -68,6 +70,7 @@ def merged(analyses: Sequence[Analysis], solution: Solution) -> Analysis:
         solution=solution,
         worst_solutions=worst,
         processes=Results(processes),
+        callbacks=Results(map(_callback, zip(*(analysis.callbacks for analysis in analyses), strict=True))),
         chains=Results(map(merged_chain, zip(*(analysis.chains for analysis in analyses), strict=True))),
         requirements=requirements,
         summary=summarize(first.processors, processes, requirements),
@@ -80,7 +83,7 @@ def _each_once(analyses: Iterable[Analysis], of: Callable[[Analysis], Iterable[T
     return tuple(dict.fromkeys(item for analysis in analyses for item in of(analysis)))
 
 
-def _badness(result: ProcessResult) -> tuple[int, int]:
+def _badness(result: ProcessResult | CallbackResult) -> tuple[int, int]:
     """Greater for a worse response time; unknown is worse than unbounded."""
     if result.response is None:
         return 2, 0
@@ -90,7 +93,15 @@ def _badness(result: ProcessResult) -> tuple[int, int]:
 def _process(results: Sequence[ProcessResult]) -> ProcessResult:
     worst = max(results, key=_badness)
     judged = min(results, key=lambda result: _WORST_FIRST.index(result.verdict))
-    worst = replace(worst, verdict=judged.verdict, failure=judged.failure, reason=judged.reason)
+    found = metrics.merged([result.metrics for result in results])
+    worst = replace(worst, verdict=judged.verdict, failure=judged.failure, reason=judged.reason, metrics=found)
+    responses = [result.response for result in results if result.response is not None]
+    return worst if worst.response is None else replace(worst, response=_response(worst.response, responses))
+
+
+def _callback(results: Sequence[CallbackResult]) -> CallbackResult:
+    worst = max(results, key=_badness)
+    worst = replace(worst, metrics=metrics.merged([result.metrics for result in results]))
     responses = [result.response for result in results if result.response is not None]
     return worst if worst.response is None else replace(worst, response=_response(worst.response, responses))
 

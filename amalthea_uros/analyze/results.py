@@ -96,6 +96,54 @@ class Response:
     is_overload: bool = False
 
 
+class JobMetric(StrEnum):
+    """A time that every job has, or that lies between every two consecutive jobs.
+
+    The names are those of AMALTHEA, and for what it has no name, those of the field's simulators.
+    """
+
+    NET_EXECUTION_TIME = "net_execution_time"
+    GROSS_EXECUTION_TIME = "gross_execution_time"
+    RESPONSE_TIME = "response_time"
+    INITIAL_PENDING_TIME = "initial_pending_time"
+    READY_TIME = "ready_time"
+    PREEMPTION_TIME = "preemption_time"
+    WAITING_TIME = "waiting_time"
+    ACTIVATE_TO_ACTIVATE = "activate_to_activate"
+    START_TO_START = "start_to_start"
+    END_TO_END = "end_to_end"
+    END_TO_START = "end_to_start"
+    SLACK_TIME = "slack_time"
+    LATENESS = "lateness"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Metric:
+    """A metric of all jobs, in picoseconds.
+
+    Attributes
+    ----------
+    min, max : no job has less or more; None if there is no finite bound
+    mean : in the long run; None if it depends on more than bounds of execution times
+    attained : the least and the greatest value of which it is known that they occur; None if that is known of none
+    """
+
+    min: Time | None
+    max: Time | None
+    mean: Fraction | None = None
+    attained: tuple[Time, Time] | None = None
+
+    @property
+    def claim(self) -> Claim:
+        """Exact if both minimum and maximum occur."""
+        return Claim.EXACT if self.attained is not None and self.attained == (self.min, self.max) else Claim.BOUND
+
+    @property
+    def jitter(self) -> Time | None:
+        """The difference between maximum and minimum."""
+        return None if self.min is None or self.max is None else self.max - self.min
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProcessorResult:
     """A core: its clock, and its load in the best, mean and worst case (1 is full); None if it is unknown.
@@ -133,6 +181,7 @@ class ProcessResult:
     failure : what is wrong if the verdict is missed or unbounded
     reason : why something is unknown, or what is wrong
     min_interarrival, max_interarrival : time from one activation to the next; None if it is unknown
+    metrics : from the schedule if it is known, otherwise bounds; metrics without any bound are absent
     """
 
     name: str
@@ -152,6 +201,7 @@ class ProcessResult:
     reason: str = ""
     min_interarrival: Time | None = None
     max_interarrival: Time | None = None
+    metrics: Mapping[JobMetric, Metric] = field(default_factory=dict)
 
     @property
     def margin(self) -> Time | None:
@@ -159,6 +209,25 @@ class ProcessResult:
         if self.deadline is None or self.response is None or self.response.worst is None:
             return None
         return self.deadline - self.response.worst
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CallbackResult:
+    """A callback that a process calls, or another runnable with a requirement.
+
+    Attributes
+    ----------
+    response : from the activation of the job to the end of the call, in the jobs that call it; None if it is unknown, for the `reason`
+    deadline : the limit of its response time, or else the minimum time between two calls; None if it is unknown
+    metrics : as far as they are known
+    """
+
+    name: str
+    process: str
+    response: Response | None
+    deadline: Time | None
+    reason: str = ""
+    metrics: Mapping[JobMetric, Metric] = field(default_factory=dict)
 
 
 class Quantity(StrEnum):
@@ -278,6 +347,7 @@ class Analysis:
 
     processors: Results[ProcessorResult]
     processes: Results[ProcessResult]
+    callbacks: Results[CallbackResult]
     chains: Results[ChainResult]
     requirements: Results[RequirementResult]
     summary: Summary

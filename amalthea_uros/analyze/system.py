@@ -6,8 +6,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
+from amalthea_uros.analyze.callbacks import CallbackEvaluator
 from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
+from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.metrics import MetricEvaluator
 from amalthea_uros.analyze.phases import merged, merged_chain, solutions_for_phases
 from amalthea_uros.analyze.process_verdicts import judged
 from amalthea_uros.analyze.propagation import solve
@@ -64,17 +67,19 @@ def _analysis(solution: Solution) -> Analysis:
     context = solution.context
     system = context.system
     _note_ignored(solution)
-    limits = response_time_limits(system)
-    processes = Results(_process(name, solution, limits) for name in system.processes)
     evaluation = ChainEvaluator(solution)
+    schedules = evaluation.timing.schedules
+    processes = Results(_processes(solution, schedules))
+    callbacks = Results(CallbackEvaluator(solution, schedules).all())
     chains = Results(_chain(chain, evaluation) for chain in system.events.chains)
-    verdicts = evaluate_requirements(system, {process.name: process for process in processes}, context.notes)
+    verdicts = evaluate_requirements(system, processes, callbacks, context.notes)
     requirements = Results((*verdicts, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
     processors = Results(_processors(solution))
     return Analysis(
         solution=solution,
         processors=processors,
         processes=processes,
+        callbacks=callbacks,
         chains=chains,
         requirements=requirements,
         summary=summarize(processors, processes, requirements),
@@ -113,6 +118,15 @@ def _note_ignored(solution: Solution) -> None:
                 f"{name!r} can have {jobs} pending activations, more than its activation limit {limit}; the others are lost"
             )
             notes.warning("ANA007", message, process)
+
+
+def _processes(solution: Solution, schedules: CoreSchedules) -> Iterator[ProcessResult]:
+    """The results of all processes."""
+    system = solution.context.system
+    limits, metrics = response_time_limits(system), MetricEvaluator(solution, schedules)
+    for name in system.processes:
+        found = _process(name, solution, limits)
+        yield replace(found, metrics=metrics.of(found))
 
 
 def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> ProcessResult:

@@ -146,6 +146,7 @@ def _phase(text: str) -> Time:
     help="What makes the exit code 1: something is missed, lost or overloaded; or also unknown; or nothing.",
 )
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
+@click.option("--metrics", "with_metrics", is_flag=True, help="Show minimum, mean and maximum of all metrics of each process.")
 @output_option(AnalysisResult)
 def command(
     paths: tuple[Path, ...],
@@ -162,6 +163,7 @@ def command(
     with_sensitivity: bool,
     fail_on: str,
     with_priorities: bool,
+    with_metrics: bool,
     outputs: tuple[Output, ...],
 ) -> None:
     """Compute response times, loads, end-to-end latencies of event chains, and verdicts.
@@ -179,7 +181,12 @@ def command(
         phases=dict(phases),
     )
     result = analyze_files(
-        paths, settings, with_sensitivity=with_sensitivity, with_priorities=with_priorities, all_methods=method == "all"
+        paths,
+        settings,
+        with_sensitivity=with_sensitivity,
+        with_priorities=with_priorities,
+        all_methods=method == "all",
+        with_metrics=with_metrics,
     )
     if explained is not None:
         result = replace(result, explanation=explain(result, explained, Quantity(quantity)))

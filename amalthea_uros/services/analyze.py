@@ -39,6 +39,7 @@ class AnalysisResult:
     findings : problems found while reading the files, and what the analysis could not take into account
     sensitivity, proposals, explanation : None if they were not requested
     all_methods : whether the values of all methods are shown, or the tightest ones
+    with_metrics : whether the metrics of all processes are shown
     """
 
     paths: tuple[Path, ...]
@@ -50,6 +51,7 @@ class AnalysisResult:
     proposals: tuple[Proposal, ...] | None = None
     explanation: Explanation | None = None
     all_methods: bool = False
+    with_metrics: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +69,7 @@ def analyze_files(
     with_sensitivity: bool = False,
     with_priorities: bool = False,
     all_methods: bool = False,
+    with_metrics: bool = False,
 ) -> AnalysisResult:
     """Analyze an `app.yaml` or AMALTHEA models.
 
@@ -75,6 +78,7 @@ def analyze_files(
     with_sensitivity : also find out by how much execution times may grow
     with_priorities : also propose priorities that meet all deadlines
     all_methods : show the values of all methods for chains
+    with_metrics : show the metrics of all processes
 
     Raises
     ------
@@ -100,6 +104,7 @@ def analyze_files(
         sensitivity=sensitivity(analysis) if with_sensitivity else None,
         proposals=tuple(propose_priorities(analysis)) if with_priorities else None,
         all_methods=all_methods,
+        with_metrics=with_metrics,
     )
 
 

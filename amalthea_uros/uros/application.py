@@ -125,7 +125,7 @@ def _body(context: AssemblyContext, callback: Callback, executor_core: str) -> R
         writes=dict.fromkeys(section.writes),
         sends=[message.channel for message in callback.outgoing if message.channel in context.channels],
     )
-    return Runnable(name=body_name(callback), activities=activities, origin=callback.origin)
+    return Runnable(name=body_name(callback), activities=activities, callback=callback.in_executor, origin=callback.origin)
 
 
 def body_name(callback: Callback) -> str:

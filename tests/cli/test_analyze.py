@@ -8,6 +8,7 @@ from support import ROOT
 from test_cli import amuros
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
+RCLC = ROOT / "samples" / "rclc-in-executor.yaml"
 
 
 @pytest.mark.parametrize("path", [ADVANCED, ADVANCED.with_suffix(".amxmi")], ids=["yaml", "amxmi"])
@@ -55,6 +56,44 @@ def test_the_machine_readable_result(path, tmp_path):
     assert (chain["name"], chain["communication"]) == ("factor-to-output", "implicit")
     values = {value["quantity"]: (value["value_ps"], value["claim"]) for value in chain["values"]}
     assert values["max_reduced_reaction_time"] == (20_029_000_000, "exact")
+
+
+def test_metrics_of_processes(tmp_path):
+    run = amuros("analyze", ADVANCED, "--metrics", "--output", "text", "--output", f"json={tmp_path / 'r.json'}")
+    section = [line.split() for line in run.stdout[run.stdout.index("Metrics of Control_Function") :].splitlines()]
+    # Figure 6.6 of the thesis.
+    for row in (
+        "gross execution time 4 us 4 us 4 us exact",
+        "initial pending time 12 us 12.65 us 25 us exact",
+        "start to start 987 us 1 ms 1.013 ms exact",
+    ):
+        assert row.split() in section
+    assert "Metrics of" not in amuros("analyze", ADVANCED).stdout
+    processes = json.loads((tmp_path / "r.json").read_text())["processes"]
+    control = next(process for process in processes if process["name"] == "Control_Function")
+    assert (control["mean_response_ps"], control["response_jitter_ps"]) == (16_650_000, 13_000_000)
+    assert control["metrics"]["slack_time"] == {
+        "min_ps": 971_000_000,
+        "avg_ps": 983_350_000,
+        "max_ps": 984_000_000,
+        "claim": "exact",
+    }
+
+
+def test_callbacks_in_the_executor(tmp_path):
+    run = amuros("analyze", RCLC, "--output", "text", "--output", f"json={tmp_path / 'r.json'}")
+    assert "On_Imu_Callback      rclc_executor    161 us  165.46 us  192.8 us     10 ms  exact" in run.stdout
+    callbacks = json.loads((tmp_path / "r.json").read_text())["callbacks"]
+    assert [callback["name"] for callback in callbacks] == ["On_Imu_Callback", "On_Command_Callback", "Control_Callback"]
+    imu = callbacks[0]
+    assert (imu["process"], imu["bcrt_ps"], imu["wcrt_ps"], imu["deadline_ps"], imu["claim"]) == (
+        "rclc_executor",
+        161_000_000,
+        192_800_000,
+        10 * 10**9,
+        "exact",
+    )
+    assert (imu["mean_response_ps"], imu["metrics"]["net_execution_time"]["max_ps"]) == (165_460_000, 90_000_000)
 
 
 def test_a_missed_requirement(tmp_path):

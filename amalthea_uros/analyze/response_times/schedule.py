@@ -112,6 +112,14 @@ def demand_table(demand: MultiframeDemand, demand_of: Callable[[MultiframeDemand
     return [demand_of(demand, index + 1) for index in range(_lead(demand) + demand_cycle(demand))]
 
 
+def demands_of_jobs(demand: MultiframeDemand, count: int, demand_of: Callable[[MultiframeDemand, int], Time]) -> Numbers:
+    """The demands of the first jobs."""
+    table, cycle = demand_table(demand, demand_of), demand_cycle(demand)
+    index, lead = np.arange(count), len(table) - cycle
+    found: Numbers = np.array(table, dtype=np.int64)[np.where(index < lead, index, lead + (index - lead) % cycle)]
+    return found
+
+
 def _lead(demand: MultiframeDemand) -> int:
     """Number of jobs before the demands repeat, because a counter starts later than its prescaler makes it repeat."""
     return max((max(0, frame.offset - frame.prescaler) for frame in demand.frames), default=0)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult
+from amalthea_uros.analyze.results import Analysis, CallbackResult, ChainResult, JobMetric, Metric, ProcessResult
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.findings import finding_json, joined
 from amalthea_uros.report.json import explanation
@@ -32,6 +33,7 @@ def content(result: AnalysisResult) -> dict[str, Any]:
             for processor in analysis.processors
         ],
         "processes": [_process_json(process) for process in analysis.processes],
+        "callbacks": [_callback_json(callback) for callback in analysis.callbacks],
         "chains": [_chain_json(chain, result.all_methods) for chain in analysis.chains],
         "requirements": [
             {
@@ -92,7 +94,7 @@ def _process_json(process: ProcessResult) -> dict[str, Any]:
         "priority": process.priority,
         "preemption": process.preemption,
         "bcet_ps": process.bcet,
-        "acet_ps": None if process.acet is None else round(process.acet),
+        "acet_ps": _rounded(process.acet),
         "wcet_ps": process.wcet,
         "bcrt_ps": response.best if response else None,
         "wcrt_ps": response.worst if response else None,
@@ -105,7 +107,40 @@ def _process_json(process: ProcessResult) -> dict[str, Any]:
         "source": response.source if response else None,
         "claim": response.claim if response else None,
         "terms": {f"{term.replace(' ', '_')}_ps": value for term, value in response.terms.items()} if response else {},
+        **_metrics_json(process.metrics),
     }
+
+
+def _callback_json(callback: CallbackResult) -> dict[str, Any]:
+    response = callback.response
+    return {
+        "name": callback.name,
+        "process": callback.process,
+        "bcrt_ps": response.best if response else None,
+        "wcrt_ps": response.worst if response else None,
+        "deadline_ps": callback.deadline,
+        "reason": callback.reason,
+        "method": response.method if response else None,
+        "source": response.source if response else None,
+        "claim": response.claim if response else None,
+        **_metrics_json(callback.metrics),
+    }
+
+
+def _metrics_json(metrics: Mapping[JobMetric, Metric]) -> dict[str, Any]:
+    response = metrics.get(JobMetric.RESPONSE_TIME)
+    return {
+        "mean_response_ps": _rounded(response.mean) if response else None,
+        "response_jitter_ps": response.jitter if response else None,
+        "metrics": {
+            name: {"min_ps": metric.min, "avg_ps": _rounded(metric.mean), "max_ps": metric.max, "claim": metric.claim}
+            for name, metric in metrics.items()
+        },
+    }
+
+
+def _rounded(value: Fraction | None) -> int | None:
+    return None if value is None else round(value)
 
 
 def _chain_json(chain: ChainResult, all_methods: bool) -> dict[str, Any]:

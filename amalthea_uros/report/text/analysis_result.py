@@ -12,6 +12,7 @@ from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.latencies import write_chains
 from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.text.metrics import write_callbacks, write_metrics
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.units import Time, frequency_text, time_text
 
@@ -24,6 +25,9 @@ def write(result: AnalysisResult, terminal: Terminal) -> None:
     analysis = result.analysis
     _processors(terminal, analysis)
     _processes(terminal, analysis)
+    write_callbacks(terminal, analysis.callbacks)
+    if result.with_metrics:
+        write_metrics(terminal, analysis.processes)
     write_chains(terminal, analysis.chains)
     _requirements(terminal, analysis)
     _sensitivity(terminal, result.sensitivity)
