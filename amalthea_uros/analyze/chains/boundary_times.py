@@ -81,19 +81,15 @@ class BoundaryTimes:
         everything = model.of_activities(process, process.activities, core)
         total = context.demands[process.name]
 
-        def executed(_: MultiframeDemand, job: int) -> Time:
-            done = self.demand_of(before, job)
-            if self.busy_above is None:
-                return done
-            # Overheads of the job that belong to no activity may all come first.
-            return done + self.demand_of(total, job) - self.demand_of(everything, job)
-
-        table = schedule.demand_table(total, executed)
-        cycle = schedule.demand_cycle(total)
-        lead = len(table) - cycle
-        index = np.arange(len(self.jobs.releases))
-        at = np.where(index < lead, index, lead + (index - lead) % cycle)
-        found: Numbers = np.array(table, dtype=np.int64)[at]
+        count = len(self.jobs.releases)
+        done = schedule.demands_of_jobs(before, count, self.demand_of)
+        if self.busy_above is None:
+            return done
+        # Overheads of the job that belong to no activity may all come first.
+        overheads = schedule.demands_of_jobs(total, count, self.demand_of) - schedule.demands_of_jobs(
+            everything, count, self.demand_of
+        )
+        found: Numbers = done + overheads
         return found
 
 

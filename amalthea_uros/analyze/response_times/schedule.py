@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import accumulate
 from math import lcm
 from typing import TYPE_CHECKING, Any
@@ -107,9 +108,10 @@ def schedule(
     return result
 
 
-def demand_table(demand: MultiframeDemand, demand_of: Callable[[MultiframeDemand, int], Time]) -> list[Time]:
+@lru_cache(maxsize=1024)
+def demand_table(demand: MultiframeDemand, demand_of: Callable[[MultiframeDemand, int], Time]) -> Sequence[Time]:
     """The demands of the first jobs: those before the cycle, then one cycle."""
-    return [demand_of(demand, index + 1) for index in range(_lead(demand) + demand_cycle(demand))]
+    return tuple(demand_of(demand, index + 1) for index in range(_lead(demand) + demand_cycle(demand)))
 
 
 def demands_of_jobs(demand: MultiframeDemand, count: int, demand_of: Callable[[MultiframeDemand, int], Time]) -> Numbers:
