@@ -33,6 +33,19 @@ class Codec(NamedTuple):
 PLAIN = Codec(lambda value, _: value, lambda value, _context, _element: value)
 
 
+def marked(key: str, default: bool) -> Codec:
+    """A truth value as a custom property, for what AMALTHEA has no attribute for; the default is not written."""
+
+    def build(value: bool, _context: Building) -> list[am.CustomProperty]:
+        return [] if value is default else [am.CustomProperty(key=key, value=am.BooleanObject(value=value))]
+
+    def extract(properties: Any, _context: Extracting, _element: Element) -> bool:
+        given = [item.value.value for item in properties if item.key == key and isinstance(item.value, am.BooleanObject)]
+        return not default if (not default) in given else default
+
+    return Codec(build, extract)
+
+
 def enumeration(pairs: Mapping[StrEnum, StrEnum]) -> Codec:
     """Literals by a table; literals of AMALTHEA that are not in the table become None."""
     back = {literal: value for value, literal in pairs.items()}

@@ -62,10 +62,16 @@ class Periodic(AbstractStimulus):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RelativePeriodic(AbstractStimulus):
-    """Activation at a varying distance from the one before; also what is called sporadic."""
+    """Activation at a varying distance from the one before; also what is called sporadic.
+
+    Attributes
+    ----------
+    has_maximum : whether the distance has the greatest value of the distribution at most; otherwise it can be longer
+    """
 
     distance: Distribution[int]
     offset: Time = 0
+    has_maximum: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -19,7 +19,7 @@ class Sporadic(Shorthand):
     min: Duration
     """Minimum time between two activations."""
     max: Duration | None = None
-    """Maximum time between two activations; default: `min`."""
+    """Maximum time between two activations; default: unknown."""
 
 
 class Burst(Section):

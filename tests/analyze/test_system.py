@@ -239,13 +239,12 @@ class TestTasksThatCannotAlwaysBeInterrupted:
         assert self.respond(Preemption.PREEMPTIVE) == [2, 12, 25]
 
     def test_cooperative(self):
-        # A interrupts at once. B waits for c1 (8), starts b2 after b1 (5) and A (2) at 15, ends at 20.
-        # C starts c2 after c1 (8), B (10) and two jobs of A (4) at 22, ends at 25.
-        assert self.respond(Preemption.COOPERATIVE) == [2, 20, 25]
+        # All are released together at 0: A until 2, B until 12, c1 until 20, A until 22, c2 until 25. When B comes again, C has ended.
+        assert self.respond(Preemption.COOPERATIVE) == [2, 12, 25]
 
     def test_non_preemptive(self):
-        # A waits for all of C (11). B starts after C (11) and A (2) at 13, ends at 23. C starts after B and A at 12, ends at 23.
-        assert self.respond(Preemption.NON_PREEMPTIVE) == [13, 23, 23]
+        # All are released together at 0: A until 2, B until 12, C until 23, so that the job of A at 20 waits for 3.
+        assert self.respond(Preemption.NON_PREEMPTIVE) == [5, 12, 23]
 
 
 class TestTriggers:

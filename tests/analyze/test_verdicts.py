@@ -233,7 +233,7 @@ class TestRequirements:
         ("stated", "reason"),
         [
             ({"process": "none"}, "the process that it limits is not defined, or was left out when reading"),
-            ({"runnable": "r"}, "'r' is a runnable; only limits on tasks and interrupt service routines are evaluated"),
+            ({"runnable": "r"}, "no process of the model calls 'r'"),
         ],
     )
     def test_one_on_something_else_is_unknown(self, stated, reason):

@@ -64,7 +64,7 @@ class ChainEvaluator:
         found = self._evaluated(ways)
         all_values = _combine(unfolded, found.values)
         tightest = _tightest(all_values)
-        has_bound = any(value.quantity is Quantity.MAX_REACTION_TIME for value in tightest)
+        has_bound = any(value.quantity is Quantity.MAX_REDUCED_REACTION_TIME for value in tightest)
         reason = found.reason or ("" if has_bound else found.why_unbounded)
         if reason:
             self.context.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {reason}", chain)

@@ -154,7 +154,7 @@ class RouteLatencies:
         method = "sum of periods and response times"
         if all(task.is_regular for task in tasks):
             yield from self._reactions(davare.reaction_time(tasks), first, method, davare.SOURCE)
-        elif all(task.is_regular for task in others):
+        elif all(task.is_regular for task in others) and self.parts[0][0].is_certain:
             time = davare.reaction_time(tasks) - first.period
             yield self._bound(Quantity.MAX_REDUCED_REACTION_TIME, time, f"{method}, without the first period", davare.SOURCE)
         if not all(task.is_regular for task in tasks[:-1]):

@@ -89,7 +89,8 @@ class StageTiming:
         min_delay = sum(self._windows(stage).earliest(stage.leave) for stage in triggered)
         counter = self._counter(stages)
         preempts_reader = self._preempts_reader(base, follower) and not triggered
-        why_irregular = self._why_irregular(stages)
+        why_uncertain = self._why_uncertain(stages)
+        why_irregular = why_uncertain or self._why_irregular(stages[0].process)
         releases = known_releases(base.process, self.context.system)
         read_write = None if releases is None else self._read_write(base, releases)
         task = self._chain_task(
@@ -100,7 +101,7 @@ class StageTiming:
             is_regular=not why_irregular,
         )
         if why_irregular:
-            return TimedStage(task=task, reason=why_irregular, why_irregular=why_irregular)
+            return TimedStage(task=task, reason=why_irregular, why_irregular=why_irregular, is_certain=not why_uncertain)
         if not counter.is_phase_known:
             return TimedStage(
                 task=replace(task, offset=None), reason=f"the phase at which {base.process.name!r} takes part is unknown"
@@ -171,17 +172,21 @@ class StageTiming:
         causes = self.context.dataflow.fired_at(triggered.stimuli[0])
         return len(causes) == 1 and causes[0].times == 1 and causes[0].number == fired.number
 
-    def _why_irregular(self, stages: Sequence[Stage]) -> str:
-        """Why there is no maximum time between two jobs of a stage that take part; "" if there is one."""
+    def _why_uncertain(self, stages: Sequence[Stage]) -> str:
+        """Why it is unknown which jobs take part; "" if it is known."""
         system, modes = self.context.system, self.context.settings.modes
         for stage in stages:
             if stage.counter is None:
                 return f"it is unknown which jobs of {stage.process.name!r} take part"
             if any(can_be_skipped(position, system, modes) for position in stage.positions):
                 return f"jobs of {stage.process.name!r} can take a branch without the access or event of the chain"
-        events = self.solution.event_models.get(stages[0].process.name)
+        return ""
+
+    def _why_irregular(self, process: Process) -> str:
+        """Why there is no maximum time between two jobs of a process; "" if there is one."""
+        events = self.solution.event_models.get(process.name)
         if events is None or events.max_interarrival is None:
-            return f"the maximum time between two activations of {stages[0].process.name!r} is unknown"
+            return f"the maximum time between two activations of {process.name!r} is unknown"
         return ""
 
     def _chain_task(self, base: Stage, counter: Counter, response: Time, preempts_reader: bool, is_regular: bool) -> ChainTask:

