@@ -271,18 +271,21 @@ class DemandModel:
         worst, best = highest(ticks), lowest(ticks)
         if worst is None or best is None:
             raise UnknownDemandError("a distribution of ticks has no bounds")
+        # What an invalid value stands for is unknown.
+        if best < 0:
+            raise UnknownDemandError("a number of ticks is negative")
+        if best > worst:
+            raise UnknownDemandError("the minimum of a number of ticks is greater than the maximum")
         tick = time_of_ticks(1, frequency) * factor * self.time_base(core)
         if worst * tick > LIMIT:
             raise UnknownDemandError("an execution time exceeds 13 days")
-        # Invalid files can contain negative ticks, or a minimum above the maximum.
-        longest = max(0, ceil(worst * tick))
-        return Frame(worst=longest, best=min(max(0, floor(best * tick)), longest), average=max(Fraction(0), mean(ticks) * tick))
+        return Frame(worst=ceil(worst * tick), best=floor(best * tick), average=mean(ticks) * tick)
 
     def _ticks_per_unit(self, need: str, core: str) -> Fraction:
         """Ticks per unit of an execution need: the value of the feature, or its inverse for instructions per cycle."""
         kind = next((t for t in self.system.hardware.core_types if t.name == self.system.cores[core].type), None)
         for feature in kind.features if kind else ():
-            if feature.category == need and feature.value:
+            if feature.category == need and feature.value > 0:
                 is_rate = feature.name.startswith("IPC")
                 return 1 / Fraction(feature.value) if is_rate else Fraction(feature.value)
         if need == "Instructions":
@@ -331,10 +334,8 @@ def _any_time(frame: Frame) -> Frame:
 
 def _repeated(frame: Frame, times: Count | float) -> Frame:
     """A frame that is executed several times."""
-    minimum, average, maximum = (times.least, times.mean, times.most) if isinstance(times, Count) else (times, times, times)
-    return replace(
-        frame, worst=frame.worst * ceil(maximum), best=frame.best * floor(minimum), average=frame.average * Fraction(average)
-    )
+    minimum, average, maximum = count_of(times)
+    return replace(frame, worst=frame.worst * maximum, best=frame.best * minimum, average=frame.average * average)
 
 
 def _one_of(alternatives: Sequence[Sequence[Frame]], weights: Sequence[float]) -> Sequence[Frame]:

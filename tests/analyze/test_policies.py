@@ -345,6 +345,12 @@ class TestCosts:
         assert (process.bcet // US, process.wcet // US) == ((3 + 1) * 9 + 1, (3 + 2) * 9 + 1)
         assert worst(built) == {"T": 1}
 
+    @pytest.mark.parametrize("times", [Count(least=3, mean=2.0, most=1), Count(least=-1, mean=0.0, most=1), -1.0, float("nan")])
+    def test_a_number_of_calls_without_a_meaning(self, times):
+        tasks = [("T", 100, [Call(runnable="R", times=times)], {"scheduler": "root", "priority": 1})]
+        found = worst(system([root()], tasks, runnables=[Runnable(name="R", activities=(ticks(7),))]))
+        assert found["T"].startswith("a number of calls or accesses is ")
+
     def test_factors_of_single_processes(self):
         built = system([root()], self.ONE)
         assert worst(built, Settings(factors={"T": Fraction(3)})) == {"T": 15}
