@@ -40,12 +40,13 @@ from amalthea_uros.perf.software import (
     SenderReceiverAccess,
     ServerCall,
     Switch,
+    Terminate,
     WaitEvent,
     walk,
 )
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH, TooComplexError, positions
+from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH, ActivityPosition, TooComplexError, positions
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.timing.means import mean
 from amalthea_uros.timing.memory import MemoryAccess, count_of
@@ -101,6 +102,8 @@ class DemandModel:
         ------
         UnknownDemandError : some demand is unbounded, or the frequency of the core is unknown.
         """
+        if Terminate in self.system.activity_classes and any(map(_ends_early, self._positions(process))):
+            raise UnknownDemandError("it can terminate before its last activity, which cannot be analysed")
         frames = self._frames(process.activities, core, ())
         if self.settings.memory is Memory.IMPLICIT:
             frames += self._copies(process, core)
@@ -126,14 +129,10 @@ class DemandModel:
 
         Also a label that is only written is copied at the start, because a job need not write it, or all of it.
         """
-        try:
-            here = positions(process, self.system)
-        except TooComplexError as error:
-            raise UnknownDemandError(str(error)) from None
         self.notes.assume("each label that a job accesses is copied at its start, and each one that it writes also at its end")
         self.notes.assume("an access to the copy of a label takes no longer than one to the label")
         certain: dict[tuple[str, AccessKind], bool] = {}
-        for position in here:
+        for position in self._positions(process):
             if isinstance(position.activity, LabelAccess | SenderReceiverAccess):
                 for kind in {AccessKind.READ, position.activity.kind}:
                     key = (position.activity.label, kind)
@@ -141,6 +140,13 @@ class DemandModel:
         time_base = self.settings.scale * self.time_base(core)
         frames = [(self.memory.frame(core, *key, count_of(1), time_base), is_certain) for key, is_certain in certain.items()]
         return [frame if is_certain else replace(frame, best=0) for frame, is_certain in frames]
+
+    def _positions(self, process: Process) -> Sequence[ActivityPosition]:
+        """Everything that the jobs of a process do."""
+        try:
+            return positions(process, self.system)
+        except TooComplexError as error:
+            raise UnknownDemandError(str(error)) from None
 
     def _frames(self, activities: Iterable[Activity], core: str, above: tuple[str, ...]) -> list[Frame]:
         return [frame for activity in activities for frame in self._with_services(activity, core, above)]
@@ -292,6 +298,11 @@ class DemandModel:
             self.notes.assume("an instruction takes one tick unless the core type specifies it")
             return Fraction(1)
         raise UnknownDemandError(f"the type of the core {core!r} does not define the ticks for {need!r}")
+
+
+def _ends_early(position: ActivityPosition) -> bool:
+    """Whether a job ends at a position that others can follow."""
+    return isinstance(position.activity, Terminate) and any(index + 1 < len(part) for part, index in position.outer)
 
 
 def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:

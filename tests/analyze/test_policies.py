@@ -38,6 +38,7 @@ from amalthea_uros.perf.software import (
     Software,
     Switch,
     Task,
+    Terminate,
     WaitEvent,
 )
 from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic, Stimuli
@@ -354,6 +355,29 @@ class TestCosts:
     def test_factors_of_single_processes(self):
         built = system([root()], self.ONE)
         assert worst(built, Settings(factors={"T": Fraction(3)})) == {"T": 15}
+
+
+class TestTermination:
+    """A job may end at any activity that terminates it; what would follow is not executed."""
+
+    EARLY = "it can terminate before its last activity, which cannot be analysed"
+
+    @pytest.mark.parametrize(
+        ("body", "expected"),
+        [
+            ([ticks(5), Terminate()], 5),
+            ([ticks(5), Call(runnable="last")], 7),
+            ([Terminate(), ticks(5)], EARLY),
+            ([Call(runnable="last"), ticks(5)], EARLY),
+            # Either 10 or 1 + 5, but never 10 + 5.
+            ([Switch(cases=(Case(activities=(ticks(10), Terminate())),), default=(ticks(1),)), ticks(5)], EARLY),
+            ([ticks(5), Switch(cases=(Case(activities=(ticks(10), Terminate())),), default=(ticks(1),))], 15),
+        ],
+    )
+    def test_where_it_is(self, body, expected):
+        last = Runnable(name="last", activities=(ticks(2), Terminate()))
+        built = system([root()], [("T", 100, body, {"scheduler": "root", "priority": 1})], runnables=[last])
+        assert worst(built) == {"T": expected}
 
 
 class TestModes:
