@@ -13,7 +13,7 @@ from amalthea_uros.perf.hardware import Cache, Clock, Connection, Core, Hardware
 from amalthea_uros.perf.mapping import Mapping as SystemMapping
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.os import InterruptController, Os, Scheduler
-from amalthea_uros.perf.software import Channel, Label, Process, Runnable, ServerCall, Software, walk
+from amalthea_uros.perf.software import Activity, Channel, Label, Process, Runnable, Software, walk
 from amalthea_uros.perf.stimuli import Stimuli, Stimulus
 
 N = TypeVar("N", bound=Named)
@@ -89,10 +89,9 @@ class System:
         return _by_name(self.software.runnables)
 
     @cached_property
-    def server_calls(self) -> tuple[ServerCall, ...]:
-        """The server calls in processes and runnables."""
-        activities = (activity for body in self.software.bodies for activity in walk(body))
-        return tuple(activity for activity in activities if isinstance(activity, ServerCall))
+    def activity_classes(self) -> frozenset[type[Activity]]:
+        """The classes of all activities in processes and runnables."""
+        return frozenset(type(activity) for body in self.software.bodies for activity in walk(body))
 
     @cached_property
     def labels(self) -> Mapping[str, Label]:

@@ -40,6 +40,7 @@ from amalthea_uros.perf.software import (
     SenderReceiverAccess,
     ServerCall,
     Switch,
+    Terminate,
     WaitEvent,
     walk,
 )
@@ -104,6 +105,8 @@ class DemandModel:
         ------
         UnknownDemandError : some demand is unbounded, or the frequency of the core is unknown.
         """
+        if Terminate in self.system.activity_classes and any(map(_ends_early, self._positions(process))):
+            raise UnknownDemandError("it can terminate before its last activity, which cannot be analysed")
         frames = self._frames(process.activities, core, ())
         if self.settings.memory is Memory.IMPLICIT:
             frames += self._copies(process, core)
@@ -148,14 +151,10 @@ class DemandModel:
 
         Also a label that is only written is copied at the start, because a job need not write it, or all of it.
         """
-        try:
-            here = positions(process, self.system, self.sites)
-        except TooComplexError as error:
-            raise UnknownDemandError(str(error)) from None
         self.notes.assume("each label that a job accesses is copied at its start, and each one that it writes also at its end")
         self.notes.assume("an access to the copy of a label takes no longer than one to the label")
         certain: dict[tuple[str, AccessKind], bool] = {}
-        for position in here:
+        for position in self._positions(process):
             if isinstance(position.activity, LabelAccess | SenderReceiverAccess):
                 for kind in {AccessKind.READ, position.activity.kind}:
                     key = (position.activity.label, kind)
@@ -164,6 +163,13 @@ class DemandModel:
         time_base = self.settings.scale * self.time_base(core)
         frames = [(self.memory.frame(core, *key, count_of(1), time_base), is_certain) for key, is_certain in certain.items()]
         return [frame if is_certain else replace(frame, best=0) for frame, is_certain in frames]
+
+    def _positions(self, process: Process) -> Sequence[ActivityPosition]:
+        """Everything that the jobs of a process do."""
+        try:
+            return positions(process, self.system, self.sites)
+        except TooComplexError as error:
+            raise UnknownDemandError(str(error)) from None
 
     def _frames(self, activities: Iterable[Activity], core: str, above: tuple[str, ...]) -> list[Frame]:
         return [frame for activity in activities for frame in self._with_services(activity, core, above)]
@@ -309,24 +315,32 @@ class DemandModel:
         worst, best = highest(ticks), lowest(ticks)
         if worst is None or best is None:
             raise UnknownDemandError("a distribution of ticks has no bounds")
+        # What an invalid value stands for is unknown.
+        if best < 0:
+            raise UnknownDemandError("a number of ticks is negative")
+        if best > worst:
+            raise UnknownDemandError("the minimum of a number of ticks is greater than the maximum")
         tick = time_of_ticks(1, frequency) * factor * self.time_base(core)
         if worst * tick > LIMIT:
             raise UnknownDemandError("an execution time exceeds 13 days")
-        # Invalid files can contain negative ticks, or a minimum above the maximum.
-        longest = max(0, ceil(worst * tick))
-        return Frame(worst=longest, best=min(max(0, floor(best * tick)), longest), average=max(Fraction(0), mean(ticks) * tick))
+        return Frame(worst=ceil(worst * tick), best=floor(best * tick), average=mean(ticks) * tick)
 
     def _ticks_per_unit(self, need: str, core: str) -> Fraction:
         """Ticks per unit of an execution need: the value of the feature, or its inverse for instructions per cycle."""
         kind = next((t for t in self.system.hardware.core_types if t.name == self.system.cores[core].type), None)
         for feature in kind.features if kind else ():
-            if feature.category == need and feature.value:
+            if feature.category == need and feature.value > 0:
                 is_rate = feature.name.startswith("IPC")
                 return 1 / Fraction(feature.value) if is_rate else Fraction(feature.value)
         if need == "Instructions":
             self.notes.assume("an instruction takes one tick unless the core type specifies it")
             return Fraction(1)
         raise UnknownDemandError(f"the type of the core {core!r} does not define the ticks for {need!r}")
+
+
+def _ends_early(position: ActivityPosition) -> bool:
+    """Whether a job ends at a position that others can follow."""
+    return isinstance(position.activity, Terminate) and any(index + 1 < len(part) for part, index in position.outer)
 
 
 def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:
@@ -369,10 +383,8 @@ def _any_time(frame: Frame) -> Frame:
 
 def _repeated(frame: Frame, times: Count | float) -> Frame:
     """A frame that is executed several times."""
-    minimum, average, maximum = (times.least, times.mean, times.most) if isinstance(times, Count) else (times, times, times)
-    return replace(
-        frame, worst=frame.worst * ceil(maximum), best=frame.best * floor(minimum), average=frame.average * Fraction(average)
-    )
+    minimum, average, maximum = count_of(times)
+    return replace(frame, worst=frame.worst * maximum, best=frame.best * minimum, average=frame.average * average)
 
 
 def _one_of(alternatives: Sequence[Sequence[Frame]], weights: Sequence[float], each_occurs: bool) -> Sequence[Frame]:

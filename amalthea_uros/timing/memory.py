@@ -128,6 +128,8 @@ def _cycles(cycles: Distribution[int] | None, frequency: Frequency | None, where
     minimum, maximum = lowest(cycles), highest(cycles)
     if minimum is None or maximum is None:
         raise UnknownDemandError(f"the memory latency of {where!r} has no bounds")
+    if not 0 <= minimum <= maximum:
+        raise UnknownDemandError(f"the memory latency of {where!r} is negative, or its bounds are in the wrong order")
     one = time_of_ticks(1, frequency)
     return (minimum * one, mean(cycles) * one, maximum * one)
 
@@ -137,8 +139,19 @@ def _sum(first: Times, second: Times) -> Times:
 
 
 def count_of(times: Count | float | None) -> tuple[int, Fraction, int]:
-    """Minimum, mean and maximum number of accesses that one access of the model represents."""
-    if isinstance(times, Count):
-        return (times.least, Fraction(times.mean), times.most)
-    number = Fraction(1 if times is None else times)
-    return (down(number), number, up(number))
+    """Minimum, mean and maximum number of accesses that one access of the model represents.
+
+    Raises
+    ------
+    UnknownDemandError : they are negative or in the wrong order.
+    """
+    try:
+        number = Fraction(1 if times is None or isinstance(times, Count) else times)
+        found = (
+            (times.least, Fraction(times.mean), times.most) if isinstance(times, Count) else (down(number), number, up(number))
+        )
+    except (ValueError, OverflowError):
+        raise UnknownDemandError("a number of calls or accesses is not finite") from None
+    if not 0 <= found[0] <= found[2]:
+        raise UnknownDemandError("a number of calls or accesses is negative, or its minimum is greater than its maximum")
+    return found

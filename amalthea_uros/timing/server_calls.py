@@ -63,11 +63,12 @@ def with_direct_calls(system: System) -> System:
 
     What is left of such a server call is one that does not wait, for the overhead of the operating system.
     """
-    wanted = {call.runnable for call in system.server_calls if _is_synchronous(call)}
-    if not wanted:
+    if ServerCall not in system.activity_classes:
         return system
     software = system.software
-    others = {name for body in software.bodies for activity in walk(body) for name in _referred(activity)}
+    everything = [activity for body in software.bodies for activity in walk(body)]
+    wanted = {call.runnable for call in everything if isinstance(call, ServerCall) and _is_synchronous(call)}
+    others = {name for activity in everything for name in _referred(activity)}
     direct = (wanted & set(system.runnables)) - others - set(servers(system))
     if not direct:
         return system

@@ -111,7 +111,10 @@ class TestCriticalSections:
         [
             ([{"request": "M"}, execute(1)], "does not release the semaphore 'M'"),
             ([execute(1), {"release": "M"}], "releases the semaphore 'M', which it does not hold"),
-            ([{"request": "M"}, execute(1), {"request": "M"}, {"release": "M"}], "requests the semaphore 'M', which it holds already"),
+            (
+                [{"request": "M"}, execute(1), {"request": "M"}, {"release": "M"}],
+                "requests the semaphore 'M', which it holds already",
+            ),
             ([{"switch": [[1, [{"request": "M"}]], [1, []]]}, execute(1)], "only some branches of a switch"),
             ([{"call": "lock", "prescaler": 2, "offset": 0}, execute(1)], "only some jobs call 'lock'"),
             ([group({"request": "M"}, execute(1), {"release": "M"}, ordered=False)], "a part of an unordered group"),

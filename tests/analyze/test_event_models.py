@@ -115,6 +115,11 @@ def test_several_events_for_each_one():
         (perf.Burst(name="s", period=2**40, length=2**40, count=2**40), None),
         (perf.Burst(name="s", period=10, length=4, distance=2, count=2**40), Pattern(10, (0, 2, 4))),
         (perf.RelativePeriodic(name="s", distance=Uniform(lower=0, upper=9)), None),
+        # Values without a meaning leave the rate unknown.
+        (perf.RelativePeriodic(name="s", distance=Uniform(lower=-5, upper=9)), None),
+        (perf.RelativePeriodic(name="s", distance=Uniform(lower=9, upper=5)), None),
+        (perf.Periodic(name="s", period=10, jitter=Uniform(lower=3, upper=1)), None),
+        (perf.Periodic(name="s", period=10, min_distance=-2), Periodic(10)),
         (perf.InterProcess(name="s"), None),
         (perf.Custom(name="s"), None),
     ],

@@ -63,9 +63,10 @@ HUGE = "99999999999999999999"
         ({}, 3),
         # What divides is 1 at least.
         ({"prescaler": "0"}, 3),
-        # No time runs backwards, and no job is longer than its longest.
-        ({"ticks": CONSTANT.format("-3")}, 0),
-        ({"ticks": STATISTICS.format(HUGE)}, 3),
+        # What a negative time means is not known, nor which of two bounds in the wrong order is right.
+        ({"ticks": CONSTANT.format("-3")}, None),
+        ({"ticks": STATISTICS.format("-1")}, None),
+        ({"ticks": STATISTICS.format(HUGE)}, None),
         # The mean of a distribution whose parameters are no numbers is not known, but its bounds are.
         ({"ticks": BETA.format("NaN")}, 3),
         ({"ticks": BETA.format("Infinity")}, 3),
@@ -73,8 +74,7 @@ HUGE = "99999999999999999999"
         ({"ticks": CONSTANT.format(HUGE)}, None),
         ({"period": HUGE}, None),
         ({"early": f"-{HUGE}"}, None),
-        # Bounds in the wrong order leave no jitter.
-        ({"early": HUGE}, 3),
+        ({"early": HUGE}, None),
     ],
 )
 def test_a_value_that_makes_no_sense(values, worst, tmp_path):

@@ -38,6 +38,7 @@ from amalthea_uros.perf.software import (
     Software,
     Switch,
     Task,
+    Terminate,
     WaitEvent,
 )
 from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic, Stimuli
@@ -345,9 +346,38 @@ class TestCosts:
         assert (process.bcet // US, process.wcet // US) == ((3 + 1) * 9 + 1, (3 + 2) * 9 + 1)
         assert worst(built) == {"T": 1}
 
+    @pytest.mark.parametrize("times", [Count(least=3, mean=2.0, most=1), Count(least=-1, mean=0.0, most=1), -1.0, float("nan")])
+    def test_a_number_of_calls_without_a_meaning(self, times):
+        tasks = [("T", 100, [Call(runnable="R", times=times)], {"scheduler": "root", "priority": 1})]
+        found = worst(system([root()], tasks, runnables=[Runnable(name="R", activities=(ticks(7),))]))
+        assert found["T"].startswith("a number of calls or accesses is ")
+
     def test_factors_of_single_processes(self):
         built = system([root()], self.ONE)
         assert worst(built, Settings(factors={"T": Fraction(3)})) == {"T": 15}
+
+
+class TestTermination:
+    """A job may end at any activity that terminates it; what would follow is not executed."""
+
+    EARLY = "it can terminate before its last activity, which cannot be analysed"
+
+    @pytest.mark.parametrize(
+        ("body", "expected"),
+        [
+            ([ticks(5), Terminate()], 5),
+            ([ticks(5), Call(runnable="last")], 7),
+            ([Terminate(), ticks(5)], EARLY),
+            ([Call(runnable="last"), ticks(5)], EARLY),
+            # Either 10 or 1 + 5, but never 10 + 5.
+            ([Switch(cases=(Case(activities=(ticks(10), Terminate())),), default=(ticks(1),)), ticks(5)], EARLY),
+            ([ticks(5), Switch(cases=(Case(activities=(ticks(10), Terminate())),), default=(ticks(1),))], 15),
+        ],
+    )
+    def test_where_it_is(self, body, expected):
+        last = Runnable(name="last", activities=(ticks(2), Terminate()))
+        built = system([root()], [("T", 100, body, {"scheduler": "root", "priority": 1})], runnables=[last])
+        assert worst(built) == {"T": expected}
 
 
 class TestModes:

@@ -18,7 +18,7 @@ from amalthea_uros.units import Time
 def best_response(task: Task, higher: Interference) -> Time:
     """A lower bound of the response time once all tasks have been released; exact for periodic tasks with unknown offsets."""
     own, rows = task.demand.best, higher.rows
-    if higher.best_rate >= 1:
+    if higher.best_rate >= 1 or not higher.is_countable:
         return own
     # There is no greater fixed point, because R <= C + rate * R.
     start = int(own / (1 - higher.best_rate)) + 1

@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
 
 
+#: Greater sums could wrap.
+MAX_SUM = 2.0**62
+
+
 @dataclass(slots=True)
 class Rows:
     """Periodic frames; those with the same activations are one row with the sum of their demands.
@@ -53,8 +57,10 @@ class Rows:
     def with_more(self, row: int, worst: int, best: int) -> Rows:
         """The rows with more demand in one of them."""
         more = Rows(self.periods, self.jitters, self.distances, self.demands.copy(), self.best.copy(), self.limited)
-        more.demands[row] += worst
-        more.best[row] += best
+        # What wraps is not used: see `Interference.is_countable`.
+        with np.errstate(over="ignore"):
+            more.demands[row] += worst
+            more.best[row] += best
         return more
 
 
@@ -89,6 +95,7 @@ class Interference:
     rows, row_count : the periodic ones, of which only the first `row_count` rows are included
     others : tasks with other event models
     rate, best_rate : approximate long-run demand per time, and the unavoidable part of it
+    greatest : approximate demand of the rows in the longest window
     supply : of the core or server
     """
 
@@ -99,6 +106,7 @@ class Interference:
     others: tuple[Task, ...]
     rate: float
     best_rate: float
+    greatest: float = 0.0
     supply: Supply = FULL
 
     @property
@@ -120,9 +128,9 @@ class Interference:
         for rows_of_task in parts:
             for key, _, _ in rows_of_task:
                 numbers.setdefault(key, len(numbers))
-        rows, count, rate, best_rate = Rows.of(numbers), 0, 0.0, 0.0
+        rows, count, rate, best_rate, greatest = Rows.of(numbers), 0, 0.0, 0.0, 0.0
         others: tuple[Task, ...] = ()
-        found = [cls(tasks, 0, rows, count, others, rate, best_rate, supply)]
+        found = [cls(tasks, 0, rows, count, others, rate, best_rate, greatest, supply)]
         for number, (task, part) in enumerate(zip(tasks, parts, strict=True), start=1):
             for key, worst, best in part:
                 row = numbers[key]
@@ -131,15 +139,23 @@ class Interference:
                 else:
                     rows.demands[row], rows.best[row], count = worst, best, row + 1
                 best_rate += best / key[0]
+                greatest += worst * ((2 * LIMIT + key[1]) / key[0] + 1)
             others = others if part else (*others, task)
             rate += approximate_demand_rate(task)
-            found.append(cls(tasks, number, rows, count, others, rate, best_rate, supply))
+            found.append(cls(tasks, number, rows, count, others, rate, best_rate, greatest, supply))
         return found
+
+    @property
+    def is_countable(self) -> bool:
+        """Whether sums over the rows fit into 64 bits; otherwise one job of each row, or their load, exceeds any window."""
+        return self.greatest < MAX_SUM
 
     def in_window(self, window: Time) -> Time:
         """Maximum demand that is activated in a window."""
         if window <= 0:
             return 0
+        if not self.is_countable:
+            return sum(task.demand.max_demand(task.events.eta_plus(window)) for task in self.tasks)
         rows = self.rows
         periodic = demand_in(window, rows.periods, rows.jitters, rows.distances, rows.demands, self.row_count, rows.limited)
         return periodic + self._of_others(window)
@@ -154,12 +170,16 @@ class Interference:
         ----------
         start : a lower bound of the window
         """
+        if not self.is_countable:
+            return None
         if self.supply is not FULL:
             return self._supplied_window(fixed, start)
         rows = self.rows
         window = max(1, fixed, start)
         for _ in range(MAX_STEPS):
             others = self._of_others(window)
+            if fixed + others > LIMIT:
+                return None
             window = least_fixed_point(
                 window, fixed + others, rows.periods, rows.jitters, rows.distances, rows.demands, self.row_count, rows.limited
             )

@@ -40,12 +40,14 @@ def _event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | Non
     match stimulus:
         case perf.Periodic(period=period, jitter=jitter, min_distance=distance) if period > 0:
             if jitter is None:
-                return Periodic(period, 0, distance or 0)
+                return Periodic(period, 0, max(0, distance or 0))
             earliest, latest = lowest(jitter), highest(jitter)
-            return None if earliest is None or latest is None else Periodic(period, max(0, latest - earliest), distance or 0)
+            if earliest is None or latest is None or earliest > latest:
+                return None
+            return Periodic(period, latest - earliest, max(0, distance or 0))
         case perf.RelativePeriodic(distance=distance, has_maximum=has_maximum):
             shortest, longest = lowest(distance), highest(distance)
-            if not shortest:
+            if shortest is None or shortest <= 0 or (longest is not None and longest < shortest):
                 return None
             if not has_maximum:
                 return Sporadic(shortest)
