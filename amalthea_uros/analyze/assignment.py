@@ -20,7 +20,7 @@ from amalthea_uros.perf.software import Group, Process, SemaphoreAccess
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation import UnknownActivationError
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.dataflow.positions import TooComplexError, positions
+from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.preemption import is_preemptive
 from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
@@ -260,8 +260,8 @@ class _Search:
     def _blocks(self, item: ScheduledProcess) -> bool:
         """Whether a process can block others."""
         try:
-            activities = [position.activity for position in positions(item.process, self.context.system)]
-        except TooComplexError:
+            activities = [position.activity for position in self.context.dataflow.events.positions(item.name)]
+        except UnresolvedError:
             return True
         return not is_preemptive(item) or any(
             isinstance(activity, SemaphoreAccess) or (isinstance(activity, Group) and not activity.interruptible)
