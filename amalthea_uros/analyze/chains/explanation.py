@@ -222,12 +222,15 @@ class _RouteExplanation:
         """When a job starts; None if that varies or is unknown."""
         scheduled = self.evaluator.context.scheduled[process]
         found = self.timing.schedules.of(scheduled.core, with_slices=False)
-        if found is None or not np.array_equal(found.worst[process].begins, found.best[process].begins):
+        if found is None:
             return None
-        begins = found.worst[process].begins
+        earliest, latest = found.best[process].begins, found.worst[process].begins
         per_cycle = found.cycle // found.tasks[process].period
-        cycles = max(0, -(-(number - len(begins)) // per_cycle))
-        start = int(begins[number - 1 - cycles * per_cycle]) + cycles * found.cycle
+        cycles = max(0, -(-(number - len(latest)) // per_cycle))
+        job = number - 1 - cycles * per_cycle
+        if earliest[job] != latest[job]:
+            return None
+        start = int(latest[job]) + cycles * found.cycle
         return start * self.timing.unit // self.evaluator.context.time_base(process)
 
     def _with_triggered(self, step: _Step, group: Sequence[Stage]) -> list[_Step]:
