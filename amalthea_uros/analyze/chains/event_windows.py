@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.perf.events import Event, EventSet
+from amalthea_uros.timing.counters import is_always
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.units import Time
@@ -45,7 +46,7 @@ class EventWindows:
         if len(occurrences) > 1:
             raise UnknownError(f"the event {name!r} occurs at several positions")
         position = occurrences[0].position
-        if position is not None and (position.counter is None or position.counter.prescaler > 1):
+        if position is not None and (position.counter is None or not is_always(position.counter)):
             raise UnknownError(f"the event {name!r} occurs in some jobs only")
         return occurrences[0]
 

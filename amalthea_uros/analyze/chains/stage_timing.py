@@ -28,7 +28,7 @@ from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.software import Communication, Process, Trigger
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.counters import first_effect, is_always
+from amalthea_uros.timing.counters import first_effect, is_always, max_distance
 from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.demand import MAX_TIME_BASE
 from amalthea_uros.timing.limits import LIMIT
@@ -170,7 +170,7 @@ class StageTiming:
         for counter in counters:
             if offset is not None and releases is not None:
                 offset += (first_effect(counter) - 1) * releases.period * self.unit
-            period *= counter.prescaler
+            period *= max_distance(counter)
         response = self._worst(base.process)
         if is_logical(base.leave):
             if releases is None or response > releases.period * self.unit:
