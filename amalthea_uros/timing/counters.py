@@ -35,7 +35,12 @@ def first_effect(counter: Counter) -> int:
 
 def is_always(counter: Counter) -> bool:
     """Whether every occurrence takes effect."""
-    return counter.prescaler == 1 and first_effect(counter) == 1
+    return counter.is_phase_known and counter.prescaler == 1 and first_effect(counter) == 1
+
+
+def max_distance(counter: Counter) -> int:
+    """Maximum number of occurrences from one that takes effect to the next."""
+    return counter.prescaler + (not counter.is_phase_known and not counter.source)
 
 
 def composed(outer: Counter, inner: Counter) -> Counter:

@@ -133,7 +133,7 @@ def phase_assumptions(system: System, are_all_evaluated: bool) -> Iterator[str]:
     for process, counter in _counters(system):
         if not counter.source:
             continue
-        due = f"{counter.source} is due in one of {counter.prescaler} jobs of {process}"
+        due = f"{counter.source} is due regularly, in one of {counter.prescaler} jobs of {process}"
         if not counter.is_phase_known:
             how = "all phases are evaluated" if are_all_evaluated else "any job can be that one"
             yield f"{due}, and its phase is unknown: {how}"

@@ -67,20 +67,25 @@ class ExecutorPhases:
         elif not counted:
             notes.error(
                 "APP003",
-                f"{subject} has no effect: it is not due on its own every few activations",
+                f"{subject} has no effect: it is not due on its own in every n-th activation",
                 location,
                 "Remove 'phase'.",
             )
 
 
 def call_counter(interval: Time, period: Time, source: str, first: int | None) -> Counter | None:
-    """The counter of a call that is due once per interval in a task of a period; rounded towards more frequent calls.
+    """The counter of a call that is due once per interval in a task of a period; None if it is due in every activation.
+
+    If the interval is no multiple of the period, the number of activations in between varies by one. The smaller one is the prescaler,
+    and there is no single phase.
 
     Parameters
     ----------
     first : number of the first activation in which it is due; None if unknown
     """
     prescaler = max(1, interval // period)
+    if interval > period and interval % period:
+        return Counter(prescaler=prescaler, is_phase_known=False)
     if prescaler == 1:
         return None
     return Counter(prescaler=prescaler, offset=first or 0, source=source, is_phase_known=first is not None)

@@ -75,7 +75,7 @@ class TestTheSample:
 
     def test_it_is_an_assumption(self):
         assert (
-            "Message_Factor is due in one of 20 jobs of Executor_Task, and its phase is unknown: all phases are evaluated"
+            "Message_Factor is due regularly, in one of 20 jobs of Executor_Task, and its phase is unknown: all phases are evaluated"
             in analyze_system(describe(SAMPLE).system).assumptions
         )
 
@@ -134,7 +134,7 @@ class TestTooManyPhases:
 
     def test_it_is_an_assumption(self):
         assert (
-            "Message_Factor is due in one of 20 jobs of Executor_Task, and its phase is unknown: any job can be that one"
+            "Message_Factor is due regularly, in one of 20 jobs of Executor_Task, and its phase is unknown: any job can be that one"
             in analyze_system(describe(SAMPLE).system).assumptions
         )
 
@@ -248,3 +248,22 @@ class TestWhatRunsWhenItIsDue:
         # The task runs in the activation in which the message is taken, after the control function: the next one uses it.
         task = "rate: 50 Hz, priority: 0, task_period: 1 ms, runs_when: due, phase: 7 ms"
         assert latency(analyze(sample(task=("rate: 50 Hz", task)))) == 1016
+
+
+class TestAnIntervalThatIsNoMultipleOfThePeriod:
+    """A message every 2.5 ms is taken after 2 and after 3 activations of the executor in turn."""
+
+    RATE = ("rate: 50 Hz", "interval: 2.5 ms, task_period: 1 ms, priority: 0")
+
+    def test_its_demand_is_a_bound(self, analyze):
+        analysis = analyze(sample(rate=self.RATE))
+        best, worst, claim = times(analysis, "Executor_Task")
+        assert best <= 12
+        assert worst >= 25
+        assert claim is Claim.BOUND
+
+    def test_an_event_can_miss_an_activation_and_wait_for_three(self, analyze):
+        # From just after a read to the next one 3 ms later, and from there as without waiting: 1016 us.
+        analysis = analyze(sample(rate=self.RATE))
+        assert latency(analysis, "max_reaction_time") >= 3000 + 1016
+        assert {value.claim for value in analysis.chains[0].values} == {Claim.BOUND}

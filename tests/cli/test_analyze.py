@@ -214,7 +214,7 @@ def test_a_phase_that_is_stated_for_one_analysis():
     assert run.returncode == 0
     # The message is taken 15 ms before the next job of Message_Factor, which waits for 12 us + 4 us.
     assert "  Message_Factor    Core_0         1   2 us  18 us  18 us" in run.stdout
-    assert "is due in one of 20 jobs of Executor_Task, first in job 6, at 5 ms, as stated" in run.stdout
+    assert "is due regularly, in one of 20 jobs of Executor_Task, first in job 6, at 5 ms, as stated" in run.stdout
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,7 @@ from amalthea_uros.perf.software import Communication, Process, Trigger
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.counters import ALWAYS, composed, first_effect, is_always
+from amalthea_uros.timing.counters import ALWAYS, composed, first_effect, is_always, max_distance
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.skipping import can_be_skipped
 from amalthea_uros.timing.demand import MAX_TIME_BASE
@@ -124,8 +124,8 @@ class StageTiming:
 
     def _is_too_long(self, releases: Periodic, counter: Counter) -> bool:
         """Whether two jobs that take part are too far apart in time, or have too many others between them."""
-        max_distance = max(counter.prescaler, first_effect(counter))
-        return max_distance > MAX_JOBS or (releases.offset + 4 * max_distance * releases.period) * self.unit > LIMIT
+        farthest = max(counter.prescaler, first_effect(counter))
+        return farthest > MAX_JOBS or (releases.offset + 4 * farthest * releases.period) * self.unit > LIMIT
 
     # Processes
 
@@ -194,7 +194,7 @@ class StageTiming:
         offset = None if releases is None else (releases.offset + (first_effect(counter) - 1) * releases.period) * self.unit
         return ChainTask(
             name=base.process.name,
-            period=self._max_interarrival(base.process) * counter.prescaler,
+            period=self._max_interarrival(base.process) * max_distance(counter),
             is_regular=is_regular,
             response=response,
             offset=offset,
