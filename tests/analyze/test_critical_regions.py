@@ -286,3 +286,14 @@ class TestStretches:
         # 2 | 5 .  followed by 1: 2 + 1 without a point, or 5 before it and 1 after it.
         found = self.of([2]).either(self.of([5, None])).then(self.of([1]))
         assert (found.through, found.first, found.last, found.longest) == (3, 5, 1, 5)
+
+
+def test_others_of_the_same_priority_can_be_avoided_in_the_best_case():
+    # T1 needs 7, and T0 can take a turn of 3 in between: released just after the group of T0, it ends before the second one.
+    sporadic = {"arrival": {"sporadic": {"least": 20, "most": 31, "offset": 0}}}
+    found = analyse(
+        process("T0", 1, 10, group(execute(3), interruptible=False), execute(1), slice=3),
+        process("T1", 1, 20, execute(4), execute(3), slice=1) | sporadic,
+        policy="RR",
+    )
+    assert found["T1"][0] <= 10

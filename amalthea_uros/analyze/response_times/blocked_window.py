@@ -56,7 +56,8 @@ class BlockedWindow:
             found = fixed_priority.response_time(task, Interference.of(higher, self.supply), self.wait)[0]
         else:
             found = plain
-        return replace(found, best=self._best(index, item, found.best))
+        # What only interferes at the lowered level is avoidable.
+        return replace(found, best=self._best(index, item, plain.best))
 
     def _of_level(self, index: int, rank: Rank) -> list[Task]:
         """The other tasks of at least a rank, and the decisions of schedulers."""
