@@ -3,9 +3,9 @@
 The walk goes through groups, switches and calls at any depth. For each list of activities it keeps the longest demands between the
 points at which the job can be preempted. Lists that follow each other are joined at their ends; of alternatives the longest counts.
 
-A cooperative task can be preempted by other cooperative tasks at schedule points and at the ends of the calls of runnables, at any
-depth; several activities in a row are one stretch. A schedule point has no effect while a job holds a semaphore whose ceiling keeps the
-other one off, or in a non-interruptible group.
+A cooperative task can be preempted by other cooperative tasks at schedule points and between a call of a runnable and what follows it,
+at any depth; several activities in a row are one stretch, and a job ends at once after its last call. A schedule point has no effect
+while a job holds a semaphore whose ceiling keeps the other one off, or in a non-interruptible group.
 """
 
 from __future__ import annotations
@@ -67,7 +67,9 @@ class Stretches:
     ----------
     through : of ways without such a point
     first, inner, last : before the first point, between two points, and after the last one
-    before_last : of all activities before the last point
+    before_last : of all activities before the last point that counts: one after a call only counts if something follows
+    after_call : of ways that end with a point after a call
+    uncounted : of ways without a point that counts
     total : of all activities
     """
 
@@ -76,6 +78,8 @@ class Stretches:
     inner: Time | None = None
     last: Time | None = None
     before_last: Time | None = None
+    after_call: Time | None = None
+    uncounted: Time | None = None
     total: Time = 0
 
     @property
@@ -90,7 +94,13 @@ class Stretches:
             first=_longest(self.first, _sum(self.through, other.first)),
             inner=_longest(self.inner, other.inner, _sum(self.last, other.first)),
             last=_longest(other.last, _sum(self.last, other.through)),
-            before_last=_longest(_sum(self.total, other.before_last), None if other.through is None else self.before_last),
+            before_last=_longest(
+                _sum(self.total, other.before_last),
+                None if other.uncounted is None else self.before_last,
+                self.after_call if other.uncounted else None,
+            ),
+            after_call=_longest(_sum(self.total, other.after_call), self.after_call if other.uncounted == 0 else None),
+            uncounted=_sum(self.uncounted, other.uncounted),
             total=self.total + other.total,
         )
 
@@ -102,6 +112,8 @@ class Stretches:
             inner=_longest(self.inner, other.inner),
             last=_longest(self.last, other.last),
             before_last=_longest(self.before_last, other.before_last),
+            after_call=_longest(self.after_call, other.after_call),
+            uncounted=_longest(self.uncounted, other.uncounted),
             total=max(self.total, other.total),
         )
 
@@ -116,14 +128,16 @@ class Stretches:
             first=at_most(self.first),
             inner=_longest(at_most(self.inner), at_most(_sum(self.last, self.first))),
             last=at_most(self.last),
-            before_last=at_most(self.before_last),
+            before_last=None if self.first is None else total,
+            uncounted=None if self.first is not None else total,
             total=total,
         )
 
 
-#: Nothing; and a point of preemption.
-NOTHING = Stretches(through=0)
+#: Nothing; a point of preemption; and one after a call.
+NOTHING = Stretches(through=0, uncounted=0)
 POINT = Stretches(through=None, first=0, inner=0, last=0, before_last=0)
+AFTER_CALL = Stretches(through=None, first=0, inner=0, last=0, after_call=0, uncounted=0)
 
 
 def _sum(first: Time | None, then: Time | None) -> Time | None:
@@ -220,7 +234,7 @@ class StretchWalk:
         """The demand of an activity without parts."""
         demand = self.demand_of(activity)
         if self.kept_off.throughout or self._is_kept_off(held, inside):
-            return Stretches(through=demand, total=demand)
+            return Stretches(through=demand, uncounted=demand, total=demand)
         return Stretches(through=None, first=0, inner=0, last=0, before_last=demand, total=demand) if demand else NOTHING
 
     def _unchanged(
@@ -262,6 +276,7 @@ class StretchWalk:
             inner=_longest(one.inner, between),
             last=_sum(one.last, through),
             before_last=total if with_points else None,
+            uncounted=None if with_points else total,
             total=total,
         )
 
@@ -284,7 +299,8 @@ class StretchWalk:
         if is_conditional and after != held:
             name = min(after ^ held)
             raise UnclearLocksError(f"only some jobs call {runnable.name!r}, which requests or releases the semaphore {name!r}")
-        found = found.then(self._point(after, inside)) if yields else found
+        if yields and not self._is_kept_off(after, inside):
+            found = found.then(AFTER_CALL)
         return (NOTHING.either(found) if is_conditional else found), after
 
     def _plain(self, name: str) -> bool:

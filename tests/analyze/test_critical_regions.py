@@ -8,7 +8,7 @@ import pytest
 from opponent.to_perf import to_perf
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.timing.stretches import NOTHING, POINT, Stretches
+from amalthea_uros.timing.stretches import AFTER_CALL, NOTHING, POINT, Stretches
 from amalthea_uros.units import MICROSECOND as US
 
 
@@ -179,13 +179,13 @@ class TestNonInterruptibleGroups:
 
 class TestCooperativeTasks:
     def test_yield_after_calls_inside_groups(self):
-        # lo calls until 5 and 10, hi runs (came at 7), lo until 16, hi runs (came at 14) until 17, and only then lo ends.
+        # hi runs until 1, lo calls until 6 and 11, hi runs (came at 7) until 12, lo until 17.
         found = analyse(
             process("hi", 2, 7, execute(1), preemption="cooperative"),
             process("lo", 1, 100, group({"call": "r"}, {"call": "r"}, {"call": "r"}), preemption="cooperative"),
             runnables={"r": [execute(5)]},
         )
-        assert found["lo"][1] >= 17
+        assert found["lo"][1] == 17
         # At most one call of lo is ahead of it.
         assert found["hi"][1] == 6
 
@@ -262,7 +262,7 @@ class TestStretches:
     def of(parts):
         found = NOTHING
         for part in parts:
-            found = found.then(POINT if part is None else Stretches(through=part, total=part))
+            found = found.then(POINT if part is None else Stretches(through=part, uncounted=part, total=part))
         return found
 
     @pytest.mark.parametrize(
@@ -281,6 +281,13 @@ class TestStretches:
         assert (found.last if None in parts else found.through) == runs[-1]
         if None in parts:
             assert found.before_last == sum(runs) - runs[-1]
+
+    def test_a_point_after_a_call_counts_only_if_something_follows(self):
+        call = self.of([5]).then(AFTER_CALL)
+        assert (call.before_last, call.then(call).before_last, call.then(call).longest) == (None, 5, 5)
+        assert call.then(self.of([2])).before_last == 5
+        assert call.then(POINT).before_last == 5
+        assert call.then(NOTHING.either(call)).before_last == 5
 
     def test_alternatives(self):
         # 2 | 5 .  followed by 1: 2 + 1 without a point, or 5 before it and 1 after it.

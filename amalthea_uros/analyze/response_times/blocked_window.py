@@ -103,7 +103,7 @@ class BlockedWindow:
         """The response time of a task that only some tasks can preempt in its last region."""
         if preemption(item) is Preemption.COOPERATIVE:
             self.notes.assume(
-                "preemptive tasks preempt cooperative ones immediately, cooperative tasks only at schedule points and after the calls "
+                "preemptive tasks preempt cooperative ones immediately, cooperative tasks only at schedule points and between calls "
                 "of runnables"
             )
         task, last_region = self.tasks[index], self.blocking.last_region(item)
