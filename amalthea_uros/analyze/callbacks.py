@@ -90,7 +90,8 @@ class CallbackEvaluator:
             return _unknown(
                 name, process, f"the response time of {process.name!r} is unknown: {reason}", self._deadline(name, sites)
             )
-        known = self._schedule(process) if response.claim is Claim.EXACT else None
+        is_exact = response.claim is Claim.EXACT and not self.solution.depends_on_losses(process.name)
+        known = self._schedule(process) if is_exact else None
         found = [site.by_schedule(known) if known is not None else site.by_response(response) for site in sites]
         combined = metrics.merged([{JobMetric.RESPONSE_TIME: metric} for metric in found])[JobMetric.RESPONSE_TIME]
         if len(found) > 1:

@@ -12,7 +12,7 @@ means of ever longer runs.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -22,7 +22,6 @@ from amalthea_uros.analyze.chains.core_schedule import CoreSchedule, CoreSchedul
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.results import Claim, JobMetric, Metric, ProcessResult
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.perf.software import Task
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.units import Time
 
@@ -92,30 +91,16 @@ class MetricEvaluator:
 
     solution: Solution
     schedules: CoreSchedules
-    _lossy: dict[str, bool] = field(default_factory=dict)
 
     def of(self, process: ProcessResult) -> dict[JobMetric, Metric]:
         """The metrics of a process."""
         core = process.processor
         found = None if core is None else self.schedules.of(core, with_slices=False)
-        if core is None or found is None or process.name not in found.tasks or self._is_lossy(core):
+        if core is None or found is None or process.name not in found.tasks or self.solution.depends_on_losses(process.name):
             metrics = dict(self._bounds(process))
         else:
             metrics = _by_schedule(process, found, self.solution.context.time_base(process.name))
         return metrics | dict(_by_deadline(process, metrics.get(JobMetric.RESPONSE_TIME)))
-
-    def _is_lossy(self, core: str) -> bool:
-        """Whether processes on a core lose activations, so that the jobs are not those of the schedule."""
-        if core not in self._lossy:
-            self._lossy[core] = any(self._loses_activations(item.name) for item in self.solution.context.on_core(core))
-        return self._lossy[core]
-
-    def _loses_activations(self, name: str) -> bool:
-        """Whether more jobs can be pending than the activation limit of a process allows."""
-        process, response = self.solution.context.system.processes[name], self.solution.responses.get(name)
-        if not isinstance(process, Task) or response is None:
-            return False
-        return response.worst is None or self.solution.event_models[name].eta_plus(response.worst) > process.activation_limit
 
     def _waits(self, name: str) -> bool:
         """Whether a job can wait once it executes; under a priority ceiling it does not wait for a semaphore."""
@@ -131,7 +116,7 @@ class MetricEvaluator:
         # The net execution time includes waiting for semaphores.
         longest = process.wcet if not self._waits(process.name) else response.worst if response is not None else None
         yield JobMetric.NET_EXECUTION_TIME, Metric(min=bcet, max=longest)
-        if process.min_interarrival is not None and not self._loses_activations(process.name):
+        if process.min_interarrival is not None and not self.solution.may_lose_activations(process.name):
             yield JobMetric.ACTIVATE_TO_ACTIVATE, Metric(min=process.min_interarrival, max=process.max_interarrival)
         if response is None:
             return
@@ -139,7 +124,7 @@ class MetricEvaluator:
         if worst is None:
             yield JobMetric.RESPONSE_TIME, Metric(min=best, max=None)
             return
-        is_exact = response.claim is Claim.EXACT and not self._is_lossy(process.processor or "")
+        is_exact = response.claim is Claim.EXACT and not self.solution.depends_on_losses(process.name)
         yield JobMetric.RESPONSE_TIME, Metric(min=best, max=worst, attained=(best, worst) if is_exact else None)
         # A job also executes for at least its best case, so that it cannot wait for longer than the rest of the response time.
         waiting = worst - bcet
@@ -148,7 +133,7 @@ class MetricEvaluator:
             yield metric, Metric(min=0, max=waiting)
         # Processes that wait for events are unknown.
         yield JobMetric.WAITING_TIME, Metric(min=0, max=waiting) if self._waits(process.name) else _ZERO
-        if not self._loses_activations(process.name):
+        if not self.solution.may_lose_activations(process.name):
             yield from _between_jobs(process, waiting, best, worst)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from amalthea_uros.analyze.results import Response
+from amalthea_uros.perf.software import Task
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.units import Time
@@ -36,6 +37,26 @@ class Solution:
     def is_analysable(self, name: str) -> bool:
         """Whether also the critical sections of a process are known."""
         return self.is_known(name) and name not in self.context.unclear_locks
+
+    def may_lose_activations(self, name: str) -> bool:
+        """Whether more jobs of a process can be pending than its activation limit allows."""
+        process, response = self.context.system.processes[name], self.responses.get(name)
+        if not isinstance(process, Task) or response is None:
+            return False
+        return response.worst is None or self.event_models[name].eta_plus(response.worst) > process.activation_limit
+
+    def depends_on_losses(self, name: str) -> bool:
+        """Whether a process, or one of at least its rank on its core, may lose activations: then jobs are missing in the schedule."""
+        return self.may_lose_activations(name) or self.follows_losses(name)
+
+    def follows_losses(self, name: str) -> bool:
+        """Whether another process of at least its rank on its core may lose activations."""
+        scheduled = self.context.scheduled.get(name)
+        return scheduled is not None and any(
+            self.may_lose_activations(other.name)
+            for other in self.context.on_core(scheduled.core)
+            if other.rank >= scheduled.rank and other.name != name
+        )
 
     def bcet(self, name: str) -> Time:
         """Best-case execution time of a process, in picoseconds; 0 if it is unknown."""

@@ -15,7 +15,7 @@ from amalthea_uros.analyze.phases import merged, merged_chain, solutions_for_pha
 from amalthea_uros.analyze.process_verdicts import judged
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.requirements import evaluate_requirements
-from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessorResult, ProcessResult, Results
+from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessorResult, ProcessResult, Results
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.summary import summarize
 from amalthea_uros.perf.events import EventChain
@@ -109,11 +109,8 @@ def _note_ignored(solution: Solution) -> None:
                 notes.warning("ANA006", message, overhead)
     for name, response in solution.responses.items():
         process = solution.context.scheduled[name].process
-        if not isinstance(process, Task) or response.worst is None:
-            continue
-        jobs = solution.event_models[name].eta_plus(response.worst)
-        if jobs > process.activation_limit:
-            limit = process.activation_limit
+        if isinstance(process, Task) and response.worst is not None and solution.may_lose_activations(name):
+            jobs, limit = solution.event_models[name].eta_plus(response.worst), process.activation_limit
             message = (
                 f"{name!r} can have {jobs} pending activations, more than its activation limit {limit}; the others are lost"
             )
@@ -159,7 +156,14 @@ def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> Proce
         min_interarrival=events.delta_min(2) if events is not None else None,
         max_interarrival=events.max_interarrival if events is not None else None,
     )
-    return judged(found, process, events, context.can_borrow(name))
+    if response is None or not solution.depends_on_losses(name):
+        return judged(found, process, events, context.can_borrow(name))
+    # Without the lost jobs, others can be earlier, but not later.
+    bound = replace(found, response=replace(response, claim=Claim.BOUND, best=min(response.best, found.bcet or 0)))
+    if solution.follows_losses(name):
+        return judged(bound, process, events, context.can_borrow(name))
+    # Until its first activation is lost, the schedule has all jobs.
+    return replace(judged(found, process, events, context.can_borrow(name)), response=bound.response)
 
 
 def _processors(solution: Solution) -> Iterator[ProcessorResult]:

@@ -55,7 +55,11 @@ def _failure(item: Judged) -> str:
     if item.failure is Failure.LOST and item.deadline is None:
         return f"{item.name} loses activations: {item.reason}"
     kind = "period" if item.is_implicit else "deadline"
-    text = f"{item.name} responds after {_ends_text(worst_response(item))}, {kind} {time_text(item.deadline or 0)}"
+    ends = worst_response(item)
+    if item.failure is Failure.LOST:
+        # With what is lost, the greatest response time need not occur again.
+        ends = Ends.exactly(ends.upper or 0)
+    text = f"{item.name} responds after {_ends_text(ends)}, {kind} {time_text(item.deadline or 0)}"
     return f"{text}, and loses activations" if item.failure is Failure.LOST else text
 
 

@@ -121,6 +121,6 @@ def test_an_explicit_chain_ends_with_the_access(built):
     settings = Settings(dict.fromkeys(built.cores, Fraction(300 * 10**6)), communication=Communication.EXPLICIT)
     (chain,) = analyze_system(built, settings).chains
     reaction = chain.value(Quantity.MAX_REACTION_TIME)
-    # From just before Runnable_100ms_7 reads until Runnable_2ms_8 has ended: at least the period of 100 ms that it has just missed; at most
-    # what the solution of the challenge of 2017 by the University of Modena published as the bound.
+    # From just after Runnable_100ms_7 has read until Runnable_2ms_8 has ended: at least the period that was just missed, at most the
+    # bound that the University of Modena published for this chain.
     assert 100_000 * US < reaction.value <= 122_740 * US

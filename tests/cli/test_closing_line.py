@@ -101,3 +101,16 @@ def test_check_fails_on_an_overload(tmp_path):
     run = amuros("check", path)
     assert run.returncode == 1
     assert "TIM-OVERLOAD error" in run.stdout
+
+
+def test_what_follows_lost_activations_is_not_exact(tmp_path):
+    # The executor takes 0.9 ms, and 1.2 ms with a message, of each ms: it loses an activation after each message, so that nobody knows
+    # which job takes the next one.
+    path = tmp_path / "app.yaml"
+    path.write_text(ADVANCED.replace("base: 12 us", "base: 900 us").replace("per_message: 13 us", "per_message: 300 us"))
+    run = amuros("analyze", path, "--output", f"json={tmp_path / 'r.json'}")
+    assert run.returncode == 1
+    found = json.loads((tmp_path / "r.json").read_text())
+    assert {process["name"]: process["failure"] for process in found["processes"]}["Executor_Task"] == "lost"
+    assert "exact" not in {process["claim"] for process in found["processes"]}
+    assert found["chains"][0]["values"] == []

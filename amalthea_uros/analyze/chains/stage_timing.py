@@ -138,6 +138,8 @@ class StageTiming:
 
     def _worst(self, process: Process) -> Time:
         response = self._response(process)
+        if response.worst is not None and self.solution.depends_on_losses(process.name):
+            raise UnboundedStageError(f"{process.name!r}, or a process that precedes it, can lose activations")
         if response.worst is None:
             raise UnboundedStageError(f"the response time of {process.name!r} is unbounded: {response.reason}")
         return response.worst * self.unit

@@ -78,6 +78,10 @@ def at(process, change):
     return ProcessEvent(name=f"{process} {change}", process=process, change=change)
 
 
+#: Jobs can be pending while further ones are activated.
+NO_LOSSES = 99
+
+
 def system(tasks, events, chains=None, stimuli=(), runnables=(), cores=("core",), controllers=False, unit=US):
     """Tasks of (name, period or None, activities[, core[, offset]]), the first one first; cores of 1 tick in each unit."""
     rows = [(*task, *("core", 0)[len(task) - 3 :]) if len(task) < 5 else task for task in tasks]
@@ -108,7 +112,10 @@ def system(tasks, events, chains=None, stimuli=(), runnables=(), cores=("core",)
             )
         ),
         software=Software(
-            tasks=tuple(Task(name=name, stimuli=(name,), activities=tuple(body)) for name, _, body, _, _ in rows),
+            tasks=tuple(
+                Task(name=name, stimuli=(name,), activities=tuple(body), activation_limit=NO_LOSSES)
+                for name, _, body, _, _ in rows
+            ),
             runnables=tuple(runnables),
         ),
         mapping=Mapping(
@@ -605,3 +612,12 @@ def test_chains_that_the_importer_drops_or_distorts(path):
     for chain in analysis.chains:
         assert chain.reason or chain.value(Quantity.MAX_REACTION_TIME) is not None
         assert bool(chain.reason) == any(f.rule in ("CHN001", "CHN003") and f.object == chain.name for f in analysis.findings)
+
+
+def test_a_chain_through_a_task_that_loses_activations_is_unknown():
+    # A ends 12 after its release: with a limit of 1 every other activation is lost, and nobody knows which jobs write.
+    built = system([("B", 20, [ticks(6), read("L")]), ("A", 10, [ticks(6), write("L")])], [at("A", START), at("B", END)])
+    limited = tuple(replace(task, activation_limit=1) for task in built.software.tasks)
+    chain, values, _, _ = evaluate(replace(built, software=replace(built.software, tasks=limited)))
+    assert values == {}
+    assert chain.reason == "'A', or a process that precedes it, can lose activations"
