@@ -116,7 +116,7 @@ class MetricEvaluator:
         # The net execution time includes waiting for semaphores.
         longest = process.wcet if not self._waits(process.name) else response.worst if response is not None else None
         yield JobMetric.NET_EXECUTION_TIME, Metric(min=bcet, max=longest)
-        if process.min_interarrival is not None and not self.solution.may_lose_activations(process.name):
+        if process.min_interarrival is not None and process.name not in self.solution.losing:
             yield JobMetric.ACTIVATE_TO_ACTIVATE, Metric(min=process.min_interarrival, max=process.max_interarrival)
         if response is None:
             return
@@ -133,7 +133,7 @@ class MetricEvaluator:
             yield metric, Metric(min=0, max=waiting)
         # Processes that wait for events are unknown.
         yield JobMetric.WAITING_TIME, Metric(min=0, max=waiting) if self._waits(process.name) else _ZERO
-        if not self.solution.may_lose_activations(process.name):
+        if process.name not in self.solution.losing:
             yield from _between_jobs(process, waiting, best, worst)
 
 

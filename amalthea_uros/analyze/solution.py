@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.perf.software import Task
@@ -11,7 +12,7 @@ from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.units import Time
 
 
-@dataclass(slots=True)
+@dataclass
 class Solution:
     """Consistent response times and activations of all processes.
 
@@ -38,25 +39,27 @@ class Solution:
         """Whether also the critical sections of a process are known."""
         return self.is_known(name) and name not in self.context.unclear_locks
 
-    def may_lose_activations(self, name: str) -> bool:
-        """Whether more jobs of a process can be pending than its activation limit allows."""
-        process, response = self.context.system.processes[name], self.responses.get(name)
-        if not isinstance(process, Task) or response is None:
-            return False
-        return response.worst is None or self.event_models[name].eta_plus(response.worst) > process.activation_limit
+    @cached_property
+    def losing(self) -> frozenset[str]:
+        """The tasks of which more jobs can be pending than their activation limits allow; of a solution that is complete."""
+        found = []
+        for name, response in self.responses.items():
+            process = self.context.scheduled[name].process
+            if isinstance(process, Task) and (
+                response.worst is None or self.event_models[name].eta_plus(response.worst) > process.activation_limit
+            ):
+                found.append(name)
+        return frozenset(found)
 
     def depends_on_losses(self, name: str) -> bool:
         """Whether a process, or one of at least its rank on its core, may lose activations: then jobs are missing in the schedule."""
-        return self.may_lose_activations(name) or self.follows_losses(name)
+        return bool(self.losing) and (name in self.losing or self.follows_losses(name))
 
     def follows_losses(self, name: str) -> bool:
         """Whether another process of at least its rank on its core may lose activations."""
         scheduled = self.context.scheduled.get(name)
-        return scheduled is not None and any(
-            self.may_lose_activations(other.name)
-            for other in self.context.on_core(scheduled.core)
-            if other.rank >= scheduled.rank and other.name != name
-        )
+        others = [self.context.scheduled[other] for other in self.losing if other != name]
+        return scheduled is not None and any(other.core == scheduled.core and other.rank >= scheduled.rank for other in others)
 
     def bcet(self, name: str) -> Time:
         """Best-case execution time of a process, in picoseconds; 0 if it is unknown."""

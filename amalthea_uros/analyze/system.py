@@ -109,7 +109,7 @@ def _note_ignored(solution: Solution) -> None:
                 notes.warning("ANA006", message, overhead)
     for name, response in solution.responses.items():
         process = solution.context.scheduled[name].process
-        if isinstance(process, Task) and response.worst is not None and solution.may_lose_activations(name):
+        if isinstance(process, Task) and response.worst is not None and name in solution.losing:
             jobs, limit = solution.event_models[name].eta_plus(response.worst), process.activation_limit
             message = (
                 f"{name!r} can have {jobs} pending activations, more than its activation limit {limit}; the others are lost"

@@ -30,6 +30,8 @@ class Protection:
 
 def protection_of(process: Process, system: System) -> Protection:
     """What a process uses to keep others off."""
+    if system.activity_classes.isdisjoint((SemaphoreAccess, Group)):
+        return Protection()
     spinlocks = {semaphore.name for semaphore in system.os.semaphores if semaphore.kind is SemaphoreKind.SPINLOCK}
     semaphores, actively, has_group = set[str](), set[str](), False
     for activity in executed(process.activities, system):

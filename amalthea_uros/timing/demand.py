@@ -182,6 +182,8 @@ class DemandModel:
 
     def _of(self, activity: Activity, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
         """The frames of one activity; activities without execution time have none."""
+        if self.settings.memory is Memory.NONE and isinstance(activity, LabelAccess):
+            return []  # most activities are accesses
         match activity:
             case Execute(demand=demand):
                 return [self._ticks(demand, core)]

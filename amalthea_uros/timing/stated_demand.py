@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from amalthea_uros._internal.graphs import bottom_up
-from amalthea_uros.perf.software import Call, Execute, ExecutionNeed, Process, Runnable, walk
+from amalthea_uros.perf.software import Execute, ExecutionNeed, Process
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.stretches import executed
 
 
 def states_execution_time(process: Process, system: System) -> bool:
     """Whether a process, or a runnable that it calls, has ticks or execution needs; 0 ticks are an execution time, too."""
-    called = bottom_up(_called(process), lambda name: _called(system.runnables.get(name)))
-    holders = [process, *(system.runnables[name] for name in called if name in system.runnables)]
-    return any(_is_stated(activity) for holder in holders for activity in walk(holder.activities))
-
-
-def _called(holder: Process | Runnable | None) -> Iterator[str]:
-    activities = walk(holder.activities) if holder is not None else ()
-    return (activity.runnable for activity in activities if isinstance(activity, Call))
+    return any(map(_is_stated, executed(process.activities, system)))
 
 
 def _is_stated(activity: object) -> bool:

@@ -29,6 +29,7 @@ class ChainEvaluator:
     solution: Solution
     timing: StageTiming = field(init=False)
     controllers: Mapping[str, str] = field(init=False)
+    unknown_phases: tuple[Occurrence, ...] = field(init=False)
 
     @property
     def context(self) -> TimingContext:
@@ -38,6 +39,7 @@ class ChainEvaluator:
     def __post_init__(self) -> None:
         self.timing = StageTiming(self.solution)
         self.controllers = controller_of_core(self.context.system)
+        self.unknown_phases = unknown_phases(self.context.system)
 
     def chain(self, chain: EventChain) -> ChainResult:
         """The latencies of a chain. If its evaluation fails, that is a finding, and the chain is unknown."""
@@ -80,7 +82,7 @@ class ChainEvaluator:
 
     def occurrences(self, chain: EventChain) -> tuple[Occurrence, ...]:
         """What comes from outside with an unknown phase and is taken by the jobs of a chain; nothing if it cannot be evaluated."""
-        unknown, events_by_name = unknown_phases(self.context.system), self.context.system.events_by_name
+        unknown, events_by_name = self.unknown_phases, self.context.system.events_by_name
         if not unknown:
             return ()
         try:

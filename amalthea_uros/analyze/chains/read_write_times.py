@@ -77,7 +77,10 @@ class ReadWriteTimes:
 
     def has_times_of(self, other: ReadWriteTimes) -> bool:
         """Whether the jobs read and write at the same times as those of another one."""
-        return np.array_equal(self.reads, other.reads) and np.array_equal(self.writes, other.writes)
+        return all(
+            mine is others or np.array_equal(mine, others)
+            for mine, others in ((self.reads, other.reads), (self.writes, other.writes))
+        )
 
 
 def reach(chain: Sequence[ReadWriteTimes]) -> Time:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.analyze.chains import let
-from amalthea_uros.analyze.chains.boundary_times import BoundaryTimes, is_inside, is_logical
+from amalthea_uros.analyze.chains.boundary_times import BoundaryTimes, is_inside, is_logical, kind
 from amalthea_uros.analyze.chains.boundary_windows import BoundaryWindows
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
@@ -33,6 +33,7 @@ from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Pe
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.counters import ALWAYS, composed, first_effect, is_always, max_distance
+from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.skipping import can_be_skipped
 from amalthea_uros.timing.demand import MAX_TIME_BASE
@@ -57,6 +58,7 @@ class StageTiming:
     unit: int = field(init=False)
     schedules: CoreSchedules = field(init=False)
     _blocking: dict[str, Blocking] = field(default_factory=dict)
+    _whole_jobs: dict[tuple[str, JobPhase | None, JobPhase | None], ReadWriteBounds] = field(default_factory=dict)
 
     @property
     def context(self) -> TimingContext:
@@ -111,14 +113,20 @@ class StageTiming:
         if self._is_too_long(releases, counter):
             return TimedStage(task=task, reason=f"the jobs of {base.process.name!r} that take part are too far apart")
         later = stages[-1].jobs_later
-        found = replace(
-            read_write,
-            pessimistic=replace(
-                _later(read_write.pessimistic, max_delay),
-                preempts_reader=preempts_reader,
-                jobs_later=later.most if later is not None else None,
-            ),
-            optimistic=replace(_later(read_write.optimistic, min_delay), jobs_later=later.least if later is not None else None),
+        found = (
+            read_write
+            if later is None and not (max_delay or min_delay or preempts_reader)
+            else replace(
+                read_write,
+                pessimistic=replace(
+                    _later(read_write.pessimistic, max_delay),
+                    preempts_reader=preempts_reader,
+                    jobs_later=later.most if later is not None else None,
+                ),
+                optimistic=replace(
+                    _later(read_write.optimistic, min_delay), jobs_later=later.least if later is not None else None
+                ),
+            )
         )
         return TimedStage(task=task, read_write=found.taking_part(counter, releases.period * self.unit))
 
@@ -251,7 +259,13 @@ class StageTiming:
         """The times of all jobs of a process."""
         if is_logical(stage.enter) and is_logical(stage.leave):
             return self._logical(releases)
-        return self._by_schedule(stage, releases) or self._by_response(stage, releases)
+        if is_inside(stage.enter) or is_inside(stage.leave):
+            return self._by_schedule(stage, releases) or self._by_response(stage, releases)
+        # Many chains pass the same processes from the start to the end of their jobs.
+        key = (stage.process.name, kind(stage.enter), kind(stage.leave))
+        if key not in self._whole_jobs:
+            self._whole_jobs[key] = self._by_schedule(stage, releases) or self._by_response(stage, releases)
+        return self._whole_jobs[key]
 
     def _logical(self, releases: Periodic) -> ReadWriteBounds:
         period, offset = releases.period * self.unit, releases.offset * self.unit
@@ -296,7 +310,7 @@ class StageTiming:
     def _unified(self, times: Numbers, time_base: int, is_upper: bool) -> Numbers:
         """Times of a core in the unit that all cores share; rounded up or down if that is coarser."""
         if self.unit % time_base == 0:
-            return times * (self.unit // time_base)
+            return times if self.unit == time_base else times * (self.unit // time_base)
         return -(-times // time_base) if is_upper else times // time_base
 
     def _by_response(self, stage: Stage, releases: Periodic) -> ReadWriteBounds:
