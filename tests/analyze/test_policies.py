@@ -24,6 +24,7 @@ from amalthea_uros.perf.software import (
     Count,
     Demand,
     Execute,
+    Group,
     Isr,
     IsrCategory,
     Label,
@@ -209,6 +210,16 @@ class TestSchedulersBelowEachOther:
         ]
         built = system([root(), under("server", Policy.POLLING_SERVER, 5, capacity=2, period=10)], tasks)
         assert worst(built) == {"inside": "the server 'server' is not guaranteed its budget in each period", "above": 9}
+
+    def test_a_task_in_a_server_that_is_not_preempted_everywhere(self):
+        group = Group(activities=(ticks(2),), interruptible=False)
+        tasks = [
+            ("inside", 100, [group], {"scheduler": "server", "priority": 1}),
+            ("above", 20, [ticks(9)], {"scheduler": "root", "priority": 9}),
+            ("below", 100, [ticks(1)], {"scheduler": "root", "priority": 1}),
+        ]
+        found = worst(system([root(), under("server", Policy.POLLING_SERVER, 5, capacity=2, period=10)], tasks))
+        assert found["above"] == "'inside' in the server 'server' cannot be preempted everywhere, and can block it"
 
 
 class TestCosts:

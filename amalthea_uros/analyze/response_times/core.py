@@ -14,10 +14,11 @@ from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.results import Claim, Response
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.os import Policy
+from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel, Periodic, rescaled
 from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.preemption import is_preemptive
+from amalthea_uros.timing.preemption import is_preemptive, preemption
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.timing.scheduling import EqualPriority, Rank, ScheduledProcess, Server
 
@@ -74,14 +75,35 @@ class _CoreAnalysis:
                 for item in level:
                     self._mark_unknown(item, f"depends on {unknown!r}, which could not be analysed")
         blocking = Blocking.of([item for item in here if isinstance(item, ScheduledProcess)], self.solution)
-        return [item for item in found if not self._is_blocked_for_unknown_time(item, blocking)]
+        servers = [item for item in here if isinstance(item, Server)]
+        return [item for item in found if not self._is_blocked_for_unknown_time(item, blocking, servers)]
 
-    def _is_blocked_for_unknown_time(self, item: ScheduledProcess | Server, blocking: Blocking) -> bool:
-        """Whether an unknown process of lower priority can block an item, which is marked unknown then."""
+    def _is_blocked_for_unknown_time(
+        self, item: ScheduledProcess | Server, blocking: Blocking, servers: Sequence[Server]
+    ) -> bool:
+        """Whether a process of lower priority can block an item for an unknown time; the item is marked unknown then."""
         obstacle = blocking.obstacle(item) if isinstance(item, ScheduledProcess) and blocking.unknown else ""
         if obstacle:
             self._mark_unknown(item, f"{obstacle!r}, which could not be analysed, can block it")
+        for server in servers:
+            if not obstacle and server.rank < item.rank and (obstacle := self._not_preempted_in(server)):
+                # Whether the end of a budget interrupts it is not standardised.
+                self._mark_unknown(
+                    item, f"{obstacle!r} in the server {server.name!r} cannot be preempted everywhere, and can block it"
+                )
         return bool(obstacle)
+
+    def _not_preempted_in(self, server: Server) -> str:
+        """A process in the budget of a server that is not preempted in some part of its jobs; "" if there is none."""
+        for item in self.context.served(self.core, server.name):
+            if isinstance(item, Server):
+                if found := self._not_preempted_in(item):
+                    return found
+            elif (
+                preemption(item) is Preemption.NON_PREEMPTIVE or self.context.protection[item.name].has_non_interruptible_group
+            ):
+                return item.name
+        return ""
 
     def _is_known(self, item: ScheduledProcess | Server) -> bool:
         return isinstance(item, Server) or self.solution.is_analysable(item.name)
