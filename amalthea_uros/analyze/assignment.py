@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import permutations
 
-from amalthea_uros.analyze.results import Analysis, Claim, ProcessResult, Results, require_analysis
+from amalthea_uros.analyze.results import Analysis, Claim, ProcessResult, require_analysis
 from amalthea_uros.analyze.summary import FAILURES
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.analyze.verdicts import Verdict
@@ -115,7 +115,7 @@ class _Search:
     tasks: Sequence[ScheduledProcess]
     analysis: Analysis
     spoiled: str = ""
-    _results: dict[tuple[str, ...], Results[ProcessResult]] = field(default_factory=dict)
+    _analyses: dict[tuple[str, ...], Analysis] = field(default_factory=dict)
 
     @property
     def context(self) -> TimingContext:
@@ -190,17 +190,25 @@ class _Search:
         return self._result(name, order).verdict is Verdict.MET
 
     def _is_missed(self, name: str, order: Order) -> bool:
-        """Whether a deadline is missed for certain: a bound beyond it is none."""
-        response = self._result(name, order).response
-        return response is not None and response.claim is Claim.EXACT and (response.worst or 0) > self._deadline(name)
+        """Whether a deadline is missed for certain: a bound beyond it does not prove that.
+
+        If others lose activations in this order, its response time is that of all orders in which they do not.
+        """
+        analysis = self._analysis(order)
+        response = analysis.solution.responses.get(name)
+        is_late = response is not None and response.claim is Claim.EXACT and (response.worst or 0) > self._deadline(name)
+        return is_late or analysis.processes[name].verdict in FAILURES
 
     def _result(self, name: str, order: Order) -> ProcessResult:
         """The result of a process with the priorities of an order."""
+        return self._analysis(order).processes[name]
+
+    def _analysis(self, order: Order) -> Analysis:
         key = tuple(order)
-        if key not in self._results:
+        if key not in self._analyses:
             changed = with_priorities(_without_chains(self.context.system), self._numbers(order))
-            self._results[key] = analyze_system(changed, self.context.settings).processes
-        return self._results[key][name]
+            self._analyses[key] = analyze_system(changed, self.context.settings)
+        return self._analyses[key]
 
     def _numbers(self, order: Order) -> Mapping[str, int]:
         """Priorities for an order: the present numbers if they are distinct."""

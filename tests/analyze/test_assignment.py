@@ -6,7 +6,7 @@ from itertools import permutations
 from math import lcm
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support import ROOT
 from test_system import system, ticks
@@ -194,6 +194,8 @@ class TestOffsets:
     """Sets with known releases, against a player that tries all orders."""
 
     @given(sets_with_offsets())
+    # Tasks above lose activations in some orders.
+    @example(([(5, 0, 3, 3), (12, 8, 2, 2), (5, 2, 1, 2)], [1, 0, 2]))
     @settings(max_examples=150)
     def test_a_proposal_if_and_only_if_an_order_meets_all_deadlines(self, drawn):
         rows, present = drawn
