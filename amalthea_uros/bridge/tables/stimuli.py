@@ -15,29 +15,25 @@ from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import stimuli as perf
 
-#: AMALTHEA has no attributes for them.
-_SOURCE, _PHASE_KNOWN = "source", "phaseKnown"
+#: AMALTHEA has no attribute for the source of a counter; the key also says whether the phase is known.
+_SOURCE, _SOURCE_WITHOUT_PHASE = "source", "sourceWithoutPhase"
 
 
 class _Counters(Table):
-    """Counters, with custom properties for the message or timer that they represent, and whether its phase is known."""
+    """Counters, with a custom property for the message or timer that they represent, and whether its phase is known."""
 
     def build(self, item: Any, context: Building) -> Any:
         element = super().build(item, context)
-        if item.source:
-            element.custom_properties.append(am.CustomProperty(key=_SOURCE, value=am.StringObject(value=item.source)))
-        if not item.is_phase_known:
-            element.custom_properties.append(am.CustomProperty(key=_PHASE_KNOWN, value=am.BooleanObject(value=False)))
+        if item.source or not item.is_phase_known:
+            key = _SOURCE if item.is_phase_known else _SOURCE_WITHOUT_PHASE
+            element.custom_properties.append(am.CustomProperty(key=key, value=am.StringObject(value=item.source)))
         return element
 
     def extract(self, element: Any, context: Extracting) -> Any:
-        stated = {item.key: getattr(item.value, "value", None) for item in element.custom_properties}
-        source = stated.get(_SOURCE)
-        return replace(
-            super().extract(element, context),
-            source=source if isinstance(source, str) else "",
-            is_phase_known=stated.get(_PHASE_KNOWN) is not False,
-        )
+        stated = {item.key: item.value.value for item in element.custom_properties if isinstance(item.value, am.StringObject)}
+        is_phase_known = _SOURCE_WITHOUT_PHASE not in stated
+        source = stated.get(_SOURCE if is_phase_known else _SOURCE_WITHOUT_PHASE)
+        return replace(super().extract(element, context), source=source or "", is_phase_known=is_phase_known)
 
 
 #: Numbers that are not given have these values in every version: prescaler 1, offset 0.
