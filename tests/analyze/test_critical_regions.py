@@ -304,3 +304,15 @@ def test_others_of_the_same_priority_can_be_avoided_in_the_best_case():
         policy="RR",
     )
     assert found["T1"][0] <= 10
+
+
+def test_an_earlier_job_can_be_the_longer_one_of_a_non_preemptive_task():
+    # T1 takes 10 and then 3: what comes during the 10 goes first. Three jobs of T0 before the second job end, with the jitter: 17.
+    jittering = {"arrival": {"periodic": {"period": 11, "offset": 0, "jitter": 8}}}
+    call = {"call": "r", "prescaler": 3, "offset": 0}
+    found = analyse(
+        process("T0", 8, 11, execute(4)),
+        process("T1", 3, 11, call, execute(3), preemption="non-preemptive") | jittering,
+        runnables={"r": [execute(7)]},
+    )
+    assert found["T1"][1] >= 17

@@ -236,26 +236,28 @@ class _LevelWindow:
             return
         window = 0
         for count, release in enumerate(self.own.from_(start, start + length), start=1):
-            own = self.own.demand.max_demand(count)
-            end = self._end(start, blocking + own, max(window, release - start))
+            own, earlier = self.own.demand.max_demand(count), self.own.demand.max_demand(count - 1)
+            # With counters, the earlier jobs can be the longer ones: the last region is what these do not take.
+            last = max(0, own - earlier - (self.own.demand.worst - self.last_region)) if self.last_region else 0
+            end = self._end(start, blocking + own, max(window, release - start), last)
             if end is None:
                 yield None
                 return
             window = end
             yield _Worst(time=start + end - release, own=own, blocking=blocking, window=end)
 
-    def _end(self, start: Time, fixed: Time, lower: Time) -> Time | None:
-        """The end of a job, with the demand of all jobs up to it and the blocking."""
-        if not self.last_region:
+    def _end(self, start: Time, fixed: Time, lower: Time, last: Time) -> Time | None:
+        """The end of a job with a last region, with the demand of all jobs up to it and the blocking."""
+        if not last:
             return self._fixed_point(start, fixed, self.others, max(1, lower))
         # The last region starts when nobody else is pending, not even at the same moment.
-        before = self._fixed_point(start, fixed - self.last_region, self.others, lower, granularity=1)
+        before = self._fixed_point(start, fixed - last, self.others, lower, granularity=1)
         if before is None:
             return None
         served = self._demand(start, before + 1, self.interrupting)
-        end = before + self.last_region
+        end = before + last
         while True:
-            reached = before + self.last_region + max(0, self._demand(start, end, self.interrupting) - served)
+            reached = before + last + max(0, self._demand(start, end, self.interrupting) - served)
             if reached <= end:
                 return end
             if reached > self.limit:

@@ -51,7 +51,7 @@ def response_time(
     last_region : its last non-preemptive region; None: the whole task
     always_preempting : tasks among the higher ones that preempt it nevertheless
     """
-    last = task.demand.worst if last_region is None else last_region
+    before = 0 if last_region is None else task.demand.worst - last_region
     others, interrupting = Interference.of(higher), Interference.of(always_preempting)
     if others.overloads_with(task):
         return unbounded(task.demand.best, others, task, METHOD, SOURCE)
@@ -63,6 +63,8 @@ def response_time(
     completions: list[Time] = []
     start = 0
     for job in range(1, jobs + 1):
+        # With counters, the earlier jobs can be the longer ones: the last region is what these do not take.
+        last = max(0, task.demand.max_demand(job) - task.demand.max_demand(job - 1) - before)
         start = _start(others, blocking + task.demand.max_demand(job) - last, start, granularity)
         completions.append(_end(interrupting, start, last, granularity))
     worst_job = max(range(1, jobs + 1), key=lambda job: completions[job - 1] - task.events.delta_min(job))
