@@ -316,3 +316,15 @@ def test_an_earlier_job_can_be_the_longer_one_of_a_non_preemptive_task():
         runnables={"r": [execute(7)]},
     )
     assert found["T1"][1] >= 17
+
+
+def test_a_sporadic_process_can_pile_up_behind_a_blocking_one_before_a_known_release():
+    # low runs from 0 to 10 without interruption; S comes at 1, 3, 5, ...: at 11, when middle comes, five jobs of S are pending, and
+    # others come until 21. middle cannot run before 20.
+    sporadic = {"arrival": {"sporadic": {"least": 2, "most": 4, "offset": 1}}}
+    found = analyse(
+        process("S", 3, 2, execute(1)) | sporadic,
+        process("middle", 2, 100, execute(1), offset=11),
+        process("low", 1, 100, execute(10), preemption="non-preemptive"),
+    )
+    assert found["middle"][1] >= 10

@@ -61,6 +61,8 @@ class EventWindows:
         response = self.evaluation.solution.responses.get(occurrence.process.name)
         if response is None or response.worst is None:
             raise UnknownError(f"the response time of {occurrence.process.name!r} is unknown or unbounded")
+        if self.evaluation.solution.depends_on_losses(occurrence.process.name):
+            raise UnknownError(f"{occurrence.process.name!r}, or a process that precedes it, can lose activations")
         bcet = self.evaluation.solution.bcet(occurrence.process.name)
         match occurrence.when:
             case JobPhase.ACTIVATION:

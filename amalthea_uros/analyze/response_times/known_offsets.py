@@ -3,8 +3,8 @@
 After J. C. Palencia and M. González Harbour, "Schedulability analysis for tasks with static and dynamic offsets", RTSS 1998: instead of
 one busy window in which all processes are released together, each busy window that the offsets allow is examined. It starts with a
 release of a process of the level, because a later start with the same releases ends later. Activations without known releases come
-as early as possible. A process below the level can block only if one of its jobs can be pending at that start; the bounds of response
-times show which ones, so that the tighter bounds of one round are used in the next.
+as early as possible. If all releases of the level are known, a process below it can block only if one of its jobs can be pending at
+that start; the bounds of response times show which ones, so that the tighter bounds of one round are used in the next.
 """
 
 from __future__ import annotations
@@ -160,9 +160,12 @@ class _OffsetWindows:
             limit=2 * self.hyperperiod + self.bounds[item.name],
         )
         below = list(self.blocking.stretches_below(level))
+        longest = max((length for _, length in below), default=0)
+        # If others of the level can come at any time, they can wait for the blocking process before the start, and pile up.
+        is_start_known = all(other.name in self.known for other in above)
         found: _Worst | None = None
         for start in self._starts(above):
-            for worst in window.jobs_from(start, self._blocking_at(start, below)):
+            for worst in window.jobs_from(start, self._blocking_at(start, below) if is_start_known else longest):
                 if worst is None:
                     return None
                 if found is None or worst.time > found.time:
