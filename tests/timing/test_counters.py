@@ -179,7 +179,7 @@ class TestCallsThatAreFollowed:
 
     def test_two_tasks_that_call_it_can_each_meet_the_counter_in_any_job(self):
         runnables = {"A": [Call(runnable="B", counter=Counter(prescaler=2))], "B": [execute(5)]}
-        # Together they execute it once per job: T in none of its jobs, U in all.
+        # Both call A once per period, so that B runs once per period: always in the job of U, never in that of T.
         analysis = analyze_system(system({"T": [Call(runnable="A")], "U": [Call(runnable="A")]}, runnables))
         response = analysis["T"].response
         assert (response.best, response.worst, response.claim) == (0, 5 * MICROSECOND, Claim.BOUND)
