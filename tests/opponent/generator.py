@@ -27,7 +27,49 @@ MIXTURES = (
 
 def random_system(seed: int) -> PlainSystem:
     """The system of a seed."""
-    return Generator(Random(seed)).system()
+    rng = Random(seed)
+    return pile_up(rng) if some(rng, 0.05) else Generator(rng).system()
+
+
+def pile_up(rng: Random) -> PlainSystem:
+    """One that comes often waits for a long stretch of the lowest process, shortly before the one in between is released.
+
+    Arrivals that meet like this are rare among systems without a plan.
+    """
+    stretch, period = rng.randint(4, 12), rng.choice((40, 60))
+    begin = rng.randint(0, 5)
+    group: Item = {"group": [{"execute": [stretch, stretch]}], "interruptible": False}
+    frequent = {"periodic": {"period": 3, "offset": rng.randint(0, 2), "jitter": rng.randint(1, 2)}}
+    if some(rng, 0.7):
+        least = rng.randint(2, 4)
+        frequent = {"sporadic": {"least": least, "most": least + rng.randint(0, 3), "offset": rng.randint(0, 4)}}
+
+    def process(priority: int, arrival: dict[str, Any], body: list[Item], preemption: str = "preemptive") -> dict[str, Any]:
+        return {
+            "name": f"T{priority}",
+            "kind": "task",
+            "core": "core0",
+            "priority": priority,
+            "preemption": preemption,
+            "arrival": arrival,
+            "body": body,
+        }
+
+    def known(offset: int) -> dict[str, Any]:
+        return {"periodic": {"period": period, "offset": offset}}
+
+    lowest = [rng.choice((group, {"execute": [stretch, stretch]}))]
+    middle = [{"execute": [1, rng.randint(1, 3)]}]
+    return {
+        "cores": {"core0": rng.choice(("FPP", "OSEK"))},
+        "semaphores": {},
+        "runnables": {},
+        "processes": [
+            process(3, frequent, [{"execute": [1, 1]}]),
+            process(2, known(begin + rng.randint(0, stretch + 4)), middle, rng.choice(("preemptive", "non-preemptive"))),
+            process(1, known(begin), lowest, "preemptive" if lowest[0] is group else "non-preemptive"),
+        ],
+    }
 
 
 def some(rng: Random, probability: float) -> bool:
