@@ -328,3 +328,20 @@ def test_a_sporadic_process_can_pile_up_behind_a_blocking_one_before_a_known_rel
         process("low", 1, 100, execute(10), preemption="non-preemptive"),
     )
     assert found["middle"][1] >= 10
+
+
+def test_the_load_of_what_is_below_proves_no_overload():
+    # high has a tenth of the core and waits for low, which gets too little of it: nobody knows for how long, but high is no overload.
+    plain = {
+        "cores": {"core": "FPP"},
+        "semaphores": {"A": {"ceiling": False}},
+        "runnables": {},
+        "processes": [
+            process("high", 3, 10, *locked("A", execute(1))),
+            process("middle", 2, 10, execute(6)),
+            process("low", 1, 10, *locked("A", execute(6))),
+        ],
+    }
+    found = {each.name: (str(each.verdict), each.response.worst) for each in analyze_system(to_perf(plain)).processes}
+    assert found["high"] == ("unknown", None)
+    assert found["low"] == ("unbounded", None)

@@ -56,6 +56,10 @@ class BlockedWindow:
             found = fixed_priority.response_time(task, Interference.of(higher, self.supply), self.wait)[0]
         else:
             found = plain
+        if found.is_overload and not plain.is_overload:
+            # What is below need not delay it each time.
+            reason = "processes of lower priority can delay it, and they overload the core"
+            found = replace(found, is_overload=False, reason=reason)
         # What only interferes at the lowered level is avoidable.
         return replace(found, best=self._best(index, item, plain.best))
 
