@@ -89,7 +89,7 @@ def parse(*texts: str) -> Model:
     """A model of the texts of its files, `0.amxmi` and so on."""
     results = [read(Path(f"{number}.amxmi"), FileText(text)) for number, text in enumerate(texts)]
     model = Model(result.document for result in results)
-    model.findings = tuple(resolve(results))
+    model.findings = tuple(resolve(results, {}))
     return model
 
 

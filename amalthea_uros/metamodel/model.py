@@ -46,6 +46,7 @@ class Document:
     prolog : comments and processing instructions before the root element, `epilog` those after it
     spellings : ids and references that are not in canonical form, by object and XML name
     href_features : references that are `href` elements although EMF would write an attribute (or the reverse: False)
+    migrated_from : the older version of the file, if the document was migrated while it was read; else None
     origins : locations of objects that were not read from this document, such as a line of a description
     """
 
@@ -59,6 +60,7 @@ class Document:
         self.spellings: dict[tuple[Element, str], Spelling] = {}
         self.href_features: dict[tuple[Element, str], bool] = {}
         self.changes = Changes()
+        self.migrated_from: str | None = None
         self.origins: dict[Element, Location] = {}
         self._model: Model | None = None
         object.__setattr__(root, "_document", self)

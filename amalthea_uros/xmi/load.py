@@ -10,8 +10,10 @@ from amalthea_uros._internal.files import MAX_SIZE, FileError, is_directory, lis
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.xmi.files import not_readable, read_text
+from amalthea_uros.xmi.files import FileText, not_readable, read_text
+from amalthea_uros.xmi.migrate.versions import is_older, version_of
 from amalthea_uros.xmi.reader import ReadResult, read
 from amalthea_uros.xmi.references import resolve
 
@@ -37,19 +39,40 @@ def load(*paths: StrPath | Iterable[StrPath], max_size: int = MAX_SIZE) -> Model
     ------
     ReadError : a file is missing, not a model, too old, or refused for safety; carries the findings of all files.
     """
-    results: list[ReadResult] = []
-    refused: list[Finding] = []
     with paused_garbage_collection():
-        for path in model_files(_flat(paths)):
-            try:
-                results.append(read(path, read_text(path, max_size)))
-            except ReadError as error:
-                refused += error.findings
-        if refused:
-            raise ReadError(refused)
+        results, linked, findings = _read(model_files(_flat(paths)), max_size)
         model = Model(result.document for result in results)
-        model.findings = tuple(resolve(results))
+        model.findings = (*findings, *resolve(results, linked))
     return model
+
+
+def _read(paths: Iterable[Path], max_size: int) -> tuple[list[ReadResult], dict[str, Element], list[Finding]]:
+    """Read the files, those of older versions as one set that is migrated."""
+    results: list[ReadResult] = []
+    older: list[tuple[Path, FileText]] = []
+    refused: list[Finding] = []
+    for path in paths:
+        try:
+            content = read_text(path, max_size)
+            if is_older(version_of(content.text)):
+                older.append((path, content))
+            else:
+                results.append(read(path, content))
+        except ReadError as error:
+            refused += error.findings
+    if older:
+        from amalthea_uros.xmi.migrate.load import read_migrated
+
+        try:
+            migrated = read_migrated(older, max_size)
+        except ReadError as error:
+            refused += error.findings
+        else:
+            if not refused:
+                return [*results, *migrated.results], migrated.linked, migrated.findings
+    if refused:
+        raise ReadError(refused)
+    return results, {}, []
 
 
 def _flat(paths: Iterable[StrPath | Iterable[StrPath]]) -> Iterator[StrPath]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 from xml.parsers import expat
 
 from amalthea_uros.diagnostics import Finding, Severity
@@ -19,13 +19,11 @@ from amalthea_uros.metamodel.containment import ContainmentList
 from amalthea_uros.metamodel.element import Element, extras_of
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, Source
+from amalthea_uros.xmi import refusals
 from amalthea_uros.xmi.files import FileText
-from amalthea_uros.xmi.finding_collector import CollectedFinding, FindingCollector, location
+from amalthea_uros.xmi.finding_collector import CollectedFinding, FindingCollector
 from amalthea_uros.xmi.header import XSI_NAMESPACE, Header, NotAModelError, read_header
 from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
-
-#: Real models nest about 15 deep; far deeper, recursion over a model would fail with a less helpful message.
-MAX_DEPTH = 200
 
 _KEPT = "Unknown content is ignored, but preserved when the file is saved."
 
@@ -84,7 +82,33 @@ def read(path: Path, content: FileText) -> ReadResult:
     ------
     ReadError : not XML, not an AMALTHEA model, a version too old, or refused for safety.
     """
-    reader = _Reader(path, content)
+    return _finish(_Reader(path, content, expat.ParserCreate()))
+
+
+class Events(Protocol):
+    """What reports the elements of a model in the way of a parser of expat, such as those of a model that was migrated.
+
+    Attributes
+    ----------
+    made : the reader puts the objects here when it makes them
+    """
+
+    made: list[Element]
+
+
+def read_events(path: Path, content: FileText, events: Events) -> ReadResult:
+    """Read what something else than a parser reports of a file.
+
+    Raises
+    ------
+    ReadError : nested too deep.
+    """
+    reader = _Reader(path, content, events)
+    events.made = reader.elements
+    return _finish(reader)
+
+
+def _finish(reader: _Reader) -> ReadResult:
     try:
         return reader.read()
     finally:
@@ -92,10 +116,11 @@ def read(path: Path, content: FileText) -> ReadResult:
 
 
 class _Reader:
-    def __init__(self, path: Path, content: FileText) -> None:
+    def __init__(self, path: Path, content: FileText, parser: Any) -> None:
         self.path = path
         self.content = content
-        self.parser = expat.ParserCreate()
+        #: Of expat, or what reports the nodes of a migrated model in the same way.
+        self.parser = parser
         self.header: Header | None = None
         self.elements: list[Element] = []
         self.starts: list[int] = []
@@ -164,8 +189,7 @@ class _Reader:
         except NotAModelError as error:
             raise self.refuse(error.rule, error.message, error.help) from None
         if "xsi:type" in self.content.text and "xmlns:xsi" not in self.content.text:
-            message = "not well-formed XML: undeclared namespace prefix 'xsi'"
-            raise self.refuse("XMI002", message, f'Add xmlns:xsi="{XSI_NAMESPACE}" to the root element.')
+            raise refusals.undeclared_prefix(self.path, self.content.text, self.offset, "xsi", XSI_NAMESPACE)
         if header.version_note:
             added = "Additions of that version are preserved when the file is saved, but ignored otherwise."
             self.report("XMI007", Severity.WARNING, header.version_note, added)
@@ -188,7 +212,7 @@ class _Reader:
         foreign_prefix = None if header.type_prefix == TYPE_PREFIX else header.type_prefix
         elements, add_element, add_start, add_end = self.elements, self.elements.append, self.starts.append, self.ends.append
         add_referable, add_id, add_reference = self.referables.append, self.xmi_ids.append, self.references.append
-        pending_extras = self.pending_extras
+        pending_extras, max_depth = self.pending_extras, refusals.MAX_DEPTH
 
         def start(name: str, attributes: dict[str, str]) -> None:
             parent, parent_plan, _, held = stack[-1]
@@ -255,7 +279,7 @@ class _Reader:
                         self.invalid_value(element, key, value, error)
             if pending_extras:
                 self.attach_extras(parent, element)
-            if len(stack) > MAX_DEPTH:
+            if len(stack) > max_depth:
                 raise self.too_deep()
 
         return start
@@ -404,7 +428,8 @@ class _Reader:
 
     @property
     def offset(self) -> int:
-        return self.parser.CurrentByteIndex
+        offset: int = self.parser.CurrentByteIndex
+        return offset
 
     @property
     def version(self) -> str:
@@ -413,24 +438,16 @@ class _Reader:
     def report(self, rule: str, severity: Severity, message: str, help_text: str, attribute: str = "") -> None:
         self.collector.add(CollectedFinding(rule, severity, message, help_text, self.offset, attribute))
 
-    def refuse(self, rule: str, message: str, help_text: str, offset: int | None = None) -> ReadError:
-        where = location(self.path, Source(self.content.text), self.offset if offset is None else offset)
-        return ReadError([Finding(rule, Severity.ERROR, message, where, help_text)])
+    def refuse(self, rule: str, message: str, help_text: str) -> ReadError:
+        return refusals.refusal(self.path, self.content.text, self.offset, rule, message, help_text)
 
     def refuse_doctype(self, *_declaration: Any) -> None:
-        message = "the file has a document type declaration (DTD)"
-        raise self.refuse("XMI003", message, "Remove it; it is refused because it may define entities.")
+        raise refusals.has_doctype(self.path, self.content.text, self.offset)
 
     def too_deep(self) -> ReadError:
-        message = f"the elements are nested more than {MAX_DEPTH} levels deep"
-        return self.refuse("XMI004", message, "Check how the file was generated; no real model is nested that deep.")
+        return refusals.too_deep(self.path, self.content.text, self.offset)
 
     def malformed(self, error: expat.ExpatError) -> ReadError:
-        if not self.content.text.lstrip().startswith("<"):
-            return self.refuse("XMI002", "not XML", "AMALTHEA models are XML files in UTF-8, plain or zipped.", 0)
-        reason = expat.errors.messages[error.code]
-        if self.stack and reason == expat.errors.XML_ERROR_NO_ELEMENTS:
-            element, _, place, _ = next(frame for frame in reversed(self.stack) if frame[0] is not None)
-            line = self.encoded.count(b"\n", 0, self.starts[place]) + 1
-            reason = f"unexpected end of file, the {type(element).__name__} on line {line} is not closed"
-        return self.refuse("XMI002", f"not well-formed XML: {reason}", "", self.parser.ErrorByteIndex)
+        held = next(((frame[0], frame[2]) for frame in reversed(self.stack) if frame[0] is not None), None)
+        open_element = (type(held[0]).__name__, self.starts[held[1]]) if held else None
+        return refusals.malformed(self.path, self.content.text, error, self.parser.ErrorByteIndex, open_element)

@@ -6,7 +6,7 @@ text, so that nothing is lost and everything else can continue.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
@@ -29,9 +29,14 @@ MAX_COMPARISONS = 20_000
 _set = object.__setattr__
 
 
-def resolve(results: Sequence[ReadResult]) -> list[Finding]:
-    """Resolve the references of all documents in place; the findings name those with no target, several, or one of a wrong class."""
-    resolver = _Resolver(results)
+def resolve(results: Sequence[ReadResult], linked: Mapping[str, Element]) -> list[Finding]:
+    """Resolve the references of all documents in place; the findings name those with no target, several, or one of a wrong class.
+
+    Parameters
+    ----------
+    linked : objects by texts whose meaning is known already, because the references of migrated models are links before they are texts
+    """
+    resolver = _Resolver(results, linked)
     # The names of namespace members need their namespace; those of call arguments need the call and the parameter.
     waves: list[list[tuple[ReadResult, PendingReference]]] = [[], [], []]
     for result in results:
@@ -69,9 +74,9 @@ class Use(NamedTuple):
 
 
 class _Resolver:
-    def __init__(self, results: Sequence[ReadResult]) -> None:
+    def __init__(self, results: Sequence[ReadResult], linked: Mapping[str, Element]) -> None:
         self.results = results
-        self.by_id: dict[str, Element] = {}
+        self.by_id: dict[str, Element] = dict(linked)
         #: Ids that several objects share; a reference means the first one in its own document.
         self.shared: dict[str, list[Element]] = {}
         self.suffixes: dict[type[Element], str] = {}

@@ -19,7 +19,7 @@ from amalthea_uros.xmi.emf_serializer import Child, EmfSerializer, Part, WritePl
 from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
 from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan
-from amalthea_uros.xmi.reader import MAX_DEPTH
+from amalthea_uros.xmi.refusals import MAX_DEPTH
 from amalthea_uros.xmi.source_merger import SourceMerger
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'

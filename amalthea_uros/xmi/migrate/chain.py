@@ -1,0 +1,90 @@
+"""From version to version: which steps, in which order, for which files of a set."""
+
+from __future__ import annotations
+
+from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
+from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps import DOWN, UP
+from amalthea_uros.xmi.migrate.versions import position
+
+_UP = {step.source: step for step in UP}
+_DOWN = {step.source: step for step in DOWN}
+
+#: How many versions back the content of a file may be: its namespace was raised when the work on a version began.
+_BEHIND = 2
+
+
+def migrate(models: ModelSet, target: str, notes: Notes, official: bool) -> None:
+    """Take all files of a set to a version; each joins the others at its own.
+
+    Parameters
+    ----------
+    official : do what the official converter does, also where it loses or damages something
+
+    Raises
+    ------
+    KeyError : there is no such version.
+    """
+    for tree in models.trees:
+        tree.version = _version_of_content(tree, target)
+    goal = position(target)
+    lowest = min(models.trees, key=lambda tree: position(tree.version)).version
+    while position(lowest) < goal:
+        lowest = _take(models, _UP[lowest], notes, official)
+    highest = max(models.trees, key=lambda tree: position(tree.version)).version
+    while position(highest) > goal:
+        highest = _take(models, _DOWN[highest], notes, official)
+    drop_dangling(models, notes)
+
+
+def _take(models: ModelSet, step: Step, notes: Notes, official: bool) -> str:
+    if step.change is not None:
+        models.begin_step(step.source)
+        notes.version = step.target
+        step.change(models, notes, official)
+    for tree in models.trees:
+        if tree.version == step.source:
+            tree.version = step.target
+    return step.target
+
+
+def _version_of_content(tree: Tree, target: str) -> str:
+    """The version to begin with: the declared one, or one shortly before if the content is still that of it."""
+    names: set[str] = set()
+    found, version = tree.version, tree.version
+    if position(target) < position(version):
+        return version
+    for node in tree.root.walk():
+        names.add(node.tag)
+        names.add(node.type)
+    for _ in range(_BEHIND):
+        before = next((step for step in _UP.values() if step.target == version), None)
+        if before is None:
+            break
+        version = before.source
+        if not names.isdisjoint(before.leftovers):
+            found = version
+    return found
+
+
+def drop_dangling(models: ModelSet, notes: Notes) -> None:
+    """Remove references to objects that a step removed."""
+    roots = {tree.root for tree in models.trees}
+    attached: dict[Node, bool] = {}
+    for root in roots:
+        for node in root.walk():
+            for name, targets in list(node.references.items()):
+                for target in targets:
+                    if target not in attached:
+                        attached[target] = target.is_proxy or target.root in roots
+                kept = [target for target in targets if attached[target]]
+                if len(kept) == len(targets):
+                    continue
+                lost = ", ".join(repr(target.name) for target in targets if not attached[target])
+                notes.lost(node, f"reference {name!r}: its target is lost", lost, name)
+                if kept:
+                    node.references[name] = kept
+                else:
+                    del node.references[name]

@@ -1,0 +1,96 @@
+"""The classes of objects that carry no `xsi:type`, by the tag of their element."""
+
+from __future__ import annotations
+
+from amalthea_uros.xmi.migrate.node import Node
+
+#: Tag -> classes that it stands for without `xsi:type`, in any version; only of objects that can be referred to. The first one is
+#: the usual one.
+_CLASSES: dict[str, tuple[str, ...]] = {
+    "abstractionTypes": ("HwAbstractionType",),
+    "caches": ("Cache",),
+    "channels": ("Channel",),
+    "classifiers": ("CoreClassifier", "MemoryClassifier"),
+    "connections": ("HwConnection",),
+    "componentInstances": ("ComponentInstance",),
+    "components": ("Component", "HwComponent"),
+    "connectors": ("Connector",),
+    "coreClassifiers": ("CoreClassifier",),
+    "coreTypeDefinitions": ("CoreType",),
+    "coreTypes": ("CoreType",),
+    "cores": ("Core",),
+    "core": ("Core",),
+    "ecuTypes": ("ECUType",),
+    "ecus": ("ECU",),
+    "eventChain": ("EventChain", "SubEventChain"),
+    "eventChains": ("EventChain",),
+    "events": ("OsEvent", "OSEvent"),
+    "featureCategories": ("HwFeatureCategory",),
+    "features": ("HwFeature",),
+    "hwSystem": ("HwSystem", "System"),
+    "interfaces": ("MainInterface", "ComponentInterface"),
+    "interruptControllers": ("InterruptController",),
+    "isrs": ("ISR",),
+    "labels": ("Label",),
+    "literals": ("ModeLiteral",),
+    "localLabels": ("LocalModeLabel",),
+    "mcTypes": ("MicrocontrollerType",),
+    "memories": ("Memory",),
+    "memoryClassifiers": ("MemoryClassifier",),
+    "memoryTypeDefinitions": ("MemoryType", "MemType"),
+    "memoryTypes": ("MemoryType", "MemType"),
+    "memTypeDefinitions": ("MemType",),
+    "microcontrollers": ("Microcontroller",),
+    "modeLabels": ("ModeLabel",),
+    "modes": ("Mode", "EnumMode", "NumericMode"),
+    "modules": ("ProcessingUnit",),
+    "namespaces": ("Namespace",),
+    "networkTypes": ("NetworkType",),
+    "networks": ("Network",),
+    "nestedComponents": ("HwComponent", "Component"),
+    "operatingSystems": ("OperatingSystem",),
+    "osOverheads": ("OsOverhead", "OsInstructions", "OSInstructions"),
+    "parameters": ("RunnableParameter",),
+    "pins": ("Pin", "HwPin"),
+    "ports": ("HwPort", "ComponentPort", "Port", "InterfacePort", "QualifiedPort"),
+    "powerDomains": ("PowerDomain",),
+    "prescaler": ("Prescaler",),
+    "processChains": ("ProcessChain",),
+    "processPrototypes": ("ProcessPrototype",),
+    "quartzes": ("Quartz",),
+    "runnables": ("Runnable",),
+    "scheduler": ("TaskScheduler", "Scheduler"),
+    "schedulerDefinitions": ("SchedulerDefinition",),
+    "schedulingParameterDefinitions": ("SchedulingParameterDefinition",),
+    "sections": ("Section", "PhysicalSectionConstraint"),
+    "semaphores": ("Semaphore",),
+    "structures": ("HwStructure", "ComponentStructure"),
+    "subInterfaces": ("SubInterface",),
+    "system": ("HwSystem", "System"),
+    "systemTypes": ("SystemType",),
+    "systems": ("Composite", "System"),
+    "tags": ("Tag",),
+    "taskSchedulers": ("TaskScheduler",),
+    "tasks": ("Task",),
+    "activations": (),
+}
+
+
+def may_be(node: Node, class_name: str) -> bool:
+    """Whether a reference that names that class (without package) can mean the node."""
+    if node.type:
+        return local_name(node.type) == class_name
+    known = _CLASSES.get(node.tag)
+    return known is None or class_name in known
+
+
+def class_of(node: Node) -> str:
+    """The class by which references name an object, in ITEA versions with its package where that is known."""
+    if node.type:
+        return node.type
+    return node.target_class or next(iter(_CLASSES.get(node.tag, ())), "")
+
+
+def local_name(class_name: str) -> str:
+    """The class without the package of ITEA versions."""
+    return class_name.rpartition(":")[2]

@@ -1,0 +1,138 @@
+"""A set of files that refer to each other, as nodes."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.metamodel.source import Source
+from amalthea_uros.xmi.files import FileText
+from amalthea_uros.xmi.finding_collector import location
+from amalthea_uros.xmi.migrate.node import Node
+
+
+@dataclass(eq=False)
+class Tree:
+    """One file.
+
+    Attributes
+    ----------
+    path : the file
+    content : what it held
+    version : that of its present content
+    root : its content
+    prolog, epilog : comments and processing instructions around the root
+    """
+
+    path: Path
+    content: FileText
+    version: str
+    root: Node
+    prolog: list[str] = field(default_factory=list)
+    epilog: list[str] = field(default_factory=list)
+
+
+class Origins:
+    """The elements of all files as they were read, by the index that nodes have as origin.
+
+    Attributes
+    ----------
+    starts, ends : offsets of the start tag, and of the end tag or after an empty element, in bytes of UTF-8
+    parents : the container, -1 for roots
+    labels : tag and name
+    """
+
+    def __init__(self) -> None:
+        self.starts: list[int] = []
+        self.ends: list[int] = []
+        self.parents: list[int] = []
+        self.labels: list[tuple[str, str]] = []
+        self._files: list[tuple[int, Path, Source]] = []
+
+    def begin_file(self, path: Path, text: str) -> None:
+        """All elements from now on are in that file."""
+        self._files.append((len(self.starts), path, Source(text)))
+
+    def location(self, origin: int, attribute: str = "") -> Location | None:
+        """Where an element is, or one of its attributes; None for -1."""
+        if origin < 0:
+            return None
+        _, path, source = self._files[bisect_right(self._files, origin, key=lambda file: file[0]) - 1]
+        return location(path, source, self.starts[origin], attribute)
+
+    def object_name(self, origin: int) -> str:
+        """The names of an element and its containers: `swModel / tasks 'T' / callGraph`; shortened to what follows the last name."""
+        steps: list[str] = []
+        while origin >= 0:
+            tag, name = self.labels[origin]
+            steps.append(f"{tag} {name!r}" if name else tag)
+            if name:
+                break
+            origin = self.parents[origin]
+        return " / ".join(reversed(steps))
+
+
+class ModelSet:
+    """The files that are migrated together.
+
+    Attributes
+    ----------
+    trees : the files
+    origins : where everything comes from
+    proxies : what stands for objects to which the files refer, but which no file contains
+    """
+
+    def __init__(self, trees: list[Tree], origins: Origins) -> None:
+        self.trees = trees
+        self.origins = origins
+        self.proxies: list[Node] = []
+        self._by_tag: dict[str, list[Node]] | None = None
+        self._active: list[Tree] = trees
+
+    def begin_step(self, version: str) -> None:
+        """From now on only the files of that version are meant; nodes are indexed anew."""
+        self._active = [tree for tree in self.trees if tree.version == version]
+        self._by_tag = None
+
+    @property
+    def active(self) -> list[Tree]:
+        """The files that the present step is about."""
+        return self._active
+
+    @property
+    def roots(self) -> list[Node]:
+        """The roots of the files that the present step is about."""
+        return [tree.root for tree in self._active]
+
+    def walk(self) -> Iterator[Node]:
+        """Every node of the files that the present step is about."""
+        for root in self.roots:
+            yield from root.walk()
+
+    def nodes(self, *tags: str) -> list[Node]:
+        """Every node of these tags, in order for one tag; as of the first call within the step."""
+        if self._by_tag is None:
+            self._by_tag = {}
+            for node in self.walk():
+                self._by_tag.setdefault(node.tag, []).append(node)
+        return [node for tag in tags for node in self._by_tag.get(tag, ())]
+
+    def parts(self, *path: str) -> list[Node]:
+        """Everything below the roots that a path of tags leads to."""
+        return [node for root in self.roots for node in root.find(*path)]
+
+    def rename_classes(self, renamed: dict[str, str]) -> list[Node]:
+        """Rename classes, in `xsi:type` and where references name them; the objects (not the proxies) whose class was renamed."""
+        found = []
+        for node in self.walk():
+            if node.type in renamed:
+                node.type = renamed[node.type]
+                found.append(node)
+            if node.target_class in renamed:
+                node.target_class = renamed[node.target_class]
+        for node in self.proxies:
+            node.target_class = renamed.get(node.target_class, node.target_class)
+        return found

@@ -1,0 +1,188 @@
+"""The nodes of a model that is being migrated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+
+class Node:
+    """An object of a model in any version: what an element of the file says, without knowing its class.
+
+    A step may change everything, by the methods or directly; only the container is set by the methods alone.
+
+    Attributes
+    ----------
+    tag : name of the element, without prefix
+    type : class that `xsi:type` states, "" if it states none; in ITEA versions with the package ("sw:LabelAccess")
+    attributes : text by name; without references
+    references : targets by name, whether they were attributes or `href` elements
+    children : the parts, in order
+    parent : what this is a part of; None for a root and after removal
+    target_class : class by which references name this object, where the tag does not tell it
+    comments : comments and processing instructions in front of the element
+    origin : index of the element in the files from which this comes
+    """
+
+    __slots__ = ("attributes", "children", "comments", "origin", "parent", "references", "tag", "target_class", "type")
+
+    def __init__(self, tag: str, type_name: str = "", attributes: dict[str, str] | None = None, origin: int = -1) -> None:
+        self.tag = tag
+        self.type = type_name
+        self.attributes: dict[str, str] = {} if attributes is None else attributes
+        self.references: dict[str, list[Node]] = {}
+        self.children: list[Node] = []
+        self.parent: Node | None = None
+        self.target_class = ""
+        self.comments: list[str] | None = None
+        self.origin = origin
+
+    # Reading
+
+    @property
+    def name(self) -> str:
+        """The name, "" if there is none."""
+        return self.attributes.get("name", "")
+
+    @property
+    def is_proxy(self) -> bool:
+        """Whether this stands for an object that is in no file of the set, and of which only the reference is known."""
+        return not self.tag
+
+    def get(self, attribute: str, default: str = "") -> str:
+        """The text of an attribute, `default` if it is absent."""
+        return self.attributes.get(attribute, default)
+
+    def target(self, reference: str) -> Node | None:
+        """The first target of a reference, None if there is none."""
+        targets = self.references.get(reference)
+        return targets[0] if targets else None
+
+    def child(self, tag: str) -> Node | None:
+        """The first part of that tag, None if there is none."""
+        return next((child for child in self.children if child.tag == tag), None)
+
+    def all(self, *tags: str) -> list[Node]:
+        """The parts of these tags, in order; a copy, so that they can be moved and removed meanwhile."""
+        return [child for child in self.children if child.tag in tags]
+
+    def find(self, *path: str) -> list[Node]:
+        """Everything below that a path of tags leads to."""
+        found = [self]
+        for tag in path:
+            found = [child for node in found for child in node.children if child.tag == tag]
+        return found
+
+    def walk(self) -> Iterator[Node]:
+        """The node itself and everything in it, parents first. What is changed below a node before it is its turn, is met changed."""
+        stack = [self]
+        while stack:
+            node = stack.pop()
+            yield node
+            stack.extend(reversed(node.children))
+
+    def enclosing(self, *tags: str) -> Node | None:
+        """The nearest container of one of these tags."""
+        node = self.parent
+        while node is not None and node.tag not in tags:
+            node = node.parent
+        return node
+
+    @property
+    def root(self) -> Node:
+        """The outermost container."""
+        node = self
+        while node.parent is not None:
+            node = node.parent
+        return node
+
+    # Changing
+
+    def add(
+        self, tag: str, type_name: str = "", /, *, at: int | None = None, like: Node | None = None, **attributes: str
+    ) -> Node:
+        """A new part, the last one or at a position; it has the origin of `like`, or else of this node."""
+        made = Node(tag, type_name, attributes, (like or self).origin)
+        self.insert(made, at)
+        return made
+
+    def child_or_new(self, tag: str, like: Node | None = None) -> Node:
+        """The first part of that tag, made if there is none."""
+        return self.child(tag) or self.add(tag, like=like)
+
+    def insert(self, child: Node, at: int | None = None) -> None:
+        """Make a node a part of this one, the last one or at a position; it leaves its present container."""
+        child.remove()
+        child.parent = self
+        if at is None:
+            self.children.append(child)
+        else:
+            self.children.insert(at, child)
+
+    def take(self, children: Iterable[Node]) -> None:
+        """Make some nodes the last parts of this one; in time linear in their number, unlike inserting one after the other."""
+        taken = list(children)
+        remove_all(taken)
+        for child in taken:
+            child.parent = self
+        self.children.extend(taken)
+
+    def remove(self) -> None:
+        """Leave the container."""
+        if self.parent is not None:
+            # By identity: nodes are never equal to others.
+            self.parent.children.remove(self)
+            self.parent = None
+
+    def replace_by(self, *nodes: Node) -> None:
+        """Put other nodes in the place of this one."""
+        holder = self.parent
+        assert holder is not None
+        at = holder.children.index(self)
+        self.remove()
+        for offset, node in enumerate(nodes):
+            holder.insert(node, at + offset)
+
+    def wrap(self, tag: str, type_name: str = "", /, **attributes: str) -> Node:
+        """Put a new node in the place of this one, and this one into it."""
+        made = Node(tag, type_name, attributes, self.origin)
+        self.replace_by(made)
+        made.insert(self)
+        return made
+
+    def rename(self, old: str, new: str) -> bool:
+        """Rename an attribute or reference; whether there was one."""
+        if old in self.attributes:
+            self.attributes[new] = self.attributes.pop(old)
+            return True
+        if old in self.references:
+            self.references[new] = self.references.pop(old)
+            return True
+        return False
+
+    def drop(self, name: str) -> bool:
+        """Remove an attribute or reference; whether there was one."""
+        return self.attributes.pop(name, None) is not None or self.references.pop(name, None) is not None
+
+    def refer(self, name: str, *targets: Node) -> None:
+        """Add targets to a reference."""
+        self.references.setdefault(name, []).extend(targets)
+
+    def __repr__(self) -> str:
+        kind = f" {self.type}" if self.type else ""
+        return f"<Node {self.tag}{kind} {self.name!r}>"
+
+
+def remove_all(nodes: Iterable[Node]) -> None:
+    """Let nodes leave their containers, in time linear in the number of the nodes and their siblings."""
+    removed = set(nodes)
+    for holder in {node.parent for node in removed if node.parent is not None}:
+        holder.children = [child for child in holder.children if child not in removed]
+    for node in removed:
+        node.parent = None
+
+
+def proxy(path: str, class_name: str) -> Node:
+    """What stands for an object that is in no file: its encoded path and class, as in references."""
+    made = Node("", attributes={"path": path})
+    made.target_class = class_name
+    return made

@@ -1,0 +1,190 @@
+"""Text of one file -> nodes, and the references that are still to be linked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+from xml.parsers import expat
+
+from amalthea_uros.xmi import refusals
+from amalthea_uros.xmi.files import FileText
+from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
+from amalthea_uros.xmi.migrate.model_set import Origins, Tree
+from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.versions import itea_package, namespace_version
+
+_new = object.__new__
+
+
+class Href(NamedTuple):
+    """A reference as an element: `<task href="amlt:/#T?type=Task"/>`."""
+
+    holder: Node
+    tag: str
+    text: str
+
+
+@dataclass
+class Parsed:
+    """One file as nodes.
+
+    Attributes
+    ----------
+    hrefs : references as elements; those as attributes are still attributes
+    ids : objects by their `xmi:id`, the first of several
+    """
+
+    tree: Tree
+    hrefs: list[Href] = field(default_factory=list)
+    ids: dict[str, Node] = field(default_factory=dict)
+
+
+def parse(path: Path, content: FileText, origins: Origins, notes: Notes) -> Parsed:
+    """The nodes of a file of any version.
+
+    Raises
+    ------
+    ReadError : not well-formed, or refused for safety.
+    """
+    parser = _Parser(path, content, origins, notes)
+    try:
+        return parser.parse()
+    finally:
+        parser.disconnect()
+
+
+class _Parser:
+    def __init__(self, path: Path, content: FileText, origins: Origins, notes: Notes) -> None:
+        self.path, self.content, self.origins, self.notes = path, content, origins, notes
+        self.expat = expat.ParserCreate()
+        self.root: Node | None = None
+        self.version = ""
+        #: The open elements; None for one without a node of its own.
+        self.stack: list[Node | None] = []
+        self.hrefs: list[Href] = []
+        self.ids: dict[str, Node] = {}
+        self.packages: dict[str, str] = {}
+        self.xsi_type, self.xmi_id = "xsi:type", "xmi:id"
+        self.special: tuple[str, ...] = ()
+        self.comments: list[str] = []
+        self.prolog: list[str] = []
+
+    def parse(self) -> Parsed:
+        parser = self.expat
+        parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
+        parser.buffer_text = True
+        parser.StartDoctypeDeclHandler = self.refuse_doctype
+        parser.StartElementHandler = self.start_root
+        parser.EndElementHandler = self.end
+        parser.CharacterDataHandler = self.characters
+        parser.CommentHandler = lambda data: self.comments.append(f"<!--{data}-->")
+        parser.ProcessingInstructionHandler = lambda target, data: self.comments.append(f"<?{target} {data}?>")
+        self.origins.begin_file(self.path, self.content.text)
+        try:
+            # As str: then offsets count UTF-8 bytes, whatever the encoding of the file.
+            parser.Parse(self.content.text, True)
+        except expat.ExpatError as error:
+            held = next((node for node in reversed(self.stack) if node is not None), None)
+            place = (held.type or held.tag, self.origins.starts[held.origin]) if held else None
+            raise refusals.malformed(self.path, self.content.text, error, parser.ErrorByteIndex, place) from None
+        assert self.root is not None
+        tree = Tree(self.path, self.content, self.version, self.root, self.prolog, self.comments)
+        return Parsed(tree, self.hrefs, self.ids)
+
+    def disconnect(self) -> None:
+        """Break the cycle of both parsers, which would keep the text alive until the next collection."""
+        for handler in ("StartElement", "EndElement", "CharacterData", "Comment", "ProcessingInstruction", "StartDoctypeDecl"):
+            setattr(self.expat, f"{handler}Handler", None)
+
+    def start_root(self, name: str, attributes: dict[str, str]) -> None:
+        prefixes = {key.partition(":")[2]: uri for key, uri in attributes.items() if key.startswith("xmlns")}
+        by_namespace = {uri: prefix for prefix, uri in prefixes.items()}
+        if "xsi:type" in self.content.text and "xsi" not in prefixes:
+            raise refusals.undeclared_prefix(self.path, self.content.text, self.offset, "xsi", XSI_NAMESPACE)
+        self.xsi_type = f"{by_namespace.get(XSI_NAMESPACE, 'xsi')}:type"
+        xmi = by_namespace.get(XMI_NAMESPACE, "xmi")
+        self.xmi_id = f"{xmi}:id"
+        self.special = (self.xsi_type, self.xmi_id)
+        prefix, _, tag = name.rpartition(":")
+        self.version = namespace_version(prefixes.get(prefix, ""))
+        self.packages = {prefix + ":": package + ":" for prefix, uri in prefixes.items() if (package := itea_package(uri))}
+        own = {key: text for key, text in attributes.items() if not key.startswith(("xmlns", f"{xmi}:version", f"{prefix}:"))}
+        self.prolog, self.comments = self.comments, []
+        self.expat.StartElementHandler = self.start
+        self.root = self.open(tag, own, None)
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        parent = self.stack[-1]
+        if parent is None or ":" in tag:
+            self.skip(tag, parent)
+            return
+        if "href" in attributes:
+            self.hrefs.append(Href(parent, tag, attributes["href"]))
+            self.stack.append(None)
+            return
+        node = self.open(tag, attributes, parent)
+        node.parent = parent
+        parent.children.append(node)
+        if len(self.stack) > refusals.MAX_DEPTH:
+            raise refusals.too_deep(self.path, self.content.text, self.offset)
+
+    def open(self, tag: str, attributes: dict[str, str], parent: Node | None) -> Node:
+        """A new node for the start tag."""
+        origins = self.origins
+        node: Node = _new(Node)
+        node.tag, node.type, node.target_class = tag, "", ""
+        node.attributes, node.references, node.children = attributes, {}, []
+        node.parent = node.comments = None
+        node.origin = len(origins.starts)
+        origins.starts.append(self.expat.CurrentByteIndex)
+        origins.ends.append(0)
+        origins.parents.append(-1 if parent is None else parent.origin)
+        origins.labels.append((tag, attributes.get("name", "")))
+        for special in self.special:
+            if special in attributes:
+                self.take_special(node, special)
+        if self.comments:
+            node.comments, self.comments = self.comments, []
+        self.stack.append(node)
+        for key in [key for key in attributes if ":" in key]:
+            if not key.startswith("xmlns:"):
+                self.notes.lost(node, "attribute of another namespace", f"{key}={attributes[key]!r}", key)
+            del attributes[key]
+        return node
+
+    def take_special(self, node: Node, special: str) -> None:
+        text = node.attributes.pop(special)
+        if special == self.xmi_id:
+            self.ids.setdefault(text, node)
+            return
+        prefix, mark, name = text.rpartition(":")
+        node.type = self.packages.get(prefix + mark, "") + name
+
+    def skip(self, tag: str, parent: Node | None) -> None:
+        """An element that is no part of a model: of another namespace, or inside a reference."""
+        holder = parent or next(node for node in reversed(self.stack) if node is not None)
+        self.notes.lost(holder, "content of another namespace, or inside a reference", f"<{tag}>")
+        self.stack.append(None)
+
+    def end(self, _tag: str) -> None:
+        node = self.stack.pop()
+        if node is not None:
+            self.origins.ends[node.origin] = self.expat.CurrentByteIndex
+            if self.comments and node.parent is not None:
+                # Behind the last part: it stays with the container.
+                node.comments = [*(node.comments or ()), *self.comments]
+                self.comments = []
+
+    def characters(self, data: str) -> None:
+        holder = next((node for node in reversed(self.stack) if node is not None), None)
+        if holder is not None and not data.isspace():
+            self.notes.lost(holder, "text between the elements", repr(data.strip()[:30]))
+
+    def refuse_doctype(self, *_declaration: Any) -> None:
+        raise refusals.has_doctype(self.path, self.content.text, self.offset)
+
+    @property
+    def offset(self) -> int:
+        return self.expat.CurrentByteIndex

@@ -1,0 +1,47 @@
+"""Files of any version -> one linked set of nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.errors import ReadError
+from amalthea_uros.xmi.files import FileText, read_text
+from amalthea_uros.xmi.migrate.link import file_of, link
+from amalthea_uros.xmi.migrate.model_set import ModelSet, Origins
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.parse import Parsed, parse
+
+#: What the names of model files begin their suffix with: `.amxmi`, in ITEA versions also `.amxmi-sw` and the like.
+SUFFIX = ".amxmi"
+
+
+def read_set(files: Iterable[tuple[Path, FileText]], max_size: int, notes: Notes) -> ModelSet:
+    """Read some files, and those to which they refer by file names, as one set.
+
+    Raises
+    ------
+    ReadError : a file cannot be read; carries the findings of all of them.
+    """
+    origins = Origins()
+    parsed: list[Parsed] = []
+    refused: list[Finding] = []
+    waiting = list(files)
+    known = {path.resolve() for path, _ in waiting}
+    while waiting:
+        path, content = waiting.pop(0)
+        try:
+            parsed.append(parse(path, content, origins, notes))
+        except ReadError as error:
+            refused += error.findings
+            continue
+        for other in dict.fromkeys(file_of(href.text) for href in parsed[-1].hrefs):
+            found = path.parent / other
+            # A missing file is reported with the references to it.
+            if other and SUFFIX in found.suffix and found.resolve() not in known and found.is_file():
+                known.add(found.resolve())
+                waiting.append((found, read_text(found, max_size)))
+    if refused:
+        raise ReadError(refused)
+    return link(parsed, origins, notes)

@@ -1,0 +1,14 @@
+"""2.0.0 -> 1.2.0."""
+
+from __future__ import annotations
+
+from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.step import Step
+
+
+def change(models: ModelSet, notes: Notes, official: bool) -> None:
+    """Change the content of the files of AMALTHEA 2.0.0."""
+
+
+STEP = Step("2.0.0", "1.2.0", change)

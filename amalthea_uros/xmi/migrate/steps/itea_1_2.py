@@ -1,0 +1,14 @@
+"""ITEA 1.1.0 -> ITEA 1.2.0."""
+
+from __future__ import annotations
+
+from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.step import Step
+
+
+def change(models: ModelSet, notes: Notes, official: bool) -> None:
+    """Change the content of the files of AMALTHEA ITEA 1.1.0."""
+
+
+STEP = Step("ITEA 1.1.0", "ITEA 1.2.0", change)

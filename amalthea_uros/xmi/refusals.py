@@ -1,0 +1,55 @@
+"""Why a file cannot be read at all, as exceptions; the same words whatever the version of the model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.parsers import expat
+
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.errors import ReadError
+from amalthea_uros.metamodel.source import Source
+from amalthea_uros.xmi.finding_collector import location
+
+#: Real models nest about 15 deep; far deeper, recursion over a model would fail with a less helpful message.
+MAX_DEPTH = 200
+
+
+def refusal(path: Path, text: str, offset: int, rule: str, message: str, help_text: str = "") -> ReadError:
+    """The exception for a problem at an offset (in bytes of UTF-8) of a file that cannot be read because of it."""
+    return ReadError([Finding(rule, Severity.ERROR, message, location(path, Source(text), offset), help_text)])
+
+
+def has_doctype(path: Path, text: str, offset: int) -> ReadError:
+    """The refusal of a document type declaration."""
+    message = "the file has a document type declaration (DTD)"
+    return refusal(path, text, offset, "XMI003", message, "Remove it; it is refused because it may define entities.")
+
+
+def too_deep(path: Path, text: str, offset: int) -> ReadError:
+    """The refusal of elements that are nested too deep."""
+    message = f"the elements are nested more than {MAX_DEPTH} levels deep"
+    help_text = "Check how the file was generated; no real model is nested that deep."
+    return refusal(path, text, offset, "XMI004", message, help_text)
+
+
+def malformed(path: Path, text: str, error: expat.ExpatError, offset: int, open_element: tuple[str, int] | None) -> ReadError:
+    """The refusal of text that is not well-formed.
+
+    Parameters
+    ----------
+    open_element : what is not closed and the offset of its start tag, None if everything is
+    """
+    if not text.lstrip().startswith("<"):
+        return refusal(path, text, 0, "XMI002", "not XML", "AMALTHEA models are XML files in UTF-8, plain or zipped.")
+    reason = expat.errors.messages[error.code]
+    if open_element and reason == expat.errors.XML_ERROR_NO_ELEMENTS:
+        name, start = open_element
+        line = text.encode().count(b"\n", 0, start) + 1
+        reason = f"unexpected end of file, the {name} on line {line} is not closed"
+    return refusal(path, text, offset, "XMI002", f"not well-formed XML: {reason}")
+
+
+def undeclared_prefix(path: Path, text: str, offset: int, prefix: str, namespace: str) -> ReadError:
+    """The refusal of a prefix without declaration."""
+    message = f"not well-formed XML: undeclared namespace prefix {prefix!r}"
+    return refusal(path, text, offset, "XMI002", message, f'Add xmlns:{prefix}="{namespace}" to the root element.')

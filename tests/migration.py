@@ -1,0 +1,58 @@
+"""Models of any version as text that says what they mean: without order where it means nothing, with references as paths to targets."""
+
+from collections import Counter
+
+from amalthea_uros.xmi.files import read_text
+from amalthea_uros.xmi.migrate.chain import migrate
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.read_set import read_set
+
+MAX_SIZE = 100_000_000
+
+
+def opened(*paths):
+    """The linked nodes of some files."""
+    return read_set([(path, read_text(path)) for path in paths], MAX_SIZE, Notes())
+
+
+def migrated(paths, target, official=False):
+    """The nodes of some files after migration, and the notes of it."""
+    notes = Notes()
+    models = read_set([(path, read_text(path)) for path in paths], MAX_SIZE, notes)
+    migrate(models, target, notes, official)
+    return models, notes.all
+
+
+def meaning(models):
+    """The whole set as lines."""
+    places = {}
+    for tree in models.trees:
+        number_places(tree.root, tree.path.name if len(models.trees) > 1 else "", places)
+    lines = []
+    for tree in sorted(models.trees, key=lambda tree: tree.path.name):
+        lines += [f"== {tree.version}", *described(tree.root, "", places)]
+    return lines
+
+
+def number_places(node, path, places):
+    places[node] = path
+    count = Counter()
+    for child in node.children:
+        number_places(child, f"{path}/{child.tag}.{count[child.tag]}", places)
+        count[child.tag] += 1
+
+
+def described(node, indent, places):
+    """A node and everything in it. Parts of different tags have no order, those of one tag do."""
+    texts = [f"{key}={text!r}" for key, text in sorted(node.attributes.items())]
+    for name, targets in sorted(node.references.items()):
+        texts.append(f"{name} -> " + " ".join(place_of(target, places) for target in targets))
+    yield " ".join([indent + node.tag, f"[{node.type}]" if node.type else "", *texts]).rstrip()
+    for child in sorted(node.children, key=lambda child: child.tag):
+        yield from described(child, indent + "  ", places)
+
+
+def place_of(target, places):
+    if target.is_proxy:
+        return f"?{target.attributes['path']}:{target.target_class}"
+    return places.get(target, "LOST " + repr(target))
