@@ -115,9 +115,7 @@ class ModelSet:
     def nodes(self, *tags: str) -> list[Node]:
         """Every node of these tags, in order for one tag; as of the first call within the step."""
         if self._by_tag is None:
-            self._by_tag = {}
-            for node in self.walk():
-                self._by_tag.setdefault(node.tag, []).append(node)
+            self._by_tag = _by_tag(self.roots)
         return [node for tag in tags for node in self._by_tag.get(tag, ())]
 
     def parts(self, *path: str) -> list[Node]:
@@ -136,3 +134,19 @@ class ModelSet:
         for node in self.proxies:
             node.target_class = renamed.get(node.target_class, node.target_class)
         return found
+
+
+def _by_tag(roots: list[Node]) -> dict[str, list[Node]]:
+    """Every node by its tag. Not by `walk`, because this is done once per step."""
+    found: dict[str, list[Node]] = {}
+    stack = roots[::-1]
+    while stack:
+        node = stack.pop()
+        known = found.get(node.tag)
+        if known is None:
+            found[node.tag] = [node]
+        else:
+            known.append(node)
+        if node.children:
+            stack += node.children[::-1]
+    return found

@@ -23,47 +23,50 @@ def read_trees(models: ModelSet, versions: Sequence[str]) -> tuple[list[ReadResu
     -------
     The results, and the objects by the texts of the references to them.
     """
-    linked: dict[str, Element] = {}
-    texts = _Texts(models)
+    texts = _Texts()
+    made: dict[Node, Element] = {}
     results = []
     for tree, version in zip(models.trees, versions, strict=True):
-        events = TreeEvents(tree, models.origins, texts, linked)
-        result = read_events(tree.path, tree.content, events)
+        result = read_events(tree.path, tree.content, TreeEvents(tree, models.origins, texts, made))
         document = result.document
         assert document.source is not None
         document.source = replace(document.source, version=version)
         document.migrated_from = version
         results.append(result)
-    return results, linked
+    return results, {text: made[node] for node, text in texts.of.items() if node in made}
 
 
 class _Texts:
     """The text of every reference: the name of its target, made unique by a number where several targets have the same."""
 
-    def __init__(self, models: ModelSet) -> None:
+    def __init__(self) -> None:
         self.of: dict[Node, str] = {}
         self.roots: dict[Node, Node] = {}
-        used: set[str] = set()
-        for root in (tree.root for tree in models.trees):
-            for node in root.walk():
-                for targets in node.references.values():
-                    for target in targets:
-                        if target not in self.of:
-                            self.of[target] = _unique(reference_text(target), used)
-                            self.roots[target] = target.root
+        self.used: set[str] = set()
 
+    def of_targets(self, targets: list[Node], root: Node) -> tuple[list[str], bool]:
+        """The texts, and whether all targets are below a root."""
+        found, is_local = [], True
+        for target in targets:
+            text = self.of.get(target)
+            if text is None:
+                text = self.of[target] = self.unique(reference_text(target))
+                self.roots[target] = target.root
+            found.append(text)
+            is_local = is_local and self.roots[target] is root
+        return found, is_local
 
-def _unique(text: str, used: set[str]) -> str:
-    found, number = text, 1
-    while found in used:
-        number += 1
-        found = f"{text}#{number}"
-    used.add(found)
-    return found
+    def unique(self, text: str) -> str:
+        found, number = text, 1
+        while found in self.used:
+            number += 1
+            found = f"{text}#{number}"
+        self.used.add(found)
+        return found
 
 
 class TreeEvents:
-    """The nodes of a file as the events of a parser: what the reader needs of `xml.parsers.expat`.
+    """The nodes of a file as the events of a parser: what the reader needs of `xml.parsers.expat`. They are used up by it.
 
     Attributes
     ----------
@@ -75,8 +78,8 @@ class TreeEvents:
     CommentHandler: Callable[[str], None]
     ProcessingInstructionHandler: Callable[[str, str], None]
 
-    def __init__(self, tree: Tree, origins: Origins, texts: _Texts, linked: dict[str, Element]) -> None:
-        self.tree, self.origins, self.texts, self.linked = tree, origins, texts, linked
+    def __init__(self, tree: Tree, origins: Origins, texts: _Texts, made_of: dict[Node, Element]) -> None:
+        self.tree, self.origins, self.texts, self.made_of = tree, origins, texts, made_of
         self.made: list[Element] = []
         self.CurrentByteIndex = 0
 
@@ -87,42 +90,42 @@ class TreeEvents:
         """Report everything."""
         root = self.tree.root
         self.outside(self.tree.prolog)
-        declarations = {
+        root.attributes |= {
             "xmi:version": "2.0",
             "xmlns:xmi": XMI_NAMESPACE,
             "xmlns:xsi": XSI_NAMESPACE,
             "xmlns:am": NAMESPACE_PREFIX + self.tree.version,
         }
-        self.element(root, "am:" + root.tag, declarations)
+        self.element(root, "am:" + root.tag)
         self.outside(self.tree.epilog)
 
-    def element(self, node: Node, tag: str, attributes: dict[str, str]) -> None:
+    def element(self, node: Node, tag: str) -> None:
         """Report a node and everything in it."""
         if node.comments:
             self.outside(node.comments)
-        attributes |= node.attributes
+        attributes = node.attributes
         if node.type:
             attributes["xsi:type"] = "am:" + node.type
-        hrefs: list[tuple[str, list[Node]]] = []
+        hrefs: list[tuple[str, str]] = []
         for name, targets in node.references.items():
-            if all(self.texts.roots[target] is self.tree.root for target in targets):
-                attributes[name] = " ".join([self.texts.of[target] for target in targets])
+            texts, is_local = self.texts.of_targets(targets, self.tree.root)
+            if is_local:
+                attributes[name] = texts[0] if len(texts) == 1 else " ".join(texts)
             else:
-                hrefs.append((name, targets))
-        start, end = self.origins.starts[node.origin], self.origins.ends[node.origin]
-        self.CurrentByteIndex = start
+                hrefs += [(name, text) for text in texts]
+        origin = node.origin
+        self.CurrentByteIndex = start = self.origins.starts[origin]
         before = len(self.made)
         self.StartElementHandler(tag, attributes)
-        if node in self.texts.of and len(self.made) > before:
-            self.linked[self.texts.of[node]] = self.made[-1]
-        for name, targets in hrefs:
-            for target in targets:
-                self.CurrentByteIndex = start
-                self.StartElementHandler(name, {"href": "amlt:/#" + self.texts.of[target]})
-                self.EndElementHandler(name)
+        if len(self.made) > before:
+            self.made_of[node] = self.made[-1]
+        for name, text in hrefs:
+            self.CurrentByteIndex = start
+            self.StartElementHandler(name, {"href": "amlt:/#" + text})
+            self.EndElementHandler(name)
         for child in node.children:
-            self.element(child, child.tag, {})
-        self.CurrentByteIndex = end
+            self.element(child, child.tag)
+        self.CurrentByteIndex = self.origins.ends[origin]
         self.EndElementHandler(tag)
 
     def outside(self, comments: list[str]) -> None:
