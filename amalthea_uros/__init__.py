@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Document as Document
     from amalthea_uros.metamodel.model import Model as Model
     from amalthea_uros.metamodel.model import Reference as Reference
-    from amalthea_uros.perf.software import Communication as Communication
+    from amalthea_uros.perf.activities import Communication as Communication
     from amalthea_uros.perf.system import System as System
     from amalthea_uros.services.analyze import AnalysisResult as AnalysisResult
     from amalthea_uros.services.analyze import analyze_files as analyze_files
@@ -107,7 +107,7 @@ _NAMES = {
     "errors": ("AmurosError", "InvalidArgumentError", "ReadError", "WriteError"),
     "metamodel.element": ("Element",),
     "metamodel.model": ("Document", "Model", "Reference"),
-    "perf.software": ("Communication",),
+    "perf.activities": ("Communication",),
     "perf.system": ("System",),
     "services.analyze": ("AnalysisResult", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),

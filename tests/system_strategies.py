@@ -13,7 +13,18 @@ from fractions import Fraction
 from hypothesis import strategies as st
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.perf import conditions, constraints, distributions, events, hardware, mapping, os, software, stimuli
+from amalthea_uros.perf import (
+    activities,
+    conditions,
+    constraints,
+    distributions,
+    events,
+    hardware,
+    mapping,
+    os,
+    software,
+    stimuli,
+)
 from amalthea_uros.perf.system import System
 
 #: Names by kind; objects of a kind take them in this order, references draw from those that exist.
@@ -73,7 +84,7 @@ REFERENCES = {
     (None, "semaphore"): ["semaphore"],
     (None, "stimulus"): ["stimulus", "inter-process stimulus"],
     (None, "stimuli"): ["stimulus", "inter-process stimulus"],
-    (software.Trigger, "stimulus"): ["inter-process stimulus"],
+    (activities.Trigger, "stimulus"): ["inter-process stimulus"],
     (events.Segment, "stimulus"): [*EVENTS, "event set"],
     (events.Segment, "response"): [*EVENTS, "event set"],
     (events.EventChain, "stimulus"): [*EVENTS, "event set"],
@@ -83,10 +94,10 @@ REFERENCES = {
     (None, "task"): ["task"],
     (None, "isr"): ["isr"],
     (None, "runnable"): ["runnable"],
-    (software.SenderReceiverAccess, "notifies"): ["runnable"],
-    (software.ServerCall, "result"): ["runnable"],
+    (activities.SenderReceiverAccess, "notifies"): ["runnable"],
+    (activities.ServerCall, "result"): ["runnable"],
     (None, "label"): ["label"],
-    (software.ModeAccess, "label"): ["mode label"],
+    (activities.ModeAccess, "label"): ["mode label"],
     (conditions.ModeValueIs, "label"): ["mode label"],
     (conditions.ModeAssignment, "label"): ["mode label"],
     (events.ModeLabelEvent, "label"): ["mode label"],
@@ -99,17 +110,17 @@ REFERENCES = {
     (None, "events"): EVENTS,
     # Not every event can activate something.
     (stimuli.EventTriggered, "events"): ["trigger event", "custom event"],
-    (software.SetEvent, "events"): ["OS event"],
-    (software.ClearEvent, "events"): ["OS event"],
-    (software.WaitEvent, "events"): ["OS event"],
-    (software.RaiseEvent, "event"): ["custom event"],
+    (activities.SetEvent, "events"): ["OS event"],
+    (activities.ClearEvent, "events"): ["OS event"],
+    (activities.WaitEvent, "events"): ["OS event"],
+    (activities.RaiseEvent, "event"): ["custom event"],
     (constraints.DelayConstraint, "source"): EVENTS,
     (constraints.DelayConstraint, "target"): EVENTS,
     (constraints.RepetitionConstraint, "event"): EVENTS,
     (None, "chain"): ["chain"],
     (None, "chains"): ["chain"],
     (constraints.OrderConstraint, "groups"): ["runnable"],
-    (software.Demand, "by_core_type"): ["core type"],
+    (activities.Demand, "by_core_type"): ["core type"],
 }
 
 #: Texts that are no names.
@@ -157,15 +168,15 @@ class Drawing:
         for field in dataclasses.fields(cls):
             if field.name not in values and field.name not in ("origin", "locate"):
                 values[field.name] = self.value(cls, field.name, hints[field.name], depth)
-        if cls is software.Demand and values["ticks"] is None and not values["by_core_type"]:
+        if cls is activities.Demand and values["ticks"] is None and not values["by_core_type"]:
             values["ticks"] = distributions.Constant(1)
-        if cls is software.SenderReceiverAccess and values["kind"] is software.AccessKind.READ:
+        if cls is activities.SenderReceiverAccess and values["kind"] is activities.AccessKind.READ:
             values["notifies"] = ()
-        if cls is software.ServerCall:
+        if cls is activities.ServerCall:
             # Only some kinds of calls have a result runnable, or wait.
-            values["result"] = values["result"] if values["kind"] is software.ServerCallKind.ASYNCHRONOUS else None
-            values["waits"] = values["waits"] or values["kind"] is not software.ServerCallKind.GET_RESULT
-            is_stated = values["kind"] is not software.ServerCallKind.ASYNCHRONOUS and values["waits"]
+            values["result"] = values["result"] if values["kind"] is activities.ServerCallKind.ASYNCHRONOUS else None
+            values["waits"] = values["waits"] or values["kind"] is not activities.ServerCallKind.GET_RESULT
+            is_stated = values["kind"] is not activities.ServerCallKind.ASYNCHRONOUS and values["waits"]
             values["waiting"] = values["waiting"] if is_stated else None
         return cls(**values)
 
@@ -186,7 +197,7 @@ class Drawing:
             return self.text(cls, name)
         if hint is bool:
             return self.draw(st.booleans())
-        if hint is int and (cls, name) == (software.ModeAccess, "step"):
+        if hint is int and (cls, name) == (activities.ModeAccess, "step"):
             return self.draw(POSITIVE)
         if name == "deviation":
             return self.draw(POSITIVE)
@@ -198,7 +209,7 @@ class Drawing:
             return self.draw(FREQUENCIES)
         if isinstance(hint, type) and issubclass(hint, Enum):
             # A label and an operating system have nothing to inherit their protection from.
-            literals = [x for x in hint if x is not software.Protection.INHERITED or cls is software.LabelAccess]
+            literals = [x for x in hint if x is not activities.Protection.INHERITED or cls is activities.LabelAccess]
             return self.draw(st.sampled_from(literals))
         return self.part(origin or hint, name, depth, *arguments)
 
@@ -227,7 +238,7 @@ class Drawing:
 
     @staticmethod
     def nests(cls):
-        nested = (software.Group, software.Loop, software.ProbabilitySwitch, software.Switch, events.Segment)
+        nested = (activities.Group, activities.Loop, activities.ProbabilitySwitch, activities.Switch, events.Segment)
         return cls in (*nested, events.Sequence, events.Parallel)
 
     def least(self, cls, name):
@@ -247,7 +258,7 @@ class Drawing:
             return 1
         if (cls, name) == (constraints.OrderConstraint, "groups"):
             return 2
-        if cls in (software.SetEvent, software.ClearEvent, software.WaitEvent):
+        if cls in (activities.SetEvent, activities.ClearEvent, activities.WaitEvent):
             return 1
         return needed.get(name, 0)
 
@@ -338,7 +349,7 @@ def _overhead(d, name):
     services = d.draw(st.lists(st.sampled_from(os.Service), unique=True, max_size=3))
     ordered = sorted(services, key=list(os.Service).index)
     found = d.object(os.Overhead, name=name, services=())
-    return dataclasses.replace(found, services=tuple((service, d.object(software.Demand)) for service in ordered))
+    return dataclasses.replace(found, services=tuple((service, d.object(activities.Demand)) for service in ordered))
 
 
 def _chains(d):

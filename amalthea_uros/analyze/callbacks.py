@@ -21,8 +21,9 @@ from amalthea_uros.analyze.metrics import Span
 from amalthea_uros.analyze.response_times.schedule import demand_cycle, demand_table, demands_of_jobs
 from amalthea_uros.analyze.results import CallbackResult, Claim, JobMetric, Metric, Response
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.perf.activities import Activity, Call, ServerCall, Terminate
 from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
-from amalthea_uros.perf.software import Activity, Call, Process, ServerCall, Terminate
+from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.counters import first_effect, is_always

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.perf.software import Activity, Call, Execute, ExecutionNeed, Group, LabelAccess
+from amalthea_uros.perf.activities import Activity, Call, Execute, ExecutionNeed, Group, LabelAccess
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.notes import UnknownDemandError

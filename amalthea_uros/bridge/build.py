@@ -13,15 +13,7 @@ from amalthea_uros.bridge.tables.hardware import HardwareBuilder
 from amalthea_uros.bridge.tables.mapping import build_mapping
 from amalthea_uros.bridge.tables.os import SEMAPHORES, build_overhead, build_system, fill_system
 from amalthea_uros.bridge.tables.parameters import Definitions
-from amalthea_uros.bridge.tables.software import (
-    CHANNELS,
-    LABELS,
-    MODE_LABELS,
-    OS_EVENTS,
-    PROCESSES,
-    RUNNABLES,
-    build_modes,
-)
+from amalthea_uros.bridge.tables.software import CHANNELS, LABELS, MODE_LABELS, OS_EVENTS, PROCESSES, RUNNABLES, build_modes
 from amalthea_uros.bridge.tables.stimuli import CLOCKS, STIMULI
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element

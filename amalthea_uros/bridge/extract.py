@@ -15,15 +15,7 @@ from amalthea_uros.bridge.tables.events import CHAINS, EVENTS
 from amalthea_uros.bridge.tables.hardware import HardwareExtractor
 from amalthea_uros.bridge.tables.mapping import extract_mapping
 from amalthea_uros.bridge.tables.os import SEMAPHORES, Allocations, extract_overhead, extract_system
-from amalthea_uros.bridge.tables.software import (
-    CHANNELS,
-    LABELS,
-    MODE_LABELS,
-    OS_EVENTS,
-    PROCESSES,
-    RUNNABLES,
-    extract_modes,
-)
+from amalthea_uros.bridge.tables.software import CHANNELS, LABELS, MODE_LABELS, OS_EVENTS, PROCESSES, RUNNABLES, extract_modes
 from amalthea_uros.bridge.tables.stimuli import CLOCKS, STIMULI
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.metamodel import classes as am

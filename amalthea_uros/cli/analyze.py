@@ -15,7 +15,7 @@ from amalthea_uros.analyze.chains.explanation import EXPLAINED
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.analyze.summary import Schedulable
 from amalthea_uros.cli.output import Output, output_option, show_findings, shows_text, write_outputs
-from amalthea_uros.perf.software import Communication
+from amalthea_uros.perf.activities import Communication
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail, explain
 from amalthea_uros.timing.settings import Memory, Settings

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
 
+from amalthea_uros.perf.activities import Demand, Execute, LabelAccess, Protection
 from amalthea_uros.perf.named import Named
-from amalthea_uros.perf.software import Demand, Execute, LabelAccess, Protection
 from amalthea_uros.units import Time
 
 

@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeVar
 
+from amalthea_uros.perf.activities import Activity, walk
 from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Event, EventChain, Events
 from amalthea_uros.perf.hardware import Cache, Clock, Connection, Core, Hardware, Interconnect, Memory
 from amalthea_uros.perf.mapping import Mapping as SystemMapping
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.os import InterruptController, Os, Scheduler
-from amalthea_uros.perf.software import Activity, Channel, Label, Process, Runnable, Software, walk
+from amalthea_uros.perf.software import Channel, Label, Process, Runnable, Software
 from amalthea_uros.perf.stimuli import Stimuli, Stimulus
 
 N = TypeVar("N", bound=Named)

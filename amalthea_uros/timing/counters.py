@@ -13,7 +13,7 @@ from functools import cached_property
 from math import gcd
 from typing import TypeAlias
 
-from amalthea_uros.perf.software import Activity, Call, Group, SenderReceiverAccess, ServerCall, inner_activities
+from amalthea_uros.perf.activities import Activity, Call, Group, SenderReceiverAccess, ServerCall, inner_activities
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from amalthea_uros.perf.activities import Group, SemaphoreAccess, SemaphoreOperation, Waiting
 from amalthea_uros.perf.os import SemaphoreKind
-from amalthea_uros.perf.software import Group, Process, SemaphoreAccess, SemaphoreOperation, Waiting
+from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.stretches import executed

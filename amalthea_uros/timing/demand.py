@@ -15,9 +15,7 @@ from fractions import Fraction
 from math import ceil, floor
 
 from amalthea_uros._internal.graphs import bottom_up
-from amalthea_uros.perf.distributions import Distribution, highest, lowest
-from amalthea_uros.perf.os import Scheduler
-from amalthea_uros.perf.software import (
+from amalthea_uros.perf.activities import (
     AccessKind,
     Activity,
     Call,
@@ -27,15 +25,12 @@ from amalthea_uros.perf.software import (
     ExecutionNeed,
     Group,
     Incomplete,
-    Isr,
     LabelAccess,
     Loop,
     Migrate,
     ModeAccess,
     ProbabilitySwitch,
-    Process,
     Receive,
-    Runnable,
     Send,
     SenderReceiverAccess,
     ServerCall,
@@ -44,6 +39,9 @@ from amalthea_uros.perf.software import (
     WaitEvent,
     walk,
 )
+from amalthea_uros.perf.distributions import Distribution, highest, lowest
+from amalthea_uros.perf.os import Scheduler
+from amalthea_uros.perf.software import Isr, Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.counters import CallSites, UncountableError, first_effect, is_always

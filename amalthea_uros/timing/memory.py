@@ -12,10 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from amalthea_uros.perf.activities import AccessKind, Count
 from amalthea_uros.perf.distributions import Distribution, highest, lowest
 from amalthea_uros.perf.hardware import Access, Cache, Connection, Interconnect, Latency
 from amalthea_uros.perf.named import Named
-from amalthea_uros.perf.software import AccessKind, Count
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.means import mean
 from amalthea_uros.timing.multiframe import Frame

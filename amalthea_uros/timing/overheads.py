@@ -6,15 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from amalthea_uros.perf.os import Overhead, SemaphoreKind, Service
-from amalthea_uros.perf.software import (
+from amalthea_uros.perf.activities import (
     AccessKind,
     Activity,
     ClearEvent,
     Demand,
     Group,
-    Isr,
-    IsrCategory,
     SchedulePoint,
     SemaphoreAccess,
     SemaphoreOperation,
@@ -26,6 +23,8 @@ from amalthea_uros.perf.software import (
     Trigger,
     WaitEvent,
 )
+from amalthea_uros.perf.os import Overhead, SemaphoreKind, Service
+from amalthea_uros.perf.software import Isr, IsrCategory
 from amalthea_uros.perf.system import System
 
 _OF_ACTIVITIES: dict[type, tuple[Service, ...]] = {

@@ -12,17 +12,8 @@ from itertools import product
 from math import prod
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.perf.software import (
-    Activity,
-    Call,
-    Group,
-    Loop,
-    ProbabilitySwitch,
-    Process,
-    Switch,
-    Trigger,
-    walk,
-)
+from amalthea_uros.perf.activities import Activity, Call, Group, Loop, ProbabilitySwitch, Switch, Trigger, walk
+from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.counters import first_effect

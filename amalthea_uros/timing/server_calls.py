@@ -11,20 +11,19 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from amalthea_uros._internal.graphs import bottom_up
-from amalthea_uros.perf.software import (
+from amalthea_uros.perf.activities import (
     Activity,
     Call,
     Group,
     Loop,
     ProbabilitySwitch,
-    Process,
-    Runnable,
     SenderReceiverAccess,
     ServerCall,
     ServerCallKind,
     Switch,
     walk,
 )
+from amalthea_uros.perf.software import Process, Runnable
 from amalthea_uros.perf.system import System
 
 

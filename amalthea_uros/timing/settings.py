@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 
-from amalthea_uros.perf.software import Communication
+from amalthea_uros.perf.activities import Communication
 from amalthea_uros.units import Frequency, Time
 
 

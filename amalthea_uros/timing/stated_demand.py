@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.perf.software import Execute, ExecutionNeed, Process
+from amalthea_uros.perf.activities import Execute, ExecutionNeed
+from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.stretches import executed
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from functools import reduce
 from typing import TypeAlias
 
-from amalthea_uros.perf.software import (
+from amalthea_uros.perf.activities import (
     Activity,
     Call,
     Group,

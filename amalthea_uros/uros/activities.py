@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from amalthea_uros.perf.software import (
+from amalthea_uros.perf.activities import (
     AccessKind,
     Activity,
     Execute,

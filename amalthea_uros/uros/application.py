@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from amalthea_uros.perf.software import Call, Runnable
+from amalthea_uros.perf.activities import Call
+from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec.middleware import Interrupt
 from amalthea_uros.units import Time
 from amalthea_uros.uros.activities import activity_sequence

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from amalthea_uros.perf import stimuli as perf
+from amalthea_uros.perf.activities import Activity, Call
 from amalthea_uros.perf.distributions import Uniform
-from amalthea_uros.perf.software import Activity, Call, IsrCategory, Preemption, Runnable
+from amalthea_uros.perf.software import IsrCategory, Preemption, Runnable
 from amalthea_uros.spec import processes as spec
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.activities import activity_sequence, trigger_name

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from amalthea_uros.perf.software import AccessKind, Call, LabelAccess, Runnable, walk
+from amalthea_uros.perf.activities import AccessKind, Call, LabelAccess, walk
+from amalthea_uros.perf.software import Runnable
 from amalthea_uros.uros.application import body_name
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.context import AssemblyContext

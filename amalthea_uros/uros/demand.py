@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import (
     Beta,
     Boundaries,
@@ -21,7 +22,6 @@ from amalthea_uros.perf.distributions import (
     Weibull,
     highest,
 )
-from amalthea_uros.perf.software import Demand, Execute
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.units import Frequency, Time, down, ticks_of_time, time_text, up
 from amalthea_uros.uros.hardware import Controller

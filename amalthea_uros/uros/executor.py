@@ -14,7 +14,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.perf.software import AccessKind, Activity, Call, LabelAccess, Receive, ReceiveOperation, Runnable
+from amalthea_uros.perf.activities import AccessKind, Activity, Call, LabelAccess, Receive, ReceiveOperation
+from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.middleware import Executor, MessageCost, Middleware

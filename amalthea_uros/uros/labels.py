@@ -6,8 +6,9 @@ from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.activities import AccessKind, LabelAccess, walk
 from amalthea_uros.perf.mapping import Placement
-from amalthea_uros.perf.software import AccessKind, Label, LabelAccess, Runnable, walk
+from amalthea_uros.perf.software import Label, Runnable
 from amalthea_uros.spec.description import Description
 from amalthea_uros.units import DataSize
 from amalthea_uros.uros.callbacks import Callback

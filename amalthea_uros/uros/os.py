@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from amalthea_uros.perf.activities import SemaphoreAccess
 from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
 from amalthea_uros.perf.os import InterruptController, OperatingSystem, Os, Scheduler, Semaphore, SemaphoreKind
-from amalthea_uros.perf.software import SemaphoreAccess
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.priorities import priorities
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.perf.software import Activity, IsrCategory, Preemption
+from amalthea_uros.perf.activities import Activity
+from amalthea_uros.perf.software import IsrCategory, Preemption
 from amalthea_uros.units import Time
 
 

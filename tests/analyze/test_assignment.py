@@ -17,9 +17,10 @@ from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.task import Task as AnalysedTask
 from amalthea_uros.analyze.sensitivity import max_growth, sensitivity
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.activities import SemaphoreAccess, SemaphoreOperation, Trigger
 from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
 from amalthea_uros.perf.os import InterruptController, Os, Semaphore
-from amalthea_uros.perf.software import Isr, Preemption, SemaphoreAccess, SemaphoreOperation, Task, Trigger
+from amalthea_uros.perf.software import Isr, Preemption, Task
 from amalthea_uros.perf.stimuli import InterProcess, Periodic
 from amalthea_uros.timing.event_models import Periodic as PeriodicEvents
 from amalthea_uros.timing.multiframe import MultiframeDemand

@@ -13,20 +13,11 @@ from test_system import system
 
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.activities import AccessKind, Call, Communication, Demand, Execute, LabelAccess
 from amalthea_uros.perf.distributions import Boundaries, Uniform
 from amalthea_uros.perf.events import EventChain, Events, RunnableChange, RunnableEvent, Segment, Sequence
 from amalthea_uros.perf.mapping import TaskAllocation
-from amalthea_uros.perf.software import (
-    AccessKind,
-    Call,
-    Communication,
-    Demand,
-    Execute,
-    LabelAccess,
-    Preemption,
-    Runnable,
-    Task,
-)
+from amalthea_uros.perf.software import Preemption, Runnable, Task
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import MICROSECOND as US

@@ -11,9 +11,10 @@ from amalthea_uros import describe
 from amalthea_uros.analyze.execution_shares import ACCESSES, OTHER, OVERHEADS, OWN
 from amalthea_uros.analyze.explanation import explain_process
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.activities import Call, Case, Group, Loop, Switch
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler
-from amalthea_uros.perf.software import Call, Case, Group, Loop, Runnable, Switch, Task
+from amalthea_uros.perf.software import Runnable, Task
 from amalthea_uros.perf.stimuli import Counter, Periodic
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import MICROSECOND as US

@@ -14,24 +14,22 @@ from amalthea_uros import describe
 from amalthea_uros.analyze import metrics
 from amalthea_uros.analyze.results import JobMetric, Metric
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.constraints import Bound, Constraints, Requirement, TimeLimit, TimeMetric
-from amalthea_uros.perf.distributions import Boundaries, Constant, Uniform
-from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
-from amalthea_uros.perf.mapping import Mapping, TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler, Semaphore
-from amalthea_uros.perf.software import (
+from amalthea_uros.perf.activities import (
     Call,
     Chance,
     Demand,
     Execute,
     Loop,
     ProbabilitySwitch,
-    Runnable,
     SemaphoreAccess,
     SemaphoreOperation,
-    Software,
-    Task,
 )
+from amalthea_uros.perf.constraints import Bound, Constraints, Requirement, TimeLimit, TimeMetric
+from amalthea_uros.perf.distributions import Boundaries, Constant, Uniform
+from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
+from amalthea_uros.perf.mapping import Mapping, TaskAllocation
+from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler, Semaphore
+from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, Periodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import MICROSECOND as US

@@ -11,37 +11,31 @@ from system_strategies import systems
 from amalthea_uros.analyze.assignment import propose_priorities
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import conditions, hardware, mapping, os
+from amalthea_uros.perf.activities import (
+    AccessKind,
+    Call,
+    Case,
+    Count,
+    Demand,
+    Execute,
+    Group,
+    LabelAccess,
+    RaiseEvent,
+    Receive,
+    SchedulePoint,
+    SemaphoreAccess,
+    SemaphoreOperation,
+    Send,
+    Switch,
+    Terminate,
+    WaitEvent,
+)
 from amalthea_uros.perf.distributions import Boundaries, Constant, Gauss
 from amalthea_uros.perf.events import CustomEvent, Events, LabelChange, LabelEvent
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import Duration, OperatingSystem, Os, Overhead, Parameter, Parent, Policy, Scheduler, Service
-from amalthea_uros.perf.software import (
-    AccessKind,
-    Call,
-    Case,
-    Channel,
-    Count,
-    Demand,
-    Execute,
-    Group,
-    Isr,
-    IsrCategory,
-    Label,
-    LabelAccess,
-    RaiseEvent,
-    Receive,
-    Runnable,
-    SchedulePoint,
-    SemaphoreAccess,
-    SemaphoreOperation,
-    Send,
-    Software,
-    Switch,
-    Task,
-    Terminate,
-    WaitEvent,
-)
+from amalthea_uros.perf.software import Channel, Isr, IsrCategory, Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.settings import Memory, Settings

@@ -5,8 +5,8 @@ from test_policies import root, system, ticks
 from test_system import by_name
 
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.os import Parent, Policy, Scheduler
-from amalthea_uros.perf.software import Trigger
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.units import MICROSECOND as US
 

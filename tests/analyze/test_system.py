@@ -11,26 +11,13 @@ from amalthea_uros import describe, extract, load
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.perf import stimuli as perf_stimuli
+from amalthea_uros.perf.activities import Call, Case, Chance, Demand, Execute, Loop, ProbabilitySwitch, Switch, Trigger
 from amalthea_uros.perf.constraints import Bound, Constraints, CountLimit, CountMetric, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.distributions import Boundaries, Constant, Uniform
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
-from amalthea_uros.perf.software import (
-    Call,
-    Case,
-    Chance,
-    Demand,
-    Execute,
-    Loop,
-    Preemption,
-    ProbabilitySwitch,
-    Runnable,
-    Software,
-    Switch,
-    Task,
-    Trigger,
-)
+from amalthea_uros.perf.software import Preemption, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.settings import Settings

@@ -8,6 +8,7 @@ from test_system import by_name, one_core, system, ticks
 
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.analyze.verdicts import Ends, Verdict, decide
+from amalthea_uros.perf.activities import Call, Loop, Trigger
 from amalthea_uros.perf.constraints import (
     Bound,
     Constraints,
@@ -20,7 +21,7 @@ from amalthea_uros.perf.constraints import (
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
-from amalthea_uros.perf.software import Call, Loop, Runnable, Task, Trigger
+from amalthea_uros.perf.software import Runnable, Task
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, RelativePeriodic
 from amalthea_uros.units import MICROSECOND as US
 

@@ -7,8 +7,9 @@ from amalthea_uros.am import Label, Task
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.errors import WriteError
+from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.os import Os, Semaphore, SemaphoreKind
-from amalthea_uros.perf.software import Call, Software
+from amalthea_uros.perf.software import Software
 from amalthea_uros.perf.software import Task as PerfTask
 from amalthea_uros.perf.system import System
 

@@ -7,6 +7,23 @@ from typing import Any
 
 from opponent.systems import Item, PlainSystem, items_of
 
+from amalthea_uros.perf.activities import (
+    AccessKind,
+    Activity,
+    Call,
+    Chance,
+    Communication,
+    Demand,
+    Execute,
+    Group,
+    LabelAccess,
+    ProbabilitySwitch,
+    SchedulePoint,
+    SemaphoreAccess,
+    SemaphoreOperation,
+    Trigger,
+    Waiting,
+)
 from amalthea_uros.perf.distributions import Boundaries, Constant, Distribution
 from amalthea_uros.perf.events import EventChain, Events, ProcessChange, ProcessEvent, Segment, Sequence
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure, StructureKind
@@ -21,29 +38,7 @@ from amalthea_uros.perf.os import (
     Semaphore,
     SemaphoreKind,
 )
-from amalthea_uros.perf.software import (
-    AccessKind,
-    Activity,
-    Call,
-    Chance,
-    Communication,
-    Demand,
-    Execute,
-    Group,
-    Isr,
-    Label,
-    LabelAccess,
-    Preemption,
-    ProbabilitySwitch,
-    Runnable,
-    SchedulePoint,
-    SemaphoreAccess,
-    SemaphoreOperation,
-    Software,
-    Task,
-    Trigger,
-    Waiting,
-)
+from amalthea_uros.perf.software import Isr, Label, Preemption, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic, RelativePeriodic, Stimuli, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Frequency

@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 
 from amalthea_uros.analyze.results import Claim
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.activities import Call, Chance, Demand, Execute, Group, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.hardware import Clock, Core, CoreType, Hardware, Structure
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
-from amalthea_uros.perf.software import Call, Chance, Demand, Execute, Group, ProbabilitySwitch, Runnable, Software, Task
+from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, Periodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.context import TimingContext

@@ -9,11 +9,7 @@ from support import MODEL, ROOT, SHARED, corpus, hand_written
 
 from amalthea_uros import analyze_system, build_model, check, extract, load
 from amalthea_uros.errors import ReadError
-from amalthea_uros.perf.distributions import Boundaries, Bucket, Constant, Gauss, Histogram
-from amalthea_uros.perf.hardware import Clock, Core, CoreType, Feature, Hardware, Structure
-from amalthea_uros.perf.mapping import IsrAllocation, Mapping, TaskAllocation
-from amalthea_uros.perf.os import InterruptController, OperatingSystem, Os, Policy, Scheduler
-from amalthea_uros.perf.software import (
+from amalthea_uros.perf.activities import (
     Call,
     Case,
     Chance,
@@ -22,14 +18,15 @@ from amalthea_uros.perf.software import (
     Execute,
     ExecutionNeed,
     Group,
-    Isr,
     ProbabilitySwitch,
-    Runnable,
-    Software,
     Switch,
-    Task,
     Trigger,
 )
+from amalthea_uros.perf.distributions import Boundaries, Bucket, Constant, Gauss, Histogram
+from amalthea_uros.perf.hardware import Clock, Core, CoreType, Feature, Hardware, Structure
+from amalthea_uros.perf.mapping import IsrAllocation, Mapping, TaskAllocation
+from amalthea_uros.perf.os import InterruptController, OperatingSystem, Os, Policy, Scheduler
+from amalthea_uros.perf.software import Isr, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import (
     ArrivalCurve,
     ArrivalCurvePoint,

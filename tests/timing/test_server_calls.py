@@ -7,28 +7,25 @@ import pytest
 
 from amalthea_uros import analyze_system
 from amalthea_uros.analyze.results import Quantity
-from amalthea_uros.perf.distributions import Constant
-from amalthea_uros.perf.events import EventChain, Events, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
-from amalthea_uros.perf.hardware import Access, Clock, Core, Hardware, Latency, Memory, Structure
-from amalthea_uros.perf.mapping import Mapping, Placement, TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Overhead, Policy, Scheduler, Service
-from amalthea_uros.perf.software import (
+from amalthea_uros.perf.activities import (
     AccessKind,
     Call,
     Chance,
     Demand,
     Execute,
-    Label,
     LabelAccess,
     ProbabilitySwitch,
-    Runnable,
     SenderReceiverAccess,
     ServerCall,
     ServerCallKind,
-    Software,
-    Task,
     Trigger,
 )
+from amalthea_uros.perf.distributions import Constant
+from amalthea_uros.perf.events import EventChain, Events, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
+from amalthea_uros.perf.hardware import Access, Clock, Core, Hardware, Latency, Memory, Structure
+from amalthea_uros.perf.mapping import Mapping, Placement, TaskAllocation
+from amalthea_uros.perf.os import OperatingSystem, Os, Overhead, Policy, Scheduler, Service
+from amalthea_uros.perf.software import Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.settings import Memory as MemoryMode

@@ -12,6 +12,18 @@ from test_rules import model
 
 from amalthea_uros import analyze_system, build_model, check, extract, load
 from amalthea_uros.errors import ReadError
+from amalthea_uros.perf.activities import (
+    AccessKind,
+    Call,
+    Demand,
+    Execute,
+    Group,
+    LabelAccess,
+    RaiseEvent,
+    Receive,
+    Send,
+    Trigger,
+)
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.events import (
     ChannelChange,
@@ -30,23 +42,7 @@ from amalthea_uros.perf.events import (
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
-from amalthea_uros.perf.software import (
-    AccessKind,
-    Call,
-    Channel,
-    Demand,
-    Execute,
-    Group,
-    Label,
-    LabelAccess,
-    RaiseEvent,
-    Receive,
-    Runnable,
-    Send,
-    Software,
-    Task,
-    Trigger,
-)
+from amalthea_uros.perf.software import Channel, Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import UnresolvedError

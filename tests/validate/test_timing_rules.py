@@ -6,7 +6,7 @@ from test_rules import model
 
 from amalthea_uros import check, extract, load
 from amalthea_uros.errors import ReadError
-from amalthea_uros.perf.software import AccessKind, LabelAccess
+from amalthea_uros.perf.activities import AccessKind, LabelAccess
 from amalthea_uros.timing.dataflow.links import Dataflow
 
 

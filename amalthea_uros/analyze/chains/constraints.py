@@ -19,6 +19,7 @@ from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.implausible_limits import note_implausible
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, RequirementResult, Value
 from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
+from amalthea_uros.perf.activities import AccessKind, Call, LabelAccess
 from amalthea_uros.perf.constraints import (
     ChainEnd,
     ChainSynchronization,
@@ -33,7 +34,6 @@ from amalthea_uros.perf.constraints import (
 )
 from amalthea_uros.perf.events import LabelChange, LabelEvent
 from amalthea_uros.perf.named import Named
-from amalthea_uros.perf.software import AccessKind, Call, LabelAccess
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.positions import ActivityPosition

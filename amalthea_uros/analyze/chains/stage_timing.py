@@ -28,7 +28,8 @@ from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.schedule import MAX_JOBS
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.perf.software import Communication, Process, Trigger
+from amalthea_uros.perf.activities import Communication, Trigger
+from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.context import TimingContext

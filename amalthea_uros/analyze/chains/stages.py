@@ -10,7 +10,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from amalthea_uros.perf.software import Communication, Group, LabelAccess, Process
+from amalthea_uros.perf.activities import Communication, Group, LabelAccess
+from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.counters import ALWAYS
 from amalthea_uros.timing.dataflow.events import EventOccurrence

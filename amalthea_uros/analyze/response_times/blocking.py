@@ -19,7 +19,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.perf.software import Activity, Preemption
+from amalthea_uros.perf.activities import Activity
+from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.critical_sections import Protection
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.preemption import preemption

@@ -9,11 +9,11 @@ from amalthea_uros.bridge.codecs import enumeration, reference, same_names
 from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.entries import Entry, Field, Table
 from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.tables.activities import ACTIVITIES, DEMAND, ITEMS, PROTECTIONS
 from amalthea_uros.bridge.tables.parameters import Definitions, Given, extract_parameters, extract_policy
-from amalthea_uros.bridge.tables.software import ACTIVITIES, DEMAND, ITEMS, PROTECTIONS
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.perf import os as perf
-from amalthea_uros.perf.software import Protection
+from amalthea_uros.perf.activities import Protection
 
 SEMAPHORES = Table(
     Entry(

@@ -6,6 +6,19 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 
+from amalthea_uros.perf.activities import (
+    AccessKind,
+    Call,
+    LabelAccess,
+    ModeAccess,
+    ModeOperation,
+    RaiseEvent,
+    Receive,
+    SemaphoreAccess,
+    SemaphoreOperation,
+    Send,
+    SenderReceiverAccess,
+)
 from amalthea_uros.perf.events import (
     ChannelChange,
     ChannelEvent,
@@ -23,20 +36,7 @@ from amalthea_uros.perf.events import (
     SemaphoreEvent,
     StimulusEvent,
 )
-from amalthea_uros.perf.software import (
-    AccessKind,
-    Call,
-    LabelAccess,
-    ModeAccess,
-    ModeOperation,
-    Process,
-    RaiseEvent,
-    Receive,
-    SemaphoreAccess,
-    SemaphoreOperation,
-    Send,
-    SenderReceiverAccess,
-)
+from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.counters import CallSites
 from amalthea_uros.timing.dataflow.positions import ActivityPosition, TooComplexError, positions

@@ -10,9 +10,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
 
-from amalthea_uros.perf.conditions import read_by
-from amalthea_uros.perf.events import Event, RunnableChange, RunnableEvent
-from amalthea_uros.perf.software import (
+from amalthea_uros.perf.activities import (
     AccessKind,
     Call,
     LabelAccess,
@@ -27,6 +25,8 @@ from amalthea_uros.perf.software import (
     Trigger,
     WaitEvent,
 )
+from amalthea_uros.perf.conditions import read_by
+from amalthea_uros.perf.events import Event, RunnableChange, RunnableEvent
 from amalthea_uros.perf.stimuli import EventTriggered
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import EventLocator, EventOccurrence, JobPhase, raises

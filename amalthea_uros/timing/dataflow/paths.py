@@ -8,6 +8,7 @@ from itertools import pairwise, product
 
 import networkx as nx
 
+from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.events import (
     Event,
     EventChain,
@@ -19,7 +20,6 @@ from amalthea_uros.perf.events import (
     Segment,
     Sequence,
 )
-from amalthea_uros.perf.software import Call
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.links import Dataflow, LinkKind, NamesOf, reads, writes
 from amalthea_uros.timing.dataflow.routes import is_linked

@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 from math import ceil
 from typing import NamedTuple, TypeAlias
 
-from amalthea_uros.perf.conditions import Condition
-from amalthea_uros.perf.software import (
+from amalthea_uros.perf.activities import (
     Activity,
     Call,
     Count,
@@ -15,11 +14,11 @@ from amalthea_uros.perf.software import (
     LabelAccess,
     Loop,
     ProbabilitySwitch,
-    Process,
-    Runnable,
     Switch,
     inner_activities,
 )
+from amalthea_uros.perf.conditions import Condition
+from amalthea_uros.perf.software import Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.counters import ALWAYS, CallSites, UncountableError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from amalthea_uros.perf.software import Activity, Call, Count, Loop, ProbabilitySwitch, Switch
+from amalthea_uros.perf.activities import Activity, Call, Count, Loop, ProbabilitySwitch, Switch
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.modes import holds

@@ -9,7 +9,8 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from test_chain_systems import END, START, at, evaluate, read, system, ticks, write
 
-from amalthea_uros.perf.software import Communication, Preemption, Trigger
+from amalthea_uros.perf.activities import Communication, Trigger
+from amalthea_uros.perf.software import Preemption
 from amalthea_uros.perf.stimuli import InterProcess
 
 

@@ -16,8 +16,8 @@ from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.explanation import EXPLAINED, explain_chain
 from amalthea_uros.analyze.results import Claim, Quantity
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.hardware import StructureKind
-from amalthea_uros.perf.software import Communication
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 

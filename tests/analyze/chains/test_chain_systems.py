@@ -10,6 +10,20 @@ from test_methods import cases
 
 from amalthea_uros import Settings, analyze_system, describe, extract, load
 from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.perf.activities import (
+    AccessKind,
+    Call,
+    Communication,
+    Demand,
+    Execute,
+    LabelAccess,
+    RaiseEvent,
+    Receive,
+    SemaphoreAccess,
+    SemaphoreOperation,
+    Send,
+    Trigger,
+)
 from amalthea_uros.perf.distributions import Boundaries, Constant
 from amalthea_uros.perf.events import (
     ChainReference,
@@ -35,24 +49,7 @@ from amalthea_uros.perf.events import (
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure, StructureKind
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
-from amalthea_uros.perf.software import (
-    AccessKind,
-    Call,
-    Communication,
-    Demand,
-    Execute,
-    LabelAccess,
-    Preemption,
-    RaiseEvent,
-    Receive,
-    Runnable,
-    SemaphoreAccess,
-    SemaphoreOperation,
-    Send,
-    Software,
-    Task,
-    Trigger,
-)
+from amalthea_uros.perf.software import Preemption, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import MICROSECOND as US

@@ -6,6 +6,7 @@ import pytest
 from test_chain_systems import END, START, at, producer_and_consumer, read, system, ticks, write
 
 from amalthea_uros import analyze_system
+from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.constraints import (
     ChainEnd,
     ChainSynchronization,
@@ -22,7 +23,7 @@ from amalthea_uros.perf.constraints import (
 )
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.events import EventChain
-from amalthea_uros.perf.software import Call, Runnable
+from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.units import MICROSECOND as US
 

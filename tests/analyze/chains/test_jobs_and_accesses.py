@@ -12,10 +12,11 @@ from amalthea_uros import analyze_system
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.event_windows import EventWindows
 from amalthea_uros.analyze.results import Verdict
+from amalthea_uros.perf.activities import Call, Chance, Communication, Group, ProbabilitySwitch, Trigger
 from amalthea_uros.perf.constraints import Constraints, EventSynchronization, LatencyConstraint, LatencyKind
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.events import RunnableChange, RunnableEvent
-from amalthea_uros.perf.software import Call, Chance, Communication, Group, Preemption, ProbabilitySwitch, Runnable, Trigger
+from amalthea_uros.perf.software import Preemption, Runnable
 from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic, RelativePeriodic
 from amalthea_uros.units import MICROSECOND as US
 

@@ -7,7 +7,8 @@ from itertools import combinations_with_replacement
 from typing import NamedTuple
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.perf.software import AccessKind, Communication, Label, LabelAccess, Protection, SenderReceiverAccess
+from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess, Protection, SenderReceiverAccess
+from amalthea_uros.perf.software import Label
 from amalthea_uros.timing.allocation import operating_system_of
 from amalthea_uros.timing.critical_sections import exclusively_held
 from amalthea_uros.timing.dataflow.events import UnresolvedError

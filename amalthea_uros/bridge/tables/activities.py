@@ -1,0 +1,394 @@
+"""What processes and runnables do: the activities of their graphs."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any, cast
+
+from amalthea_uros.bridge.codecs import (
+    Codec,
+    build_reason,
+    enumeration,
+    extract_reason,
+    reference,
+    references,
+    same_names,
+)
+from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.bridge.entries import Entry, Field, Table
+from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.tables.conditions import CONDITION
+from amalthea_uros.bridge.tables.distributions import DISCRETE
+from amalthea_uros.bridge.tables.stimuli import COUNTER
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.perf import activities as perf
+
+# Demand
+
+
+def _build_demand(demand: perf.Demand, context: Building) -> am.Ticks:
+    entries = []
+    for name, ticks in demand.by_core_type:
+        core_type: Any = context.find(Kind.CORE_TYPE, name)
+        entries.append(am.TicksEntry(key=core_type, value=DISCRETE.build(ticks, context)))
+    return am.Ticks(default=None if demand.ticks is None else DISCRETE.build(demand.ticks, context), extended=entries)
+
+
+def _extract_demand(ticks: Any, context: Extracting, _element: Element) -> perf.Demand | None:
+    by_core_type: list[tuple[str, Any]] = [
+        (name, None if entry.value is None else DISCRETE.extract(entry.value, context))
+        for entry in ticks.extended
+        if (name := _CORE_TYPE.extract(entry.key, context, ticks)) is not None
+    ]
+    default = None if ticks.default is None else DISCRETE.extract(ticks.default, context)
+    values = [value for _, value in by_core_type]
+    # A core type whose own value is unknown does not take the default.
+    if None in values or (default is None and (ticks.default is not None or not values)):
+        context.note("EXT004", "Ticks are incomplete: a value is missing", ticks)
+        return None
+    return perf.Demand(default, tuple(by_core_type))
+
+
+_CORE_TYPE = reference(Kind.CORE_TYPE)
+
+#: Demand as Ticks; without a value on any core if something is missing.
+DEMAND = Codec(_build_demand, lambda ticks, context, element: _extract_demand(ticks, context, element) or perf.Demand())
+
+
+# Numbers that were measured
+
+
+def _build_count(count: perf.Count | float, _context: Building) -> am.NumericStatistic:
+    if isinstance(count, perf.Count):
+        return am.MinAvgMaxStatistic(min=count.least, avg=float(count.mean), max=count.most)
+    return am.SingleValueStatistic(value=float(count))
+
+
+def _extract_count(statistic: Any, _context: Extracting, _element: Element) -> perf.Count | float | None:
+    match statistic:
+        case am.MinAvgMaxStatistic(min=least, avg=mean, max=most):
+            return perf.Count(least=least or 0, mean=mean or 0.0, most=most or 0)
+        case am.SingleValueStatistic(value=value):
+            return value or 0.0
+    return None
+
+
+_ACCESSES = Codec(
+    lambda count, context: am.LabelAccessStatistic(value=_build_count(count, context)),
+    lambda value, context, element: _extract_count(value.value, context, element),
+)
+_CALLS = Codec(
+    lambda count, context: am.RunEntityCallStatistic(statistic=_build_count(count, context)),
+    lambda value, context, element: _extract_count(value.statistic, context, element),
+)
+
+# Activities
+
+_ACCESSES_OF_LABELS = (am.LabelAccess, am.SenderReceiverCommunication)
+#: What takes time, or may wait, so that it must not disappear if it is incomplete.
+_TAKING_TIME = (
+    *_ACCESSES_OF_LABELS,
+    am.Ticks,
+    am.ExecutionNeed,
+    am.RunnableCall,
+    am.ServerCall,
+    am.SemaphoreAccess,
+    am.WaitEvent,
+    am.EnforcedMigration,
+)
+#: The name of the group that represents an incomplete access.
+_ACCESS = "access"
+
+
+class _Activities(Table):
+    """Everything that can stand in an activity graph; what is shaped differently in AMALTHEA has its own functions."""
+
+    def build(self, item: Any, context: Building) -> Any:
+        match item:
+            case perf.Execute(demand=demand):
+                return _build_demand(demand, context)
+            case perf.ExecutionNeed(needs=needs):
+                return am.ExecutionNeed(
+                    needs=[am.NeedEntry(key=key, value=DISCRETE.build(need, context)) for key, need in needs]
+                )
+            case perf.ProbabilitySwitch(branches=branches):
+                return am.ProbabilitySwitch(
+                    entries=[
+                        am.ProbabilitySwitchEntry(probability=branch.weight, items=ITEMS.build(branch.activities, context))
+                        for branch in branches
+                    ]
+                )
+            case perf.Switch():
+                return _build_switch(item, context)
+            case perf.SenderReceiverAccess():
+                return _build_communication(item, context)
+            case perf.ServerCall():
+                return _build_server_call(item, context)
+            case perf.Incomplete(reason=reason, is_access=is_access):
+                return am.Group(name=_ACCESS if is_access else None, custom_properties=build_reason(reason))
+        return super().build(item, context)
+
+    def extract(self, element: Any, context: Extracting) -> Any:
+        found = self._complete(element, context)
+        if found is not None or not isinstance(element, _TAKING_TIME):
+            return found
+        return perf.Incomplete(
+            reason=f"an incomplete {type(element).__name__}",
+            is_access=isinstance(element, _ACCESSES_OF_LABELS),
+            locate=partial(context.location, element),
+        )
+
+    def _complete(self, element: Any, context: Extracting) -> Any:
+        """The activity; None, with a finding, if something is missing."""
+        match element:
+            case am.Group() if (reason := extract_reason(element)) is not None:
+                is_access = element.name == _ACCESS
+                return perf.Incomplete(reason=reason, is_access=is_access, locate=partial(context.location, element))
+            case am.Ticks():
+                demand = _extract_demand(element, context, element)
+                return None if demand is None else perf.Execute(demand=demand, locate=partial(context.location, element))
+            case am.ExecutionNeed():
+                needs: tuple[tuple[str, Any], ...] = tuple(
+                    (entry.key or "", None if entry.value is None else DISCRETE.extract(entry.value, context))
+                    for entry in element.needs
+                )
+                if any(need is None for _, need in needs):
+                    context.note("EXT004", "ExecutionNeed is incomplete: a value is missing", element)
+                    return None
+                return perf.ExecutionNeed(needs=needs, locate=partial(context.location, element))
+            case am.ProbabilitySwitch():
+                return perf.ProbabilitySwitch(
+                    branches=tuple(
+                        perf.Chance(weight=entry.probability or 0.0, activities=ITEMS.extract(entry.items, context, element))
+                        for entry in element.entries
+                    ),
+                    locate=partial(context.location, element),
+                )
+            case am.SenderReceiverCommunication():
+                return _extract_communication(element, context)
+            case am.ServerCall():
+                return _extract_server_call(element, context)
+            case am.Switch() | am.ModeSwitch():
+                return _extract_switch(element, context)
+        return super().extract(element, context)
+
+
+def _build_switch(switch: perf.Switch, context: Building) -> Element:
+    # Until 1.2 there is the switch on modes only.
+    classes = (
+        (am.Switch, am.SwitchEntry, am.SwitchDefault)
+        if context.is_at_least(2)
+        else (am.ModeSwitch, am.ModeSwitchEntry, am.ModeSwitchDefault)
+    )
+    switch_class: Any
+    entry_class: Any
+    default_class: Any
+    switch_class, entry_class, default_class = classes
+    found = switch_class(
+        entries=[
+            entry_class(
+                name=case.name or None,
+                condition=None if case.condition is None else CONDITION.build(case.condition, context),
+                items=ITEMS.build(case.activities, context),
+            )
+            for case in switch.cases
+        ]
+    )
+    if switch.default is not None:
+        found.default_entry = default_class(items=ITEMS.build(switch.default, context))
+    return cast(Element, found)
+
+
+def _extract_switch(element: Any, context: Extracting) -> perf.Switch:
+    cases = tuple(
+        perf.Case(
+            name=entry.name or "",
+            condition=None if entry.condition is None else CONDITION.extract(entry.condition, context, element),
+            activities=ITEMS.extract(entry.items, context, element),
+        )
+        for entry in element.entries
+    )
+    default = element.default_entry
+    activities = None if default is None else ITEMS.extract(default.items, context, element)
+    return perf.Switch(cases=cases, default=activities, locate=partial(context.location, element))
+
+
+def _build_communication(access: perf.SenderReceiverAccess, context: Building) -> Element:
+    label: Any = _LABEL.build(access.label, context)
+    buffered = access.buffered or None
+    if access.kind is perf.AccessKind.READ:
+        return am.SenderReceiverRead(label=label, buffered=buffered)
+    return am.SenderReceiverWrite(label=label, buffered=buffered, notified_runnables=_RUNNABLES.build(access.notifies, context))
+
+
+def _extract_communication(element: Any, context: Extracting) -> perf.SenderReceiverAccess | None:
+    label = _LABEL.extract(element.label, context, element)
+    if label is None:
+        context.note("EXT004", f"{type(element).__name__} is incomplete: it has no label", element)
+        return None
+    is_write = isinstance(element, am.SenderReceiverWrite)
+    return perf.SenderReceiverAccess(
+        label=label,
+        kind=perf.AccessKind.WRITE if is_write else perf.AccessKind.READ,
+        buffered=bool(element.buffered),
+        notifies=_RUNNABLES.extract(element.notified_runnables, context, element) if is_write else (),
+        locate=partial(context.location, element),
+    )
+
+
+def _build_server_call(call: perf.ServerCall, context: Building) -> Element:
+    server: Any = _RUNNABLE.build(call.runnable, context)
+    match call.kind:
+        case perf.ServerCallKind.SYNCHRONOUS:
+            return am.SynchronousServerCall(
+                server_runnable=server,
+                waiting_behaviour=None if call.waiting is None else _WAITING_CODEC.build(call.waiting, context),
+            )
+        case perf.ServerCallKind.ASYNCHRONOUS:
+            return am.AsynchronousServerCall(server_runnable=server, result_runnable=_RUNNABLE.build(call.result, context))
+    blocking = am.BlockingType.NON_BLOCKING if not call.waits else _BLOCKING.get(call.waiting)
+    return am.GetResultServerCall(server_runnable=server, blocking_type=blocking)
+
+
+def _extract_server_call(element: Any, context: Extracting) -> perf.ServerCall | None:
+    server = _RUNNABLE.extract(element.server_runnable, context, element)
+    if server is None:
+        context.note("EXT004", f"{type(element).__name__} is incomplete: it has no serverRunnable", element)
+        return None
+    result = element.result_runnable if isinstance(element, am.AsynchronousServerCall) else None
+    return perf.ServerCall(
+        runnable=server,
+        kind=_SERVER_CALLS[type(element)],
+        result=_RUNNABLE.extract(result, context, element),
+        waits=getattr(element, "blocking_type", None) is not am.BlockingType.NON_BLOCKING,
+        waiting=_waiting(element, context),
+        locate=partial(context.location, element),
+    )
+
+
+def _waiting(element: Any, context: Extracting) -> perf.Waiting | None:
+    """How the client of a call waits."""
+    if isinstance(element, am.GetResultServerCall):
+        return next((waiting for waiting, blocking in _BLOCKING.items() if blocking is element.blocking_type), None)
+    stated = element.waiting_behaviour if isinstance(element, am.SynchronousServerCall) else None
+    found: perf.Waiting | None = None if stated is None else _WAITING_CODEC.extract(stated, context, element)
+    return found
+
+
+_LABEL, _RUNNABLE, _RUNNABLES = reference(Kind.DATA), reference(Kind.RUNNABLE), references(Kind.RUNNABLE)
+_WAITING_CODEC = same_names(perf.Waiting, am.WaitingBehaviour)
+_BLOCKING: dict[perf.Waiting | None, am.BlockingType] = {
+    perf.Waiting.ACTIVE: am.BlockingType.ACTIVE_WAIT,
+    perf.Waiting.PASSIVE: am.BlockingType.PASSIVE_WAIT,
+}
+_SERVER_CALLS: dict[type[Element], perf.ServerCallKind] = {
+    am.SynchronousServerCall: perf.ServerCallKind.SYNCHRONOUS,
+    am.AsynchronousServerCall: perf.ServerCallKind.ASYNCHRONOUS,
+    am.GetResultServerCall: perf.ServerCallKind.GET_RESULT,
+}
+
+
+#: The items of a group, a branch or a graph.
+ITEMS = Codec(
+    lambda items, context: [ACTIVITIES.build(item, context) for item in items],
+    lambda values, context, _element: ACTIVITIES.extract_all(values, context),
+)
+
+
+def _extract_events(value: Any, context: Extracting, element: Element) -> tuple[str, ...]:
+    names: tuple[str, ...] = references(Kind.OS_EVENT).extract(value.events, context, element)
+    return names
+
+
+_EVENT_MASK = Codec(
+    lambda names, context: am.EventMask(events=references(Kind.OS_EVENT).build(names, context)), _extract_events
+)
+PROTECTIONS = {
+    "NONE": "NO_PROTECTION",
+    "AUTOMATIC": "AUTOMATIC_PROTECTION",
+    "CUSTOM": "CUSTOM_PROTECTION",
+    "BY_MODEL": "HANDLED_BY_MODEL_ELEMENTS",
+}
+_WAITING = Field("waiting", "waiting_behaviour", _WAITING_CODEC)
+_COUNTER = Field("counter", "counter", COUNTER)
+_MASK = Field("events", "event_mask", _EVENT_MASK)
+_ITEMS = Field("activities", "items", ITEMS)
+_CHANNEL = Field("channel", "data", reference(Kind.DATA))
+_MODE_LABEL = Field("label", "data", reference(Kind.MODE_LABEL))
+_ALL_OF_THEM = Codec(
+    lambda value, _: am.WaitEventType.AND if value else am.WaitEventType.OR,
+    lambda value, _context, _element: value is not am.WaitEventType.OR,
+)
+
+ACTIVITIES: Table = _Activities(
+    Entry(
+        perf.Call,
+        am.RunnableCall,
+        Field("runnable", "runnable", reference(Kind.RUNNABLE)),
+        _COUNTER,
+        Field("times", "statistic", _CALLS),
+    ),
+    Entry(
+        perf.LabelAccess,
+        am.LabelAccess,
+        Field("label", "data", reference(Kind.DATA)),
+        Field("kind", "access", same_names(perf.AccessKind, am.LabelAccessEnum)),
+        Field(
+            "communication",
+            "implementation",
+            enumeration(
+                {
+                    perf.Communication.EXPLICIT: am.LabelAccessImplementation.EXPLICIT,
+                    perf.Communication.IMPLICIT: am.LabelAccessImplementation.IMPLICIT,
+                    perf.Communication.LET: am.LabelAccessImplementation.TIMED,
+                }
+            ),
+        ),
+        Field("protection", "data_stability", same_names(perf.Protection, am.LabelAccessDataStability, **PROTECTIONS)),
+        Field("times", "statistic", _ACCESSES),
+    ),
+    Entry(
+        perf.Group,
+        am.Group,
+        Field("name", "name"),
+        _ITEMS,
+        Field("ordered", "ordered"),
+        Field("interruptible", "interruptible"),
+    ),
+    Entry(perf.Loop, am.WhileLoop, _ITEMS, Field("condition", "condition", CONDITION)),
+    Entry(
+        perf.SemaphoreAccess,
+        am.SemaphoreAccess,
+        Field("semaphore", "semaphore", reference(Kind.SEMAPHORE)),
+        Field("operation", "access", same_names(perf.SemaphoreOperation, am.SemaphoreAccessEnum)),
+        _WAITING,
+    ),
+    Entry(perf.Trigger, am.InterProcessTrigger, Field("stimulus", "stimulus", reference(Kind.STIMULUS)), _COUNTER),
+    Entry(perf.RaiseEvent, am.CustomEventTrigger, Field("event", "event", reference(Kind.EVENT))),
+    Entry(perf.SetEvent, am.SetEvent, _MASK, Field("process", "process", reference(Kind.PROCESS)), _COUNTER),
+    Entry(perf.ClearEvent, am.ClearEvent, _MASK, _COUNTER),
+    Entry(perf.WaitEvent, am.WaitEvent, _MASK, Field("all_of_them", "mask_type", _ALL_OF_THEM), _WAITING, _COUNTER),
+    Entry(perf.Send, am.ChannelSend, _CHANNEL, Field("elements", "elements")),
+    Entry(
+        perf.Receive,
+        am.ChannelReceive,
+        _CHANNEL,
+        Field("elements", "elements"),
+        Field("operation", "receive_operation", same_names(perf.ReceiveOperation, am.ReceiveOperation)),
+        Field("must_be_new", "data_must_be_new"),
+        Field("index", "element_index"),
+        Field("at_least", "lower_bound"),
+    ),
+    Entry(
+        perf.ModeAccess,
+        am.ModeLabelAccess,
+        _MODE_LABEL,
+        Field("operation", "access", same_names(perf.ModeOperation, am.ModeLabelAccessEnum)),
+        Field("value", "value"),
+        Field("step", "step"),
+    ),
+    Entry(perf.SchedulePoint, am.SchedulePoint),
+    Entry(perf.Terminate, am.TerminateProcess, _COUNTER),
+    Entry(perf.Migrate, am.EnforcedMigration, Field("scheduler", "resource_owner", reference(Kind.SCHEDULER))),
+)

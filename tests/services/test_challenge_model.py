@@ -1,0 +1,70 @@
+"""The challenge model of 2017, and that of 2016, which is the same system: from the published file to response times.
+
+The figures come from the programs of the published solutions and from pyCPA.
+"""
+
+import json
+from fractions import Fraction
+
+import older_forms
+import pytest
+from support import SHARED
+
+from amalthea_uros import Settings, am, analyze_system, extract, load
+from amalthea_uros.units import MICROSECOND as US
+
+MODEL = SHARED / "corpus" / "WATERS_2017_v072.amxmi"
+FIGURES = SHARED / "vectors" / "waters2017.json"
+
+pytestmark = pytest.mark.skipif(not (MODEL.exists() and FIGURES.exists()), reason="the challenge is not at hand")
+
+CORES = ["CORE0", "CORE1", "CORE2", "CORE3"]
+
+
+@pytest.fixture(scope="module")
+def figures():
+    return json.loads(FIGURES.read_text())
+
+
+@pytest.fixture(scope="module", params=[2017, 2016])
+def model(request, tmp_path_factory):
+    if request.param == 2017:
+        return load(MODEL)
+    path = tmp_path_factory.mktemp("challenge") / "2016.amxmi"
+    path.write_text(older_forms.itea(MODEL.read_text()))
+    return load(path)
+
+
+def test_everything_is_there(model, figures):
+    counts = figures["counts"]
+    assert len(list(model.all(am.Task))) == counts["tasks"]
+    assert len(list(model.all(am.Runnable))) == counts["runnables"]
+    assert len(list(model.all(am.Label))) == counts["labels"]
+    assert len(list(model.all(am.LabelAccess))) == counts["label_access_items"]
+    assert len(list(model.all(am.EventChain))) == counts["event_chains"]
+    assert [unit.name for unit in model.all(am.ProcessingUnit)] == CORES
+    assert not list(model.unresolved())
+
+
+def test_what_the_migration_could_not_keep(model):
+    assert [finding for finding in model.findings if finding.severity != "info" and finding.rule != "XMI009"] == []
+
+
+@pytest.mark.parametrize(
+    ("variant", "megahertz"), [("nominal_200MHz_nomem", 200), ("unimore_300MHz_nomem", 300), ("preemptive_300MHz_nomem", 300)]
+)
+def test_response_times(model, figures, variant, megahertz):
+    how = {task: task.preemption for task in model.all(am.Task)}
+    if variant.startswith("preemptive"):
+        for task in how:
+            task.preemption = am.Preemption.PREEMPTIVE
+    analysis = analyze_system(extract(model).system, Settings(dict.fromkeys(CORES, Fraction(megahertz * 10**6))))
+    for task, preemption in how.items():
+        task.preemption = preemption
+    for row in figures["tasks"]:
+        worst, expected = analysis[row["name"]].response.worst, row["wcrt_us"][variant]
+        if expected is None:
+            assert worst is None, row["name"]
+        else:
+            # A third of a picosecond is printed rounded to the nearest one; a bound is rounded up.
+            assert worst == pytest.approx(expected * US, abs=1), row["name"]
