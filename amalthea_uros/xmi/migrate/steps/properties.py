@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import count
+
 from amalthea_uros.xmi.migrate.node import Node
 
 #: Classes of values that have one text.
@@ -26,9 +28,20 @@ def add_property(node: Node, key: str, text: str) -> None:
 
 
 def move_properties(source: Node, target: Node) -> list[Node]:
-    """Give the custom properties of a node to another one, after those that it has; all that were moved."""
-    start = len(target.all("customProperties"))
+    """Give the custom properties of a node to another one, after those that it has; all that were moved.
+
+    A key that the other one has already gets a number, because keys are unique.
+    """
+    present = target.all("customProperties")
+    keys = {each.get("key") for each in present}
     moved = source.all("customProperties")
-    for at, each in enumerate(moved, start):
+    for at, each in enumerate(moved, len(present)):
+        base = key = each.get("key")
+        for number in count(2):
+            if key not in keys:
+                break
+            key = f"{base} {number}"
+        keys.add(key)
+        each.attributes["key"] = key
         target.insert(each, at)
     return moved

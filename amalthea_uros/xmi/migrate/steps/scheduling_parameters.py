@@ -31,12 +31,14 @@ def convert_algorithms(models: ModelSet, definitions: Definitions, notes: Notes)
         for extension in algorithm.all("parameterExtensions"):
             _convert_extension(scheduler, extension, definitions, notes)
         move_properties(algorithm, scheduler)
+        _note_unknown(scheduler, algorithm, notes)
 
 
 def _set_definition(scheduler: Node, algorithm: Node, definitions: Definitions, notes: Notes) -> None:
     if not algorithm.type:
         notes.lost(scheduler, "scheduling algorithm without a class")
-    elif algorithm.type == USER_SPECIFIC:
+        return
+    if algorithm.type == USER_SPECIFIC:
         keys = [extension.get("key") for extension in algorithm.all("parameterExtensions")]
         scheduler.refer("definition", definitions.user_specific(keys, algorithm))
     else:
@@ -88,8 +90,12 @@ def _convert_fixed(holder: Node, old: Node, definitions: Definitions, notes: Not
             time.tag, time.type = "value", "Time"
             added.insert(time)
             notes.converted(holder, f"{name} is now a scheduling parameter with a definition")
-    for text in (*old.attributes, *(part.tag for part in old.children)):
-        notes.lost(holder, "unknown scheduling parameter", text)
+    _note_unknown(holder, old, notes)
+
+
+def _note_unknown(holder: Node, old: Node, notes: Notes) -> None:
+    for name in (*old.attributes, *old.references, *(part.tag for part in old.children)):
+        notes.lost(holder, "unknown scheduling parameter", name)
 
 
 def _convert_extension(holder: Node, extension: Node, definitions: Definitions, notes: Notes) -> None:

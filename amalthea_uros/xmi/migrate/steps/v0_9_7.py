@@ -11,7 +11,7 @@ from amalthea_uros.xmi.migrate.steps.v0_9_6 import convert_event_chains, convert
 #: The classes of ports until 0.9.6. There is only one now, so that it is not written any more.
 _PORTS = {"InterfacePort": "ComponentPort", "FInterfacePort": "ComponentPort"}
 
-#: What became mandatory, by tag and class: parts or references, and whether this is new.
+#: Parts and references that became mandatory, by tag and class.
 _MANDATORY: dict[tuple[str, str], tuple[str, ...]] = {
     ("stimuli", "PeriodicStimulus"): ("recurrence",),
     ("stimuli", "PeriodicSyntheticStimulus"): ("recurrence",),
