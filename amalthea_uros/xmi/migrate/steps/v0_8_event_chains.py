@@ -41,24 +41,18 @@ def _keep_scope(constraint: Node, outer: dict[str, Node], notes: Notes, official
 
 def _take_inner(node: Node, name: str, outer: dict[str, Node], official: bool) -> list[str]:
     """Remove the targets of a reference that are inner chains; the texts that referred to them."""
-    targets = node.references.get(name, [])
+    targets = node.references.pop(name, [])
     # One target elsewhere makes elements of all.
     start = "amlt:/#" if any(target.root is not node.root for target in targets) else ""
     kept: list[Node] = []
     texts: list[str] = []
     for target in targets:
-        if target.is_proxy and not official:
-            kept.append(target)  # it may be an outer one
-        elif target.tag == "eventChains" and not target.is_proxy:
-            kept.append(target)
+        if target.tag == "eventChains" or (target.is_proxy and not official):
+            kept.append(target)  # what is in no file, may be an outer one
         elif target.name in outer:
             kept.append(outer[target.name])  # from now on the name means that one
         else:
             texts.append(start + reference_text(target))
-    if texts:
-        node.references[name] = kept
-        if not kept:
-            del node.references[name]
-    elif targets:
+    if kept:
         node.references[name] = kept
     return texts
