@@ -48,6 +48,15 @@ def test_priority_0_of_a_task_is_kept_where_no_allocation_states_one(same):
     assert not of_kind(notes, Kind.LOST)
 
 
+def test_priority_0_of_a_task_is_kept_for_the_allocation_that_states_none(same):
+    allocations = '<taskAllocation task="A?type=Task"/><taskAllocation task="A?type=Task"{}</mappingModel>'
+    same(
+        '<swModel><tasks name="A" priority="0"/></swModel><mappingModel>' + allocations.format(' priority="3"/>'),
+        f'<swModel><tasks name="A">{text_property("priority", 0)}</tasks></swModel><mappingModel>'
+        + allocations.format('><schedulingParameters priority="3"/></taskAllocation>'),
+    )
+
+
 def test_the_official_converter_loses_priority_0(same):
     notes = same(
         TWO_TASKS.format('priority="0"', 'priority="2"', '<taskAllocation task="B?type=Task" priority="0"/>'),
@@ -90,17 +99,17 @@ def test_existing_scheduling_parameters_are_used(same):
     )
 
 
-def test_the_priority_of_an_isr_counts_in_its_allocation(same):
-    before = (
-        '<swModel><isrs name="I" priority="9"/><isrs name="J" priority="0"/><isrs name="K" priority="7"/></swModel>'
-        '<mappingModel><isrAllocation isr="I?type=ISR" priority="0"/><isrAllocation isr="J?type=ISR" priority="0"/>'
-        '<isrAllocation isr="K?type=ISR" priority="8"/></mappingModel>'
+def test_a_default_of_the_allocation_does_not_hide_the_priority_of_its_isr(same):
+    before = "".join(f'<isrs name="{name}" priority="{number}"/>' for name, number in (("I", 9), ("J", 0), ("K", 7), ("L", 6)))
+    after = f'<isrs name="I">{text_property("priority", 9)}</isrs><isrs name="J"/>'
+    after += f'<isrs name="K">{text_property("priority", 7)}</isrs><isrs name="L">{text_property("priority", 6)}</isrs>'
+    allocations = (
+        '</swModel><mappingModel><isrAllocation isr="I?type=ISR" priority="{}"/><isrAllocation isr="J?type=ISR" priority="0"/>'
     )
-    isrs = f'<swModel><isrs name="I">{text_property("priority", 9)}</isrs><isrs name="J"/>'
-    isrs += f'<isrs name="K">{text_property("priority", 7)}</isrs></swModel>'
-    allocations = '<isrAllocation isr="J?type=ISR" priority="0"/><isrAllocation isr="K?type=ISR" priority="8"/></mappingModel>'
-    same(before, f'{isrs}<mappingModel><isrAllocation isr="I?type=ISR" priority="9"/>{allocations}')
-    same(before, f'{isrs}<mappingModel><isrAllocation isr="I?type=ISR" priority="0"/>{allocations}', official=True)
+    allocations += '<isrAllocation isr="K?type=ISR" priority="8"/><isrAllocation isr="L?type=ISR"/></mappingModel>'
+    before = f"<swModel>{before}{allocations.format(0)}"
+    same(before, f"<swModel>{after}{allocations.format(9)}")
+    same(before, f"<swModel>{after}{allocations.format(0)}", official=True)
 
 
 def test_process_prototypes_have_priorities_and_custom_properties_come_first(files):

@@ -19,7 +19,7 @@ def move_priorities(models: ModelSet, notes: Notes, official: bool) -> None:
     """Priority of an allocation -> scheduling parameters; priority and task group of a process -> custom properties."""
     allocated = _move_of_allocations(models, notes, official)
     if not official:
-        allocated |= _copy_to_isr_allocations(models, notes)
+        allocated |= _replace_defaults_of_isr_allocations(models, notes)
     for tag in ("tasks", "isrs", "processPrototypes"):
         for process in models.parts("swModel", tag):
             _move_of_process(process, process in allocated, notes, official)
@@ -28,12 +28,14 @@ def move_priorities(models: ModelSet, notes: Notes, official: bool) -> None:
 
 
 def _move_of_allocations(models: ModelSet, notes: Notes, official: bool) -> set[Node]:
-    """The tasks of which an allocation states a priority now."""
+    """The tasks of which every allocation states a priority now."""
     allocated: set[Node] = set()
+    unstated: set[Node | None] = set()
     for allocation in models.parts("mappingModel", "taskAllocation"):
         text = allocation.attributes.pop(_KEY, None)
         task = allocation.target("task")
         if text is None:
+            unstated.add(task)
             continue
         own = _own(task)
         if text == "0" and official:
@@ -48,23 +50,21 @@ def _move_of_allocations(models: ModelSet, notes: Notes, official: bool) -> set[
             notes.moved(allocation, "priority of a task allocation -> schedulingParameters", text, _KEY)
             if task is not None:
                 allocated.add(task)
-    return allocated
+    return allocated - unstated
 
 
-def _copy_to_isr_allocations(models: ModelSet, notes: Notes) -> set[Node]:
-    """The ISRs of which an allocation states a priority.
-
-    It stays an attribute there, also in the newest version, so a priority that only the ISR states would not count any more.
-    """
+def _replace_defaults_of_isr_allocations(models: ModelSet, notes: Notes) -> set[Node]:
+    """The ISRs of which an allocation states a priority; it stays an attribute there, also in the newest version."""
     allocated: set[Node] = set()
     for allocation in models.parts("mappingModel", "isrAllocation"):
         isr = allocation.target("isr")
+        if isr is None or _KEY not in allocation.attributes:
+            continue
         own = _own(isr)
-        if own not in ("", "0") and allocation.get(_KEY, "0") == "0":
+        if allocation.attributes[_KEY] == "0" and own not in ("", "0"):
             allocation.attributes[_KEY] = own
-            notes.converted(allocation, "priority of the ISR written to its allocation, which stated none or 0", own, _KEY)
-        if isr is not None and _KEY in allocation.attributes:
-            allocated.add(isr)
+            notes.converted(allocation, "priority 0, the old default, replaced: the priority of the ISR applies", own, _KEY)
+        allocated.add(isr)
     return allocated
 
 
@@ -86,7 +86,7 @@ def _move_of_process(process: Node, is_allocated: bool, notes: Notes, official: 
 def _move_task_group(task: Node, notes: Notes) -> None:
     text = task.attributes.pop(_GROUP, None)
     if text == "0":
-        # Nothing is lost: without a group it is 0 again where a scheduler needs one.
+        # Nothing is lost: a task without group is in group 0.
         notes.converted(task, "OSEK task group 0, the old default, left out", attribute=_GROUP)
     elif text is not None:
         add_text(task, _GROUP, text)
