@@ -127,6 +127,8 @@ class _Linker:
         # The converters to 0.9.0 encoded some names twice.
         for read in (segments, list(map(unquote_plus, segments))):
             fitting = [n for n in self.by_name.get(read[-1], ()) if may_be(n, local_name(class_name))]
+            if len(read) > 1:
+                fitting = [n for n in fitting if not _is_of_another(n, read[-2])]
             if len(fitting) > 1 and len(read) > 1:
                 fitting = [n for n in fitting if n.parent is not None and n.parent.name == read[-2]] or fitting
             if fitting:
@@ -178,6 +180,11 @@ class _Linker:
 
 def _is_qualified(node: Node) -> bool:
     return node.tag in ("literals", "ports", "features")
+
+
+def _is_of_another(node: Node, holder: str) -> bool:
+    """Whether the name of an object is qualified by its container, and that has another name."""
+    return _is_qualified(node) and node.parent is not None and node.parent.name not in ("", holder)
 
 
 def _is_text_value(node: Node, key: str) -> bool:

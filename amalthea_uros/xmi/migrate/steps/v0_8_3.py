@@ -1,14 +1,117 @@
-"""0.8.2 -> 0.8.3."""
+"""0.8.2 -> 0.8.3: kinds of stimuli, conditions of mode switches, interface ports."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.v0_8_mode_switches import state_conditions
+from amalthea_uros.xmi.migrate.steps.v0_8_properties import add_property, add_text, outline
+
+_CLASSES = {
+    "FInterfacePort": "InterfacePort",
+    "SporadicStimulus": "RelativePeriodicStimulus",
+    "SyntheticStimulus": "PeriodicSyntheticStimulus",
+}
+
+_OLD_NAMES = {new: old for old, new in _CLASSES.items()}
+
+_DEVIATION = "stimulusDeviation"
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.8.2."""
+    for node in models.rename_classes(_CLASSES):
+        notes.renamed(node, "class renamed", f"{_OLD_NAMES[node.type]} -> {node.type}")
+    for stimulus in models.parts("stimuliModel", "stimuli"):
+        kind = _KINDS.get(stimulus.type)
+        if kind is not None:
+            kind(stimulus, notes)
+        _keep_deviation(stimulus, _DEVIATION, "deviation of a stimulus", notes, official)
+    for activation in models.parts("swModel", "activations"):
+        if activation.type == "VariableRateActivation":
+            _keep_deviation(activation, "activationDeviation", "deviation of a variable rate activation", notes, official)
+    state_conditions(models, notes, official)
 
 
-STEP = Step("0.8.2", "0.8.3", change)
+def _keep_deviation(holder: Node, tag: str, what: str, notes: Notes, official: bool) -> None:
+    for deviation in holder.all(tag):
+        deviation.remove()
+        text = outline(deviation)
+        if official or not text:
+            notes.lost(holder, what, text)
+        else:
+            add_text(holder, tag, text)
+            notes.kept(holder, what, text)
+
+
+def _rename_part(holder: Node, old: str, new: str, notes: Notes) -> None:
+    for part in holder.all(old):
+        part.tag = new
+        notes.renamed(part, f"{old} -> {new}")
+
+
+def _change_periodic(stimulus: Node, notes: Notes) -> None:
+    if "clock" in stimulus.references or "clock" in stimulus.attributes:
+        _follow_clock(stimulus, notes)
+    else:
+        _rename_part(stimulus, _DEVIATION, "jitter", notes)
+
+
+def _follow_clock(stimulus: Node, notes: Notes) -> None:
+    """A periodic stimulus whose recurrence a clock stretches, becomes one of variable rate."""
+    stimulus.type = "VariableRateStimulus"
+    notes.converted(stimulus, "PeriodicStimulus with a clock -> VariableRateStimulus with a scenario; its step is not known")
+    scenario = stimulus.add("scenario")
+    if "clock" in stimulus.references:
+        scenario.references["clock"] = stimulus.references.pop("clock")
+    else:
+        scenario.attributes["clock"] = stimulus.attributes.pop("clock")
+    scenario.take(stimulus.all("recurrence"))
+    for offset in stimulus.all("offset"):
+        notes.kept(offset, "offset of a periodic stimulus with a clock", offset.get("value") + offset.get("unit"))
+        add_property(scenario, "offset", offset, "TimeObject")
+    for deviation in stimulus.all(_DEVIATION):
+        notes.lost(deviation, "deviation of a periodic stimulus with a clock", outline(deviation))
+        deviation.remove()
+
+
+def _change_sporadic(stimulus: Node, notes: Notes) -> None:
+    _rename_part(stimulus, _DEVIATION, "nextOccurrence", notes)
+    description = stimulus.attributes.pop("description", None)
+    if description:
+        notes.lost(stimulus, "description of a sporadic stimulus", repr(description), "description")
+
+
+def _change_synthetic(stimulus: Node, notes: Notes) -> None:
+    _rename_part(stimulus, "period", "recurrence", notes)
+    for times in stimulus.all("triggerTimes"):
+        for time in times.all("timestamps"):
+            time.tag = "occurrenceTimes"
+        notes.converted(times, "triggerTimes / timestamps -> occurrenceTimes")
+        stimulus.take(times.children)
+        times.remove()
+
+
+def _change_single(stimulus: Node, notes: Notes) -> None:
+    _rename_part(stimulus, "activation", "occurrence", notes)
+
+
+def _change_arrival_curve(stimulus: Node, notes: Notes) -> None:
+    for entry in stimulus.all("entries"):
+        if entry.rename("numberOfEvents", "numberOfOccurrences"):
+            notes.renamed(entry, "numberOfEvents -> numberOfOccurrences", attribute="numberOfEvents")
+
+
+_KINDS: dict[str, Callable[[Node, Notes], None]] = {
+    "ArrivalCurveStimulus": _change_arrival_curve,
+    "PeriodicStimulus": _change_periodic,
+    "PeriodicSyntheticStimulus": _change_synthetic,
+    "RelativePeriodicStimulus": _change_sporadic,
+    "SingleStimulus": _change_single,
+}
+
+STEP = Step("0.8.2", "0.8.3", change, frozenset({*_CLASSES, _DEVIATION, "triggerTimes", "timestamps"}))

@@ -1,0 +1,374 @@
+"""0.8.0 -> 0.8.1, as far as the pairs of models do not show it."""
+
+import random
+import re
+from functools import partial
+
+import pytest
+from inline_models import check_step, of_kind, text_property, written
+from migration import meaning, migrated
+
+from amalthea_uros.xmi.migrate.chain import migrate
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Write files of a version."""
+    return partial(written, tmp_path)
+
+
+@pytest.fixture
+def same(tmp_path):
+    """Assert what some files become."""
+    return partial(check_step, tmp_path, "0.8.0", "0.8.1")
+
+
+# Priorities
+
+TWO_TASKS = '<swModel><tasks name="A" {}/><tasks name="B" {}/></swModel><mappingModel>{}</mappingModel>'
+
+
+def test_a_default_of_the_allocation_does_not_hide_the_priority_of_its_task(same):
+    notes = same(
+        TWO_TASKS.format('priority="5"', 'priority="1"', '<taskAllocation task="A?type=Task" priority="0"/>'),
+        f'<swModel><tasks name="A">{text_property("priority", 5)}</tasks><tasks name="B">{text_property("priority", 1)}</tasks>'
+        '</swModel><mappingModel><taskAllocation task="A?type=Task"/></mappingModel>',
+    )
+    assert ("priority 0, the old default, left out: the priority of the task applies", "5") in of_kind(notes, Kind.CONVERTED)
+    assert not of_kind(notes, Kind.LOST)
+
+
+def test_priority_0_of_a_task_is_kept_where_no_allocation_states_one(same):
+    notes = same(
+        TWO_TASKS.format('priority="0"', 'priority="0"', '<taskAllocation task="B?type=Task" priority="3"/>'),
+        f'<swModel><tasks name="A">{text_property("priority", 0)}</tasks><tasks name="B"/></swModel>'
+        '<mappingModel><taskAllocation task="B?type=Task"><schedulingParameters priority="3"/></taskAllocation></mappingModel>',
+    )
+    assert not of_kind(notes, Kind.LOST)
+
+
+def test_priority_0_of_a_task_is_kept_for_the_allocation_that_states_none(same):
+    allocations = '<taskAllocation task="A?type=Task"/><taskAllocation task="A?type=Task"{}</mappingModel>'
+    same(
+        '<swModel><tasks name="A" priority="0"/></swModel><mappingModel>' + allocations.format(' priority="3"/>'),
+        f'<swModel><tasks name="A">{text_property("priority", 0)}</tasks></swModel><mappingModel>'
+        + allocations.format('><schedulingParameters priority="3"/></taskAllocation>'),
+    )
+
+
+def test_the_official_converter_loses_priority_0(same):
+    notes = same(
+        TWO_TASKS.format('priority="0"', 'priority="2"', '<taskAllocation task="B?type=Task" priority="0"/>'),
+        f'<swModel><tasks name="A"/><tasks name="B">{text_property("priority", 2)}</tasks></swModel>'
+        '<mappingModel><taskAllocation task="B?type=Task"/></mappingModel>',
+        official=True,
+    )
+    assert len(of_kind(notes, Kind.LOST)) == 2
+
+
+def test_the_task_may_be_in_another_file(same):
+    same(
+        [
+            '<swModel><tasks name="A B" priority="5"/></swModel>',
+            '<mappingModel><taskAllocation priority="0"><task href="amlt:/#A+B?type=Task"/></taskAllocation></mappingModel>',
+        ],
+        [
+            f'<swModel><tasks name="A B">{text_property("priority", 5)}</tasks></swModel>',
+            '<mappingModel><taskAllocation><task href="amlt:/#A+B?type=Task"/></taskAllocation></mappingModel>',
+        ],
+    )
+
+
+def test_the_task_may_be_in_a_file_of_a_later_version(files):
+    newer = files("0.8.1", f'<swModel><tasks name="A">{text_property("priority", 5)}</tasks></swModel>')
+    older = files(
+        "0.8.0", '<mappingModel><taskAllocation priority="0"><task href="amlt:/#A?type=Task"/></taskAllocation></mappingModel>'
+    )
+    models, _ = migrated([*newer, *older], "0.8.1")
+    (allocation,) = models.trees[1].root.find("mappingModel", "taskAllocation")
+    assert not allocation.children
+
+
+def test_existing_scheduling_parameters_are_used(same):
+    same(
+        '<mappingModel><taskAllocation priority="4"><schedulingParameters><minBudget value="1" unit="ms"/></schedulingParameters>'
+        "</taskAllocation></mappingModel>",
+        '<mappingModel><taskAllocation><schedulingParameters priority="4"><minBudget value="1" unit="ms"/></schedulingParameters>'
+        "</taskAllocation></mappingModel>",
+    )
+
+
+def test_a_default_of_the_allocation_does_not_hide_the_priority_of_its_isr(same):
+    before = "".join(f'<isrs name="{name}" priority="{number}"/>' for name, number in (("I", 9), ("J", 0), ("K", 7), ("L", 6)))
+    after = f'<isrs name="I">{text_property("priority", 9)}</isrs><isrs name="J"/>'
+    after += f'<isrs name="K">{text_property("priority", 7)}</isrs><isrs name="L">{text_property("priority", 6)}</isrs>'
+    allocations = (
+        '</swModel><mappingModel><isrAllocation isr="I?type=ISR" priority="{}"/><isrAllocation isr="J?type=ISR" priority="0"/>'
+    )
+    allocations += '<isrAllocation isr="K?type=ISR" priority="8"/><isrAllocation isr="L?type=ISR"/></mappingModel>'
+    before = f"<swModel>{before}{allocations.format(0)}"
+    same(before, f"<swModel>{after}{allocations.format(9)}")
+    same(before, f"<swModel>{after}{allocations.format(0)}", official=True)
+
+
+def test_process_prototypes_have_priorities_and_custom_properties_come_first(files):
+    models, _ = migrated(
+        files(
+            "0.8.0",
+            f'<swModel><processPrototypes name="P" priority="2">{text_property("k", "v")}<runnableCalls/></processPrototypes>'
+            "</swModel>",
+        ),
+        "0.8.1",
+    )
+    (prototype,) = models.trees[0].root.find("swModel", "processPrototypes")
+    assert [child.tag for child in prototype.children] == ["customProperties", "customProperties", "runnableCalls"]
+    assert [child.get("key") for child in prototype.all("customProperties")] == ["k", "priority"]
+
+
+# Stimuli
+
+CALLS = '<callGraph><graphEntries xsi:type="am:CallSequence"><calls xsi:type="am:{}"{}</graphEntries></callGraph>'
+
+
+@pytest.mark.parametrize("tag", ["tasks", "isrs"])
+def test_a_trigger_of_another_kind_of_stimulus_keeps_it_as_custom_property(same, tag):
+    stimuli = '<stimuliModel><stimuli xsi:type="am:Single{}" name="S"/></stimuliModel>'
+    before = CALLS.format("InterProcessActivation", ' stimulus="S?type=Single"/>')
+    kept = '<customProperties key="stimulus"><value xsi:type="am:ReferenceObject" value="S?type=SingleStimulus"/></customProperties>'
+    calls = {
+        False: CALLS.format("InterProcessTrigger", f">{kept}</calls>"),
+        True: CALLS.format("InterProcessTrigger", "/>"),
+    }
+    for official, after in calls.items():
+        same(
+            f'<swModel><{tag} name="T">{before}</{tag}></swModel>{stimuli.format("")}',
+            f'<swModel><{tag} name="T">{after}</{tag}></swModel>{stimuli.format("Stimulus")}',
+            official,
+        )
+
+
+def test_every_class_of_stimuli_is_renamed_also_in_references_to_no_file(same):
+    names = ("ArrivalCurve", "InterProcess", "Periodic", "Single", "Sporadic", "Synthetic")
+    before = "".join(f'<stimuli xsi:type="am:{name}" name="{name}"/>' for name in (*names, "PeriodicEvent"))
+    after = "".join(f'<stimuli xsi:type="am:{name}Stimulus" name="{name}"/>' for name in names)
+    after += '<stimuli xsi:type="am:VariableRateStimulus" name="PeriodicEvent"/>'
+    task = '<swModel><tasks name="T"><stimuli href="amlt:/#elsewhere?type={}"/></tasks></swModel>'
+    same(
+        f"<stimuliModel>{before}</stimuliModel>{task.format('PeriodicEvent')}",
+        f"<stimuliModel>{after}</stimuliModel>{task.format('VariableRateStimulus')}",
+    )
+
+
+@pytest.mark.parametrize("official", [False, True])
+def test_mode_value_lists(same, official):
+    entry = '<entries{} valueProvider="L?type=ModeLabel" value="M/a?type=ModeLiteral"/>'
+    model = '<swModel><modes name="M"><literals name="a"/></modes><modeLabels name="L"/></swModel><stimuliModel>'
+    model += '<stimuli xsi:type="am:CustomStimulus" name="S">{}</stimuli></stimuliModel>'
+    lists = ("setModeValueList", "enablingModeValueList", "disablingModeValueList")
+
+    def stimulus(typed):
+        return model.format("".join(f"<{name}>{entry.format(typed)}</{name}>" for name in lists))
+
+    same(stimulus(""), stimulus(' xsi:type="am:ModeValue"'), official)
+    conjunction = model.format(
+        '<enablingModeValueList><entries xsi:type="am:ModeValueConjunction"><entries/></entries></enablingModeValueList>'
+    )
+    same(conjunction, conjunction, official)
+
+
+# Software
+
+ACTIVATION = (
+    '<swModel><runnables name="R" {}="P?type=PeriodicActivation"/><activations xsi:type="am:PeriodicActivation" name="P">'
+)
+
+
+@pytest.mark.parametrize("official", [False, True])
+def test_activations(same, official):
+    same(
+        ACTIVATION.format("activation") + '<deadline value="3" unit="ms"/></activations>'
+        '<activations xsi:type="am:EventActivation" name="E" trigger="e?type=ProcessEvent"/></swModel>'
+        '<eventModel><events xsi:type="am:ProcessEvent" name="e"/></eventModel>',
+        ACTIVATION.format("activations")
+        + '<customProperties key="deadline"><value xsi:type="am:TimeObject" value="3" unit="ms"/></customProperties></activations>'
+        '<activations xsi:type="am:EventActivation" name="E" triggeringEvents="e?type=ProcessEvent"/></swModel>'
+        '<eventModel><events xsi:type="am:ProcessEvent" name="e"/></eventModel>',
+        official,
+    )
+
+
+def test_the_activation_of_a_process_prototype_keeps_its_name(same):
+    model = '<swModel><processPrototypes name="P" activation="A?type=SingleActivation"/>'
+    model += '<activations xsi:type="am:SingleActivation" name="A"/></swModel>'
+    same(model, model)
+
+
+# Schedulers
+
+SYSTEM = '<osModel><operatingSystems name="OS">{}</operatingSystems></osModel>'
+
+
+@pytest.mark.parametrize("official", [False, True])
+@pytest.mark.parametrize("tag", ["taskSchedulers", "interruptControllers"])
+def test_scheduling_units(same, tag, official):
+    notes = same(
+        SYSTEM.format(
+            f'<{tag} name="S" scheduleUnitPriority="0"><schedulingUnit xsi:type="am:SchedulingSWUnit" priority="0" '
+            f'interruptController="C?type=InterruptController">{text_property("k", "v")}'
+            '<instructions xsi:type="am:InstructionsDeviation"><deviation/></instructions></schedulingUnit></'
+            f'{tag}><{tag} name="H"><schedulingUnit xsi:type="am:SchedulingHWUnit">{text_property("k", "v")}</schedulingUnit></{tag}>'
+            '<interruptControllers name="C"/>'
+        ),
+        SYSTEM.format(
+            f'<{tag} name="S">{text_property("SchedulingSWUnit_CustomProperty__k", "v")}'
+            '<computationItems xsi:type="am:RunnableInstructions"><default xsi:type="am:InstructionsDeviation"><deviation/></default>'
+            f'</computationItems></{tag}><{tag} name="H">{text_property("SchedulingHWUnit_CustomProperty__k", "v")}</{tag}>'
+            '<interruptControllers name="C"/>'
+        ),
+        official,
+    )
+    assert of_kind(notes, Kind.LOST) == [("interrupt controller of a scheduling unit", "C?type=InterruptController")]
+
+
+def test_parameters_of_a_scheduler_in_its_algorithm(same):
+    model = SYSTEM.format(
+        '<taskSchedulers name="S"><schedulingAlgorithm xsi:type="am:UserSpecificSchedulingAlgorithm"><{0} key="a" value="1"/>'
+        '<{0} key="b" value="2"/></schedulingAlgorithm></taskSchedulers>'
+        '<taskSchedulers name="P"><schedulingAlgorithm xsi:type="am:PfairPD2" quantSizeNs="1000"/></taskSchedulers>'
+    )
+    same(model.format("parameter"), model.format("parameterExtensions"))
+
+
+# Mapping and hardware
+
+
+def test_allocations_of_cores_in_another_file(same):
+    hardware = (
+        '<hwModel><system name="S"><ecus name="E"><microcontrollers name="M"><cores name="C 0"/></microcontrollers></ecus>'
+    )
+    hardware += "</system></hwModel>"
+    mapping = '<mappingModel><{0}><{1} href="amlt:/#C+0?type=Core"/></{0}></mappingModel>'
+    same(
+        [hardware, mapping.format("coreAllocation", "core")],
+        [hardware, mapping.format("schedulerAllocation", "responsibility")],
+    )
+
+
+@pytest.mark.parametrize("official", [False, True])
+def test_quartzes_are_collected_in_order_and_lose_their_parts(same, official):
+    notes = same(
+        '<hwModel><memoryTypes name="T" xAccessPattern="3-1-1"/><system name="S">'
+        '<memories name="m"><prescaler quartz="q2?type=Quartz"/><quartzes name="q1"><frequency value="1"/>'
+        '<quartzes name="q2"/><memories name="gone"><quartzes name="q3"/></memories><ports name="p"/></quartzes></memories>'
+        '<quartzes name="q4"/></system></hwModel>',
+        '<hwModel><memoryTypes name="T"/><system name="S"><memories name="m"><prescaler quartz="q2?type=Quartz"/></memories>'
+        '<quartzes name="q1"><frequency value="1"/></quartzes><quartzes name="q2"/><quartzes name="q3"/><quartzes name="q4"/>'
+        "</system></hwModel>",
+        official,
+    )
+    assert of_kind(notes, Kind.LOST) == [
+        ("access pattern of a memory type", "3-1-1"),
+        ("memories of a quartz", "gone"),
+        ("ports of a quartz", "p"),
+    ]
+    assert of_kind(notes, Kind.MOVED) == [("quartz -> system", name) for name in ("q1", "q2", "q3")]
+
+
+def test_a_model_without_system_has_no_quartzes(same):
+    same('<hwModel><coreTypes name="C"/></hwModel>', '<hwModel><coreTypes name="C"/></hwModel>')
+
+
+# Event chains
+
+OUTER = '<eventChains name="outer"><{0} xsi:type="am:{1}"><eventChain name="inner"/></{0}></eventChains>'
+
+
+@pytest.mark.parametrize("tag", ["segments", "strands"])
+def test_inner_chains_of_another_file(same, tag):
+    inner = '<scope href="amlt:/#inner?type=EventChain"/>'
+    scope = '<timingConstraints xsi:type="am:EventChainSynchronizationConstraint" name="c">{}</timingConstraints>'
+    outer = '<scope href="amlt:/#outer?type=EventChain"/>'
+    kept = '<customProperties key="scope"><value xsi:type="am:ListObject"><values xsi:type="am:StringObject" '
+    kept += 'value="amlt:/#inner?type=EventChain"/></value></customProperties>'
+    same(
+        [
+            f"<constraintsModel>{OUTER.format(tag, 'SubEventChain')}</constraintsModel>",
+            f"<constraintsModel>{scope.format(outer + inner)}</constraintsModel>",
+        ],
+        [
+            f"<constraintsModel>{OUTER.format(tag, 'EventChainContainer')}</constraintsModel>",
+            f"<constraintsModel>{scope.format(outer + kept)}</constraintsModel>",
+        ],
+    )
+
+
+def test_a_chain_in_no_file_may_be_an_outer_one(same):
+    model = '<constraintsModel><eventChains name="a"><segments xsi:type="am:EventChainReference">{}</segments></eventChains>'
+    model += "</constraintsModel>"
+    reference = '<eventChain href="amlt:/#b?type=EventChain"/>'
+    same(model.format(reference), model.format(reference))
+    same(model.format(reference), model.format(text_property("eventChain", "amlt:/#b?type=EventChain")), official=True)
+
+
+@pytest.mark.parametrize("official", [False, True])
+def test_the_name_of_an_inner_chain_means_the_outer_one_that_shares_it(files, official):
+    model = '<constraintsModel><eventChains name="a"><segments xsi:type="am:SubEventChain"><eventChain name="b"/></segments>'
+    model += '<segments xsi:type="am:EventChainReference" eventChain="b?type=EventChain"/></eventChains><eventChains name="b"/>'
+    models, _ = migrated(files("0.8.0", model + "</constraintsModel>"), "0.8.1", official)
+    first, second = models.trees[0].root.find("constraintsModel", "eventChains")
+    assert first.children[1].references == {"eventChain": [second]}
+
+
+# Leftovers and damage
+
+EVERYTHING = (
+    '<swModel><tasks name="T" priority="5" osekTaskGroup="2" stimuli="P?type=Periodic">'
+    + CALLS.format("InterProcessActivation", ' stimulus="I?type=InterProcess"/>')
+    + '</tasks><isrs name="J" priority="0"/><runnables name="R" activation="A?type=PeriodicActivation"/>'
+    '<activations xsi:type="am:PeriodicActivation" name="A"><deadline value="3" unit="ms"/></activations></swModel>'
+    '<hwModel><memoryTypes name="M" xAccessPattern="x"/><system name="S"><quartzes name="q"><quartzes name="r"/></quartzes></system>'
+    "</hwModel>"
+    + SYSTEM.format(
+        '<taskSchedulers name="S"><schedulingAlgorithm xsi:type="am:UserSpecificSchedulingAlgorithm"><parameter key="a" value="1"/>'
+        '</schedulingAlgorithm><schedulingUnit xsi:type="am:SchedulingSWUnit" priority="1"><instructions xsi:type="am:X" value="1"/>'
+        '</schedulingUnit></taskSchedulers><taskSchedulers name="H"><schedulingUnit xsi:type="am:SchedulingHWUnit">'
+        '<delay value="1" unit="ns"/></schedulingUnit></taskSchedulers>'
+    )
+    + '<stimuliModel><stimuli xsi:type="am:Periodic" name="P"><setModeValueList><entries/></setModeValueList></stimuli>'
+    '<stimuli xsi:type="am:InterProcess" name="I"/></stimuliModel><constraintsModel>'
+    + OUTER.format("segments", "SubEventChain")
+    + '<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="l" scope="inner?type=EventChain outer?type=EventChain"/>'
+    '</constraintsModel><mappingModel><taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler" priority="3"/>'
+    '<isrAllocation isr="J?type=ISR"/><coreAllocation scheduler="S?type=TaskScheduler" core="C?type=Core"/></mappingModel>'
+)
+
+
+@pytest.mark.parametrize("version", ["0.8.1", "0.8.2"])
+def test_a_file_whose_namespace_was_raised_early_takes_the_step(files, version):
+    early, _ = migrated(files(version, EVERYTHING), "0.8.2")
+    proper, _ = migrated(files("0.8.0", EVERYTHING), "0.8.2")
+    assert meaning(early) == meaning(proper)
+
+
+def test_the_step_leaves_alone_what_is_converted(files):
+    once, _ = migrated(files("0.8.0", EVERYTHING), "0.8.1")
+    expected = meaning(once)
+    once.trees[0].version = "0.8.0"
+    notes = Notes()
+    migrate(once, "0.8.1", notes, official=False)
+    assert meaning(once) == expected
+    assert notes.all == []
+
+
+@pytest.mark.parametrize("official", [False, True])
+def test_damaged_files_are_migrated(files, official):
+    rng = random.Random(8)
+    pieces = re.findall(r' [\w:]+="[^"]*"', EVERYTHING)
+    values = ["", "0", "x", "T?type=Task", "inner?type=EventChain", "gone?type=Periodic gone?type=Core"]
+    for _ in range(60):
+        text = EVERYTHING
+        for piece in rng.sample(pieces, 6):
+            name = piece.partition("=")[0]
+            text = text.replace(piece, rng.choice(["", f'{name}="{rng.choice(values)}"']), 1)
+        migrated(files("0.8.0", text), "0.8.3", official)

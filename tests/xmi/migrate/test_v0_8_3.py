@@ -1,0 +1,219 @@
+"""0.8.2 -> 0.8.3, as far as the pairs of models do not show it."""
+
+import random
+import re
+from functools import partial
+
+import pytest
+from inline_models import check_step, of_kind, text_property, written
+from migration import meaning, migrated
+
+from amalthea_uros.xmi.migrate.chain import migrate
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Write files of a version."""
+    return partial(written, tmp_path)
+
+
+@pytest.fixture
+def same(tmp_path):
+    """Assert what some files become."""
+    return partial(check_step, tmp_path, "0.8.2", "0.8.3")
+
+
+# Stimuli
+
+DEVIATION = (
+    '<{0}><lowerBound xsi:type="am:Time" value="1" unit="ms"/><upperBound xsi:type="am:Time" value="3" unit="ms"/>'
+    '<distribution xsi:type="am:WeibullEstimators" pRemainPromille="0.5"><mean xsi:type="am:Time" value="2" unit="ms"/>'
+    "</distribution></{0}>"
+)
+KEPT = "lowerBound=1ms, upperBound=3ms, distribution=WeibullEstimators(pRemainPromille=0.5, mean=2ms)"
+
+
+@pytest.mark.parametrize(
+    "kind", ["CustomStimulus", "EventStimulus", "InterProcessStimulus", "SingleStimulus", "ArrivalCurveStimulus"]
+)
+def test_a_deviation_without_successor_is_kept_as_custom_property(same, kind):
+    model = '<stimuliModel><stimuli xsi:type="am:' + kind + '" name="S">{}</stimuli></stimuliModel>'
+    before = model.format(DEVIATION.format("stimulusDeviation"))
+    notes = same(before, model.format(text_property("stimulusDeviation", KEPT)))
+    assert not of_kind(notes, Kind.LOST)
+    notes = same(before, model.format(""), official=True)
+    assert of_kind(notes, Kind.LOST) == [("deviation of a stimulus", KEPT)]
+
+
+def test_variable_rate_activations_have_no_deviation_but_sporadic_ones_do(same):
+    model = '<swModel><activations xsi:type="am:VariableRateActivation" name="V">{}</activations>'
+    model += f'<activations xsi:type="am:SporadicActivation" name="S">{DEVIATION.format("activationDeviation")}</activations></swModel>'
+    before = model.format(DEVIATION.format("activationDeviation"))
+    same(before, model.format(text_property("activationDeviation", KEPT)))
+    same(before, model.format(""), official=True)
+
+
+@pytest.mark.parametrize("official", [False, True])
+def test_references_to_a_clocked_stimulus_follow_in_all_files(same, official):
+    software = '<swModel><tasks name="T"><stimuli href="amlt:/#P+1?type={0}"/><stimuli href="amlt:/#gone?type={1}"/></tasks>'
+    software += '<isrs name="I"><stimuli href="amlt:/#P+1?type={0}"/></isrs></swModel><eventModel>'
+    software += '<events xsi:type="am:StimulusEvent" name="e"><entity href="amlt:/#P+1?type={0}"/></events></eventModel>'
+    clock = '<stimuliModel><clocks xsi:type="am:ClockMultiplierList" name="c"/></stimuliModel>'
+    same(
+        [
+            software.format("PeriodicStimulus", "SporadicStimulus"),
+            '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="P 1"><clock href="amlt:/#c?type=ClockMultiplierList"/>'
+            "</stimuli></stimuliModel>",
+            clock,
+        ],
+        [
+            software.format("VariableRateStimulus", "RelativePeriodicStimulus"),
+            '<stimuliModel><stimuli xsi:type="am:VariableRateStimulus" name="P 1"><scenario>'
+            '<clock href="amlt:/#c?type=ClockMultiplierList"/></scenario></stimuli></stimuliModel>',
+            clock,
+        ],
+        official,
+    )
+
+
+def test_what_a_clocked_stimulus_loses_is_noted(files):
+    text = '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="P" clock="c?type=ClockSinusFunction">'
+    text += '<offset value="1" unit="s"/>'
+    text += (
+        f'{DEVIATION.format("stimulusDeviation")}</stimuli><clocks xsi:type="am:ClockSinusFunction" name="c"/></stimuliModel>'
+    )
+    _, notes = migrated(files("0.8.2", text), "0.8.3")
+    assert of_kind(notes, Kind.LOST) == [("deviation of a periodic stimulus with a clock", KEPT)]
+    assert of_kind(notes, Kind.KEPT) == [("offset of a periodic stimulus with a clock", "1s")]
+
+
+def test_the_description_of_a_sporadic_stimulus_is_lost_and_noted(same):
+    notes = same(
+        '<stimuliModel><stimuli xsi:type="am:SporadicStimulus" name="S" description="why"/>'
+        '<stimuli xsi:type="am:SporadicStimulus" name="T" description=""/></stimuliModel>',
+        '<stimuliModel><stimuli xsi:type="am:RelativePeriodicStimulus" name="S"/>'
+        '<stimuli xsi:type="am:RelativePeriodicStimulus" name="T"/></stimuliModel>',
+    )
+    assert of_kind(notes, Kind.LOST) == [("description of a sporadic stimulus", "'why'")]
+
+
+# Mode switches
+
+MODES = '<swModel><modes name="M"><literals name="a"/><literals name="b"/></modes><modeLabels name="L"/>{}</swModel>'
+ONE = '<condition><entries xsi:type="am:ModeValue" valueProvider="L?type=ModeLabel" value="M/a?type=ModeLiteral"/></condition>'
+
+
+@pytest.mark.parametrize("official", [False, True])
+@pytest.mark.parametrize("tag", ["tasks", "isrs"])
+def test_switches_in_switches(same, tag, official):
+    graph = f'<{tag} name="T"><callGraph><graphEntries xsi:type="am:ProbabilitySwitch"><entries><items xsi:type="am:ModeSwitch"{{0}}>'
+    graph += '<defaultEntry><items xsi:type="am:ModeSwitch"{0}><entries name="e"{1}{2}</items></defaultEntry></items></entries>'
+    graph += f"</graphEntries></callGraph></{tag}>"
+    before = graph.format(' valueProvider="L?type=ModeLabel"', ' values="M/a?type=ModeLiteral"', "/>")
+    notes = same(MODES.format(before), MODES.format(graph.format("", "", f">{ONE}</entries>")), official)
+    assert of_kind(notes, Kind.LOST) == [("mode label of a switch without entries", "L?type=ModeLabel")]
+
+
+RUNNABLE = '<runnables name="R"><runnableItems xsi:type="am:RunnableModeSwitch"><defaultEntry><items xsi:type="am:RunnableModeSwitch"{}'
+RUNNABLE += "</items></defaultEntry></runnableItems></runnables>"
+
+
+def test_a_switch_in_the_default_of_a_switch_of_a_runnable(same):
+    before = RUNNABLE.format(' valueProvider="L?type=ModeLabel"><entries values="M/a?type=ModeLiteral"/>')
+    same(MODES.format(before), MODES.format(RUNNABLE.format(f"><entries>{ONE}</entries>")))
+    same(MODES.format(before), MODES.format(before), official=True)
+
+
+def test_labels_and_literals_of_other_files(same):
+    task = '<swModel><tasks name="T"><callGraph><graphEntries xsi:type="am:ModeSwitch">{}</graphEntries></callGraph></tasks></swModel>'
+    label = '<valueProvider href="amlt:/#L?type=ModeLabel"/>'
+    before = task.format(f'{label}<entries><values href="amlt:/#M/a?type=ModeLiteral"/></entries>')
+    after = '<entries><condition><entries xsi:type="am:ModeValue">{}<value href="amlt:/#M/a?type=ModeLiteral"/></entries></condition>'
+    after = task.format(f"{after}</entries>")
+    modes = MODES.format("")
+    same([before, modes], [after.format(label), modes])
+    notes = same([before, modes], [after.format("<valueProvider/>"), modes], official=True)
+    assert of_kind(notes, Kind.LOST) == [("mode label of another file", "L?type=ModeLabel")]
+
+
+@pytest.mark.parametrize("official", [False, True])
+def test_an_entry_without_literals_is_never_taken(same, official):
+    task = '<tasks name="T"><callGraph><graphEntries xsi:type="am:ModeSwitch"{}</graphEntries></callGraph></tasks>'
+    same(
+        MODES.format(task.format(' valueProvider="L?type=ModeLabel"><entries/>')),
+        MODES.format(task.format("><entries><condition/></entries>")),
+        official,
+    )
+
+
+def test_a_literal_of_a_mode_in_no_file_is_not_taken_for_one_of_the_same_name(files):
+    task = '<tasks name="T"><callGraph><graphEntries xsi:type="am:ModeSwitch" valueProvider="L?type=ModeLabel"><entries>'
+    task += (
+        '<values href="amlt:/#M/a?type=ModeLiteral"/><values href="amlt:/#Other/a?type=ModeLiteral"/></entries></graphEntries>'
+    )
+    models, _ = migrated(files("0.8.2", MODES.format(f"{task}</callGraph></tasks>")), "0.8.3")
+    targets = [node.target("value") for node in models.walk() if node.type == "ModeValue"]
+    assert [target.is_proxy for target in targets] == [False, True]
+
+
+# Components
+
+
+@pytest.mark.parametrize("official", [False, True])
+def test_interface_ports_and_references_to_them(same, official):
+    model = '<componentsModel><components name="C"><ports xsi:type="am:{0}" name="p" kind="provides"/></components><systems>'
+    model += (
+        '<connectors><sourcePort port="C/p?type={0}"/><targetPort><port href="amlt:/#D/q?type={0}"/></targetPort></connectors>'
+    )
+    model += '<groundedPorts port="C/p?type={0}"/></systems></componentsModel>'
+    same(model.format("FInterfacePort"), model.format("InterfacePort"), official)
+
+
+# Leftovers and damage
+
+EVERYTHING = (
+    '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="P" clock="c?type=ClockSinusFunction"><offset value="1" unit="s"/>'
+    f'<recurrence value="2" unit="s"/>{DEVIATION.format("stimulusDeviation")}</stimuli>'
+    f'<stimuli xsi:type="am:PeriodicStimulus" name="Q">{DEVIATION.format("stimulusDeviation")}</stimuli>'
+    f'<stimuli xsi:type="am:SporadicStimulus" name="S">{DEVIATION.format("stimulusDeviation")}</stimuli>'
+    f'<stimuli xsi:type="am:CustomStimulus" name="U">{DEVIATION.format("stimulusDeviation")}</stimuli>'
+    '<stimuli xsi:type="am:SyntheticStimulus" name="Y"><period value="9" unit="ms"/><triggerTimes><timestamps value="1" unit="ms"/>'
+    '</triggerTimes></stimuli><stimuli xsi:type="am:SingleStimulus" name="X"><activation value="3" unit="ms"/></stimuli>'
+    '<stimuli xsi:type="am:ArrivalCurveStimulus" name="A"><entries numberOfEvents="2"/></stimuli>'
+    '<clocks xsi:type="am:ClockSinusFunction" name="c"/></stimuliModel>'
+    + MODES.format(
+        RUNNABLE.format(' valueProvider="L?type=ModeLabel"><entries values="M/a?type=ModeLiteral M/b?type=ModeLiteral"/>')
+        + f'<activations xsi:type="am:VariableRateActivation" name="V">{DEVIATION.format("activationDeviation")}</activations>'
+    )
+    + '<componentsModel><components name="C"><ports xsi:type="am:FInterfacePort" name="p"/></components></componentsModel>'
+)
+
+
+def test_a_file_whose_namespace_was_raised_early_takes_the_step(files):
+    early, _ = migrated(files("0.8.3", EVERYTHING), "0.8.3")
+    proper, _ = migrated(files("0.8.2", EVERYTHING), "0.8.3")
+    assert meaning(early) == meaning(proper)
+
+
+def test_the_step_leaves_alone_what_is_converted(files):
+    once, _ = migrated(files("0.8.2", EVERYTHING), "0.8.3")
+    expected = meaning(once)
+    once.trees[0].version = "0.8.2"
+    notes = Notes()
+    migrate(once, "0.8.3", notes, official=False)
+    assert meaning(once) == expected
+    assert notes.all == []
+
+
+@pytest.mark.parametrize("official", [False, True])
+def test_damaged_files_are_migrated(files, official):
+    rng = random.Random(3)
+    pieces = re.findall(r' [\w:]+="[^"]*"', EVERYTHING)
+    values = ["", "0", "x", "P?type=PeriodicStimulus", "M/a?type=ModeLiteral", "gone?type=ModeLabel gone?type=Core"]
+    for _ in range(60):
+        text = EVERYTHING
+        for piece in rng.sample(pieces, 6):
+            name = piece.partition("=")[0]
+            text = text.replace(piece, rng.choice(["", f'{name}="{rng.choice(values)}"']), 1)
+        migrated(files("0.8.2", text), "0.8.3", official)
