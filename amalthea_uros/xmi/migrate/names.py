@@ -7,7 +7,16 @@ from amalthea_uros.xmi.migrate.classes import class_of
 from amalthea_uros.xmi.migrate.node import Node
 
 #: Classes whose names are qualified by that of their container.
-_QUALIFIED = {"ModeLiteral", "HwPort", "HwFeature", "HwConnection", "ComponentInstance", "ComponentPort"}
+_QUALIFIED = {
+    "ModeLiteral",
+    "HwPort",
+    "InterfacePort",
+    "FInterfacePort",
+    "HwFeature",
+    "HwConnection",
+    "ComponentInstance",
+    "ComponentPort",
+}
 
 
 def reference_text(node: Node) -> str:
