@@ -1,0 +1,210 @@
+"""0.9.2 -> 0.9.3: execution needs in instructions and overheads of operating systems become ticks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node, remove_all
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.v0_9_3_values import number
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import insert_after, keep_comments
+
+#: The key of needs that are instructions, and the category of the feature that says how many of them a cycle executes.
+_INSTRUCTIONS = "Instructions"
+
+#: What is measured in instructions. The official converter leaves the standard deviation as it is.
+_DIVIDED = ("value", "lowerBound", "upperBound", "mean", "average")
+
+_OVERHEADS = ("apiOverhead", "isrCategory1Overhead", "isrCategory2Overhead")
+
+
+class Ticks:
+    """Converts what is stated in instructions; knows how many of them each kind of processing unit executes per cycle."""
+
+    def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
+        self.notes, self.official = notes, official
+        #: Definitions on which an instruction does not take one cycle.
+        self.rates: dict[Node, float] = {}
+        # Also in files of newer versions: the features of definitions are the same in them.
+        for tree in models.trees:
+            for definition in tree.root.find("hwModel", "definitions"):
+                rate = self.rate(definition)
+                if rate is not None and rate != 1:
+                    self.rates[definition] = rate
+
+    def rate(self, definition: Node) -> float | None:
+        """Instructions per cycle, None if unknown. The official converter takes the first feature, too."""
+        for feature in definition.references.get("features", ()):
+            category = feature.parent
+            if category is not None and category.name == _INSTRUCTIONS:
+                return self.rate_of(feature)
+        return None
+
+    def rate_of(self, feature: Node) -> float | None:
+        """The value of a feature, None if it cannot be the number of instructions per cycle."""
+        try:
+            rate = float(feature.get("value", "0"))
+        except ValueError:
+            rate = 0.0
+        if math.isfinite(rate) and rate > 0:
+            return rate
+        self.notes.defaulted(feature, "not a number of instructions per cycle, 1 is taken", feature.get("value"), "value")
+        return None
+
+    # Execution needs
+
+    def convert_needs(self, needs: Iterable[Node]) -> None:
+        """Convert the items that state execution needs."""
+        following: dict[Node, Node] = {}
+        for node in needs:
+            self.convert_need(node, following)
+        insert_after(following)
+
+    def convert_need(self, node: Node, following: dict[Node, Node]) -> None:
+        """Instructions become ticks; needs of other keys become an item of their own."""
+        defaults, extended = node.all("default"), node.all("extended")
+        if not defaults and not extended:
+            return
+        remove_all([*defaults, *extended])
+        instructions = [entry for entry in defaults if entry.get("key") == _INSTRUCTIONS]
+        others = [entry for entry in defaults if entry.get("key") != _INSTRUCTIONS]
+        by_definition = self.instructions_by_definition(extended)
+        for entry in instructions[1:]:
+            self.notes.lost(entry, "a second entry of the same key")
+        if node.tag == "computationItems":
+            for entry in others:
+                self.notes.lost(entry, "schedulers have no execution needs other than ticks any more", _shown(entry))
+            others = []
+        if others:
+            has_ticks = bool(instructions or by_definition)
+            holder = node if not has_ticks and not self.official else Node(node.tag, "ExecutionNeed", origin=node.origin)
+            holder.take([*holder.children, *(self.other_need(entry, holder) for entry in others)])
+            self.notes.moved(node, "execution needs other than instructions are an item of their own now")
+            if holder is node:
+                return
+            following[node] = holder
+        node.type = "Ticks"
+        self.notes.renamed(node, "an execution need in instructions is Ticks now")
+        self.fill(node, instructions[0] if instructions else None, by_definition)
+
+    def instructions_by_definition(self, extended: list[Node]) -> list[tuple[Node, Node]]:
+        """The entries of definitions, each with its need in instructions."""
+        found = []
+        for entry in extended:
+            values = entry.all("value")
+            fitting = [value for value in values if value.get("key") == _INSTRUCTIONS]
+            for value in values:
+                if value not in fitting[:1]:
+                    message = "execution needs of definitions have no keys other than instructions any more"
+                    self.notes.lost(value, message, _shown(value))
+            if fitting:
+                found.append((entry, fitting[0]))
+        return found
+
+    def other_need(self, entry: Node, owner: Node) -> Node:
+        """A need that is not in instructions."""
+        entry.tag = "needs"
+        stated = self.stated(entry, "value", owner)
+        entry.children = []
+        entry.take([stated] if stated else ())
+        return entry
+
+    def stated(self, entry: Node, tag: str, owner: Node) -> Node | None:
+        """The value of an entry in the newer form."""
+        value = entry.child("value")
+        return number(value, tag, owner, self.notes, self.official) if value else None
+
+    def fill(self, node: Node, default: Node | None, by_definition: list[tuple[Node, Node]]) -> None:
+        """Give an item its default ticks, and those of definitions."""
+        parts = []
+        stated = self.stated(default, "default", node) if default else None
+        if default and stated:
+            keep_comments(default, stated)
+            parts.append(stated)
+        for entry, value in by_definition:
+            ticks = self.stated(value, "value", node)
+            entry.children = []
+            if ticks is not None:
+                self.divide_for(entry, ticks)
+                entry.take([ticks])
+            # The official converter leaves an entry without a value, which is nothing that can be read.
+            if ticks is not None or self.official:
+                parts.append(entry)
+        node.take(parts)
+        if stated and not self.official:
+            self.add_definitions(node, stated)
+
+    def divide_for(self, entry: Node, ticks: Node) -> None:
+        """Turn the instructions of one definition into ticks."""
+        definition = entry.target("key")
+        rate = self.rate(definition) if definition else None
+        if rate is None:
+            self.notes.converted(entry, "instructions are ticks now; the instructions per cycle are unknown, 1 is taken")
+        elif rate != 1:
+            self.divide(ticks, rate)
+
+    def add_definitions(self, node: Node, default: Node) -> None:
+        """Keep what the default meant on definitions on which an instruction does not take one cycle: ticks of their own.
+
+        The official converter forgets them: it divides entries of definitions only.
+        """
+        if not self.rates:
+            return
+        known = {target for entry in node.all("extended") for target in entry.references.get("key", ())}
+        for definition, rate in self.rates.items():
+            if definition not in known:
+                entry = node.add("extended", like=default)
+                entry.refer("key", definition)
+                ticks = entry.add("value", default.type, like=default)
+                ticks.attributes = dict(default.attributes)
+                self.divide(ticks, rate)
+
+    def divide(self, ticks: Node, rate: float) -> None:
+        """Divide by the instructions per cycle; fractions are cut off, as the official converter does."""
+        shown = []
+        for name in _DIVIDED:
+            text = ticks.attributes.get(name)
+            if text is None:
+                continue
+            try:
+                divided = str(int(float(text) / rate))
+            except (ValueError, OverflowError):
+                self.notes.lost(ticks, "not a number, so not divided by the instructions per cycle", text, name)
+                continue
+            ticks.attributes[name] = divided
+            shown.append(f"{name} {text} / {rate:g} = {divided}")
+        if shown:
+            message = "instructions are ticks now: divided by the instructions per cycle of the definition"
+            self.notes.converted(ticks, message, ", ".join(shown))
+
+    # Overheads of operating systems
+
+    def convert_overheads(self, overheads: Iterable[Node]) -> None:
+        """Convert the numbers of instructions of the functions of operating systems."""
+        for node in overheads:
+            for group in node.all(*_OVERHEADS):
+                for part in group.children:
+                    if part.tag != "customProperties" and not part.all("default", "extended"):
+                        self.convert_overhead(part)
+
+    def convert_overhead(self, part: Node) -> None:
+        """The part stays, and gets its number as the default. Without a class the official converter fails."""
+        stated = number(part, "default", part, self.notes, self.official)
+        part.type = ""
+        part.attributes.pop("value", None)
+        properties = part.all("customProperties")
+        part.children = []
+        part.take([*properties, *([stated] if stated else ())])
+        self.notes.converted(part, "instructions of the operating system are ticks now")
+        if stated and not self.official:
+            self.add_definitions(part, stated)
+
+
+def _shown(entry: Node) -> str:
+    """Key and content of an entry, for messages."""
+    texts = [entry.get("key")]
+    for value in entry.find("value"):
+        texts += [f"{name}={text}" for part in value.walk() for name, text in part.attributes.items()]
+    return " ".join(texts)
