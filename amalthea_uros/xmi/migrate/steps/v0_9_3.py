@@ -35,6 +35,9 @@ _DEVIATIONS = {
     "TaskMeasurement": _RUNTIME,
 }
 
+#: The official converter fails where they have a deviation without a distribution, so there is nothing to reproduce.
+_FAILING = ("SporadicActivation", "PeriodicStimulus")
+
 _LATENCIES = ("LatencyConstant", "LatencyDeviation")
 
 _STEP_LIMITS = ("maxIncreasePerStep", "maxDecreasePerStep")
@@ -81,9 +84,7 @@ def _convert_deviations(node: Node, place: _Place, notes: Notes, official: bool)
             # Already in the newer form, where a class is always stated.
             part.tag = place.becomes
             continue
-        # The official converter fails on a sporadic activation without a distribution, so there is nothing to reproduce.
-        fails = node.type == "SporadicActivation" and part.child("distribution") is None
-        deviation(part, place.kind, place.becomes, node, notes, official and not fails)
+        deviation(part, place.kind, place.becomes, node, notes, official and node.type not in _FAILING)
         notes.converted(part, "a deviation has a class of its own for each distribution now", part.type)
 
 

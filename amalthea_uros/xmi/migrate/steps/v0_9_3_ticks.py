@@ -25,22 +25,23 @@ class Ticks:
 
     def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
         self.notes, self.official = notes, official
+        self.known: dict[Node, float | None] = {}
         #: Definitions on which an instruction does not take one cycle.
         self.rates: dict[Node, float] = {}
         # Also in files of newer versions: the features of definitions are the same in them.
         for tree in models.trees:
             for definition in tree.root.find("hwModel", "definitions"):
-                rate = self.rate(definition)
+                rate = self.rate(definition) if definition.type == "ProcessingUnitDefinition" else None
                 if rate is not None and rate != 1:
                     self.rates[definition] = rate
 
     def rate(self, definition: Node) -> float | None:
         """Instructions per cycle, None if unknown. The official converter takes the first feature, too."""
-        for feature in definition.references.get("features", ()):
-            category = feature.parent
-            if category is not None and category.name == _INSTRUCTIONS:
-                return self.rate_of(feature)
-        return None
+        if definition not in self.known:
+            features = (feature for feature in definition.references.get("features", ()) if _is_rate(feature))
+            feature = next(features, None)
+            self.known[definition] = self.rate_of(feature) if feature else None
+        return self.known[definition]
 
     def rate_of(self, feature: Node) -> float | None:
         """The value of a feature, None if it cannot be the number of instructions per cycle."""
@@ -58,36 +59,49 @@ class Ticks:
     def convert_needs(self, needs: Iterable[Node]) -> None:
         """Convert the items that state execution needs."""
         following: dict[Node, Node] = {}
+        emptied: list[Node] = []
         for node in needs:
-            self.convert_need(node, following)
+            self.convert_need(node, following, emptied)
+        remove_all(emptied)
         insert_after(following)
 
-    def convert_need(self, node: Node, following: dict[Node, Node]) -> None:
+    def convert_need(self, node: Node, following: dict[Node, Node], emptied: list[Node]) -> None:
         """Instructions become ticks; needs of other keys become an item of their own."""
         defaults, extended = node.all("default"), node.all("extended")
         if not defaults and not extended:
             return
         remove_all([*defaults, *extended])
-        instructions = [entry for entry in defaults if entry.get("key") == _INSTRUCTIONS]
-        others = [entry for entry in defaults if entry.get("key") != _INSTRUCTIONS]
+        by_key = self.last_of_each_key(defaults)
+        instructions = by_key.pop(_INSTRUCTIONS, None)
+        others = list(by_key.values())
         by_definition = self.instructions_by_definition(extended)
-        for entry in instructions[1:]:
-            self.notes.lost(entry, "a second entry of the same key")
         if node.tag == "computationItems":
             for entry in others:
                 self.notes.lost(entry, "schedulers have no execution needs other than ticks any more", _shown(entry))
             others = []
+        if not instructions and not by_definition:
+            if others:
+                self.keep_others(node, others)
+            else:
+                emptied.append(node)
+            return
         if others:
-            has_ticks = bool(instructions or by_definition)
-            holder = node if not has_ticks and not self.official else Node(node.tag, "ExecutionNeed", origin=node.origin)
-            holder.take([*holder.children, *(self.other_need(entry, holder) for entry in others)])
+            following[node] = Node(node.tag, "ExecutionNeed", origin=node.origin)
+            self.keep_others(following[node], others)
             self.notes.moved(node, "execution needs other than instructions are an item of their own now")
-            if holder is node:
-                return
-            following[node] = holder
         node.type = "Ticks"
         self.notes.renamed(node, "an execution need in instructions is Ticks now")
-        self.fill(node, instructions[0] if instructions else None, by_definition)
+        self.fill(node, instructions, by_definition)
+
+    def last_of_each_key(self, entries: list[Node]) -> dict[str, Node]:
+        """The entries by their keys; of several with one key the last one counts, as in the official converter."""
+        found: dict[str, Node] = {}
+        for entry in entries:
+            key = entry.get("key")
+            if key in found:
+                self.notes.lost(found[key], "another need of the same key follows", _shown(found[key]))
+            found[key] = entry
+        return found
 
     def instructions_by_definition(self, extended: list[Node]) -> list[tuple[Node, Node]]:
         """The entries of definitions, each with its need in instructions."""
@@ -103,13 +117,16 @@ class Ticks:
                 found.append((entry, fitting[0]))
         return found
 
-    def other_need(self, entry: Node, owner: Node) -> Node:
-        """A need that is not in instructions."""
-        entry.tag = "needs"
-        stated = self.stated(entry, "value", owner)
-        entry.children = []
-        entry.take([stated] if stated else ())
-        return entry
+    def keep_others(self, holder: Node, entries: list[Node]) -> None:
+        """Make needs that are not in instructions parts of an item for them."""
+        kept = []
+        for entry in entries:
+            stated = self.stated(entry, "value", holder)
+            entry.tag, entry.children = "needs", []
+            if stated is not None:
+                entry.take([stated])
+                kept.append(entry)
+        holder.take(kept)
 
     def stated(self, entry: Node, tag: str, owner: Node) -> Node | None:
         """The value of an entry in the newer form."""
@@ -126,11 +143,10 @@ class Ticks:
         for entry, value in by_definition:
             ticks = self.stated(value, "value", node)
             entry.children = []
+            # An entry without a value would be nothing that can be read.
             if ticks is not None:
                 self.divide_for(entry, ticks)
                 entry.take([ticks])
-            # The official converter leaves an entry without a value, which is nothing that can be read.
-            if ticks is not None or self.official:
                 parts.append(entry)
         node.take(parts)
         if stated and not self.official:
@@ -186,12 +202,14 @@ class Ticks:
         for node in overheads:
             for group in node.all(*_OVERHEADS):
                 for part in group.children:
-                    if part.tag != "customProperties" and not part.all("default", "extended"):
+                    if part.tag != "customProperties" and (part.type or part.attributes or part.child("deviation")):
                         self.convert_overhead(part)
 
     def convert_overhead(self, part: Node) -> None:
         """The part stays, and gets its number as the default. Without a class the official converter fails."""
         stated = number(part, "default", part, self.notes, self.official)
+        if stated and stated.type == "DiscreteValueConstant":
+            stated.attributes.setdefault("value", "0")
         part.type = ""
         part.attributes.pop("value", None)
         properties = part.all("customProperties")
@@ -200,6 +218,11 @@ class Ticks:
         self.notes.converted(part, "instructions of the operating system are ticks now")
         if stated and not self.official:
             self.add_definitions(part, stated)
+
+
+def _is_rate(feature: Node) -> bool:
+    """Whether a feature is the number of instructions per cycle."""
+    return feature.parent is not None and feature.parent.name == _INSTRUCTIONS
 
 
 def _shown(entry: Node) -> str:

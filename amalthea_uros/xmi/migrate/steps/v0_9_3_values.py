@@ -38,6 +38,7 @@ _FORMS = {
 }
 
 _BOUNDS = {"lowerBound": "lowerBound", "upperBound": "upperBound"}
+_ZEROS = {DISCRETE: "0", CONTINUOUS: "0.0"}
 _WEIBULL_PARAMETERS = ("kappa", "lambda")
 
 
@@ -103,8 +104,7 @@ def _restate(node: Node, kind: str, tag: str, owner: Node, notes: Notes, officia
         _take_attributes(node, distribution, form, notes)
     _take_parameters(node, distribution, kind, form, notes)
     node.tag, node.type = tag, kind + form.suffix
-    if kind == DISCRETE:
-        _default_bounds(node, form, notes, official)
+    _default_bounds(node, kind, form, notes, official)
     return True
 
 
@@ -166,11 +166,18 @@ def _take_number(node: Node, part: Node, name: str, notes: Notes) -> None:
         notes.lost(part, "the unit of a number without dimension", part.attributes["unit"], "unit")
 
 
-def _default_bounds(node: Node, form: _Form, notes: Notes, official: bool) -> None:
-    """A missing bound is 0, which is also the default of the newer version; a Gauss distribution needs none to be cut off at."""
-    if form.suffix == "GaussDistribution" and not official:
+def _default_bounds(node: Node, kind: str, form: _Form, notes: Notes, official: bool) -> None:
+    """A missing bound of a number is 0, which is also the default of the newer version.
+
+    The official converter also makes bounds of 0 where a Gauss distribution is not cut off, and times without a default.
+    """
+    if not official and (kind == TIME or form.suffix == "GaussDistribution"):
         return
     for name in _BOUNDS:
-        if name not in node.attributes:
-            node.attributes[name] = "0"
-            notes.defaulted(node, "a bound that is not stated is 0", name, name)
+        if name in node.attributes or node.child(name):
+            continue
+        if kind == TIME:
+            node.add(name, value="0")
+        else:
+            node.attributes[name] = _ZEROS[kind]
+        notes.defaulted(node, "a bound that is not stated is 0", name, name)
