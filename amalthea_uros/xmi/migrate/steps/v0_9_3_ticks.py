@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
@@ -26,14 +26,11 @@ class Ticks:
     def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
         self.notes, self.official = notes, official
         self.known: dict[Node, float | None] = {}
-        #: Definitions on which an instruction does not take one cycle.
-        self.rates: dict[Node, float] = {}
         # Also in files of newer versions: the features of definitions are the same in them.
-        for tree in models.trees:
-            for definition in tree.root.find("hwModel", "definitions"):
-                rate = self.rate(definition) if definition.type == "ProcessingUnitDefinition" else None
-                if rate is not None and rate != 1:
-                    self.rates[definition] = rate
+        definitions = [node for tree in models.trees for node in tree.root.find("hwModel", "definitions")]
+        self.definitions = [node for node in definitions if node.type == "ProcessingUnitDefinition"]
+        #: Definitions on which an instruction does not take one cycle.
+        self.rates = {node: rate for node in self.definitions if (rate := self.rate(node)) is not None and rate != 1}
 
     def rate(self, definition: Node) -> float | None:
         """Instructions per cycle, None if unknown. The official converter takes the first feature, too."""
@@ -56,8 +53,10 @@ class Ticks:
 
     # Execution needs
 
-    def convert_needs(self, needs: Iterable[Node]) -> None:
+    def convert_needs(self, needs: Sequence[Node]) -> None:
         """Convert the items that state execution needs."""
+        if needs and not self.definitions:
+            self.notes.defaulted(needs[0], "no definition of a processing unit in the files: 1 instruction per cycle is taken")
         following: dict[Node, Node] = {}
         emptied: list[Node] = []
         for node in needs:
@@ -155,10 +154,11 @@ class Ticks:
     def divide_for(self, entry: Node, ticks: Node) -> None:
         """Turn the instructions of one definition into ticks."""
         definition = entry.target("key")
-        rate = self.rate(definition) if definition else None
-        if rate is None:
-            self.notes.converted(entry, "instructions are ticks now; the instructions per cycle are unknown, 1 is taken")
-        elif rate != 1:
+        if definition is None or definition.is_proxy:
+            self.notes.defaulted(entry, "the definition of a processing unit is in no file: 1 instruction per cycle is taken")
+            return
+        rate = self.rate(definition)
+        if rate is not None and rate != 1:
             self.divide(ticks, rate)
 
     def add_definitions(self, node: Node, default: Node) -> None:

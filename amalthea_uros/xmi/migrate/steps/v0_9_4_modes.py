@@ -64,10 +64,17 @@ class Modes:
                 node.references["mode"] = [mode]
             self.notes.converted(node, "the initial value of a mode label is text now", literal_name(literal), "initialValue")
         elif not self.official and not node.references.get("mode"):
-            modes = list(used.get(node, ()))
-            if len(modes) == 1:
-                node.refer("mode", modes[0])
-                self.notes.defaulted(node, "a mode label without initial value has the mode of its accesses", modes[0].name)
+            self.restore_mode(node, list(used.get(node, ())))
+
+    def restore_mode(self, node: Node, used: list[Node]) -> None:
+        """Give a mode label without initial value the mode that it had until 0.8.0, or the only one of its uses."""
+        stated = self.models.set_aside.pop((node, "mode"), [])
+        if stated:
+            node.refer("mode", *stated)
+            self.notes.moved(node, "the mode of a mode label is stated again", stated[0].name, "mode")
+        elif len(used) == 1:
+            node.refer("mode", *used)
+            self.notes.defaulted(node, "a mode label without initial value has the mode of its uses", used[0].name, "mode")
 
     def convert_access(self, node: Node, used: dict[Node, dict[Node, None]]) -> None:
         """`write` is called `set`."""

@@ -1,0 +1,37 @@
+"""Small models of old versions inside tests of migration steps."""
+
+from migration import meaning, migrated, opened
+
+_SPACES = (
+    'xmlns:am="http://app4mc.eclipse.org/amalthea/{}" xmlns:xmi="http://www.omg.org/XMI" '
+    'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmi:version="2.0"'
+)
+
+
+def written(folder, version, *contents):
+    """Write files of a version into a new folder, each with some content of the root."""
+    folder = folder / str(len(list(folder.iterdir())))
+    folder.mkdir()
+    paths = []
+    for number, content in enumerate(contents):
+        paths.append(folder / f"m{number}.amxmi")
+        paths[-1].write_text(f"<am:Amalthea {_SPACES.format(version)}>{content}</am:Amalthea>", "utf-8")
+    return paths
+
+
+def check_step(folder, source, target, before, after, official=False):
+    """Assert what one file or several become, and give the notes of it."""
+    before, after = ([texts] if isinstance(texts, str) else texts for texts in (before, after))
+    models, notes = migrated(written(folder, source, *before), target, official)
+    assert meaning(models) == meaning(opened(*written(folder, target, *after)))
+    return notes
+
+
+def text_property(key, value):
+    """A custom property with a text."""
+    return f'<customProperties key="{key}"><value xsi:type="am:StringObject" value="{value}"/></customProperties>'
+
+
+def of_kind(notes, kind):
+    """Message and detail of the notes of a kind."""
+    return [(note.message, note.detail) for note in notes if note.kind is kind]
