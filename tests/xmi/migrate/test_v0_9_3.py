@@ -306,6 +306,18 @@ def test_bounds_are_kept_where_no_distribution_is_stated(same):
     same(stimulus(given), stimulus(""), official=True)
 
 
+def test_the_official_converter_states_every_bound_of_a_time(same):
+    def stimulus(content):
+        return f'<stimuliModel><stimuli xsi:type="am:RelativePeriodicStimulus" name="S">{content}</stimuli></stimuliModel>'
+
+    uniform = '<distribution xsi:type="am:UniformDistribution"/>'
+    given = f'<nextOccurrence><lowerBound xsi:type="am:Time" unit="ms"/>{uniform}</nextOccurrence>'
+    result = '<nextOccurrence xsi:type="am:TimeUniformDistribution">{}</nextOccurrence>'
+    same(stimulus(given), stimulus(result.format('<lowerBound unit="ms"/>')))
+    stated = '<lowerBound unit="ms" value="0"/><upperBound value="0"/>'
+    same(stimulus(given), stimulus(result.format(stated)), official=True)
+
+
 def test_a_missing_bound_of_a_number_is_0(same):
     given = deviation(bound("upperBound", 20) + '<distribution xsi:type="am:UniformDistribution"/>')
     result = '<default xsi:type="am:DiscreteValueUniformDistribution" lowerBound="0" upperBound="20"/>'

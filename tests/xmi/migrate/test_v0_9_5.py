@@ -231,6 +231,13 @@ def test_properties_that_are_there_stay(same):
     assert of_kind(notes, Kind.KEPT) == [("the recurrence of a scenario has no successor", "recurrence=10")]
 
 
+def test_what_is_missing_is_null_for_the_official_converter(same):
+    stimulus = '<stimuli xsi:type="am:VariableRateStimulus"><scenario>{}</scenario></stimuli>'
+    given = stimulus.format('<recurrence value="10"/>')
+    same(stimuli(given), stimuli(stimulus.format(text_property(KEY, "recurrence=10"))))
+    same(stimuli(given), stimuli(stimulus.format(text_property(KEY, "recurrence=10null"))), official=True)
+
+
 # Snapshots of the development, damaged files, large files
 
 

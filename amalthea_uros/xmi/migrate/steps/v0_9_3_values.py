@@ -174,10 +174,13 @@ def _default_bounds(node: Node, kind: str, form: _Form, notes: Notes, official: 
     if not official and (kind == TIME or form.suffix == "GaussDistribution"):
         return
     for name in _BOUNDS:
-        if name in node.attributes or node.child(name):
-            continue
         if kind == TIME:
-            node.add(name, value="0")
+            bound = node.child_or_new(name)
+            if "value" in bound.attributes:
+                continue
+            bound.attributes["value"] = "0"
+        elif name in node.attributes:
+            continue
         else:
             node.attributes[name] = _ZEROS[kind]
         notes.defaulted(node, "a bound that is not stated is 0", name, name)

@@ -99,7 +99,8 @@ class Modes:
             if entry.type in ("ModeValueConjunction", _CONJUNCTION):
                 entry.type = _CONJUNCTION
                 for part in entry.all("entries"):
-                    self.convert_comparison(part, "", used)
+                    # The official converter leaves a class that is abstract now.
+                    self.convert_comparison(part, part.type if self.official else "", used)
             elif entry.type in ("", "ModeValue"):
                 self.convert_comparison(entry, "ModeCondition", used)
 

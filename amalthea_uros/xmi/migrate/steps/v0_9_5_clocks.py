@@ -36,7 +36,7 @@ _CLASSES = {**dict.fromkeys(_FUNCTIONS, "ClockFunction"), _LIST: "ClockStepList"
 def convert_clocks(models: ModelSet, notes: Notes, official: bool) -> None:
     """Convert scenarios and clocks; references to clocks follow."""
     for node in models.nodes("scenario"):
-        _keep_recurrence(node, notes)
+        _keep_recurrence(node, notes, official)
     found = by_class(models, (*_FUNCTIONS, _LIST))
     # It fails on a clock without one of its numbers, so there is nothing to reproduce.
     official = official and not any(_lacks_number(node) for nodes in found.values() for node in nodes)
@@ -58,9 +58,9 @@ def _lacks_number(clock: Node) -> bool:
     return any(name not in clock.attributes for name in _FUNCTIONS[clock.type].numbers)
 
 
-def _keep_recurrence(scenario: Node, notes: Notes) -> None:
+def _keep_recurrence(scenario: Node, notes: Notes, official: bool) -> None:
     for recurrence in scenario.all("recurrence"):
-        text = f"recurrence={quantity_text(recurrence)}"
+        text = f"recurrence={quantity_text(recurrence, official)}"
         recurrence.remove()
         keep_comments(recurrence, scenario)
         add_property(scenario, _KEY, text)
@@ -86,7 +86,7 @@ def _convert_functions(clocks: list[Node], function: _Function, notes: Notes, of
         clock.attributes["curveType"] = function.curve
         texts = [f"{name}={clock.attributes.pop(name)}" for name in function.numbers if name in clock.attributes]
         for part in clock.all(*_TIMES):
-            texts.append(f"{part.tag}={quantity_text(part)}")
+            texts.append(f"{part.tag}={quantity_text(part, official)}")
             keep_comments(part, clock)
             part.remove()
         if official:
