@@ -31,29 +31,30 @@ class Modes:
         self.models, self.notes, self.official = models, notes, official
         modes = [node for tree in models.trees for node in tree.root.find("swModel", "modes")]
         self.by_name = {node.name: node for node in reversed(modes)}
+        #: Modes of the literals with which mode labels are used.
+        self.used: dict[Node, dict[Node, None]] = {}
         #: Modes in no file, by their encoded names.
         self.proxies: dict[str, Node] = {}
 
     def convert(self) -> None:
         """Convert everything, uses before labels: those without an initial value have the mode of their uses."""
-        used: dict[Node, dict[Node, None]] = {}
         for node in self.models.proxies:
             node.target_class = _CLASSES.get(node.target_class, node.target_class)
         for node in self.models.nodes("modes"):
             node.type = node.type if node.type not in ("", "Mode") else "EnumMode"
         for node in by_class(self.models, ("ModeLabelAccess",))["ModeLabelAccess"]:
-            self.convert_access(node, used)
+            self.convert_access(node)
         for node in self.models.nodes("setModeValueList"):
             for entry in node.all("entries"):
-                self.convert_assignment(entry, used)
+                self.convert_assignment(entry)
         for node in self.models.nodes(*_DISJUNCTIONS):
             # The official converter forgets the mode switches of interrupts.
             if not self.official or node.enclosing("isrs") is None:
-                self.convert_disjunction(node, used)
+                self.convert_disjunction(node)
         for node in self.models.nodes("modeLabels"):
-            self.convert_label(node, used)
+            self.convert_label(node)
 
-    def convert_label(self, node: Node, used: dict[Node, dict[Node, None]]) -> None:
+    def convert_label(self, node: Node) -> None:
         """The mode is a reference of its own, and the initial value the name of a literal."""
         literal = node.target("initialValue")
         if literal is not None:
@@ -64,7 +65,7 @@ class Modes:
                 node.references["mode"] = [mode]
             self.notes.converted(node, "the initial value of a mode label is text now", literal_name(literal), "initialValue")
         elif not self.official and not node.references.get("mode"):
-            self.restore_mode(node, list(used.get(node, ())))
+            self.restore_mode(node, list(self.used.get(node, ())))
 
     def restore_mode(self, node: Node, used: list[Node]) -> None:
         """Give a mode label without initial value the mode that it had until 0.8.0, or the only one of its uses."""
@@ -76,23 +77,23 @@ class Modes:
             node.refer("mode", *used)
             self.notes.defaulted(node, "a mode label without initial value has the mode of its uses", used[0].name, "mode")
 
-    def convert_access(self, node: Node, used: dict[Node, dict[Node, None]]) -> None:
+    def convert_access(self, node: Node) -> None:
         """`write` is called `set`."""
         if node.get("access") == "write":
             node.attributes["access"] = "set"
             self.notes.renamed(node, "access 'write' of a mode label is 'set' now", attribute="access")
         node.rename("modeValue", "value")
-        self.convert_value(node, node.target("data"), used)
+        self.convert_value(node, node.target("data"))
 
-    def convert_assignment(self, node: Node, used: dict[Node, dict[Node, None]]) -> None:
+    def convert_assignment(self, node: Node) -> None:
         """An entry of the list of what a stimulus sets."""
         if not self.official and node.type == "ModeValue":
             # The class is abstract now; the only one that can be here needs not be stated.
             node.type = ""
         node.rename("valueProvider", "label")
-        self.convert_value(node, node.target("label"), used)
+        self.convert_value(node, node.target("label"))
 
-    def convert_disjunction(self, node: Node, used: dict[Node, dict[Node, None]]) -> None:
+    def convert_disjunction(self, node: Node) -> None:
         """The alternatives of a condition."""
         node.type = _CLASSES.get(node.type, node.type)
         for entry in node.all("entries"):
@@ -100,21 +101,21 @@ class Modes:
                 entry.type = _CONJUNCTION
                 for part in entry.all("entries"):
                     # The official converter leaves a class that is abstract now.
-                    self.convert_comparison(part, part.type if self.official else "", used)
+                    self.convert_comparison(part, part.type if self.official else "")
             elif entry.type in ("", "ModeValue"):
-                self.convert_comparison(entry, "ModeCondition", used)
+                self.convert_comparison(entry, "ModeCondition")
 
-    def convert_comparison(self, node: Node, class_name: str, used: dict[Node, dict[Node, None]]) -> None:
+    def convert_comparison(self, node: Node, class_name: str) -> None:
         """A label and a literal: their relation is stated now."""
         if "relation" in node.attributes:
             return
         node.type = class_name
         node.attributes["relation"] = "EQUAL"
         node.rename("valueProvider", "label")
-        self.convert_value(node, node.target("label"), used)
+        self.convert_value(node, node.target("label"))
         self.notes.converted(node, "a mode value in a condition is a comparison now")
 
-    def convert_value(self, node: Node, label: Node | None, used: dict[Node, dict[Node, None]]) -> None:
+    def convert_value(self, node: Node, label: Node | None) -> None:
         """Replace the reference to a literal by its name."""
         literal = node.target("value")
         if literal is None:
@@ -123,7 +124,7 @@ class Modes:
         node.attributes["value"] = literal_name(literal)
         mode = self.mode_of(literal)
         if label is not None and mode is not None:
-            used.setdefault(label, {})[mode] = None
+            self.used.setdefault(label, {})[mode] = None
 
     def mode_of(self, literal: Node) -> Node | None:
         """The mode of a literal, None if unknown."""
