@@ -472,7 +472,7 @@ def test_damaged_content_is_survived(tmp_path, content, official):
 
 def test_time_is_linear(tmp_path):
     items = need(default(5), default(6, "FLOP")) + need(extended("P", 3, "FLOP"))
-    (path,) = written(tmp_path, "0.9.2", runnable(items * 20_000))
+    (path,) = written(tmp_path, "0.9.2", runnable(items * 5_000))
     start = time.perf_counter()
     migrated([path], "0.9.3")
-    assert time.perf_counter() - start < 20
+    assert time.perf_counter() - start < 10
