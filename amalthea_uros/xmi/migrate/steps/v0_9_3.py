@@ -1,14 +1,113 @@
-"""0.9.2 -> 0.9.3."""
+"""0.9.2 -> 0.9.3: instructions become ticks, deviations become classes of their own."""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.v0_9_3_ticks import Ticks
+from amalthea_uros.xmi.migrate.steps.v0_9_3_values import CONTINUOUS, TIME, deviation, number
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import become, by_class
+
+
+class _Place(NamedTuple):
+    """Where a class holds a deviation: old and new tag of the part, and the kind of its values."""
+
+    part: str
+    becomes: str
+    kind: str
+
+
+_RUNTIME = _Place("runtimeDeviation", "runtimeDeviation", TIME)
+_OCCURRENCES = _Place("occurrencesPerStep", "occurrencesPerStep", CONTINUOUS)
+
+_DEVIATIONS = {
+    "PeriodicStimulus": _Place("jitter", "jitter", TIME),
+    "RelativePeriodicStimulus": _Place("nextOccurrence", "nextOccurrence", TIME),
+    "SporadicActivation": _Place("activationDeviation", "occurrence", TIME),
+    "VariableRateStimulus": _OCCURRENCES,
+    "VariableRateActivation": _OCCURRENCES,
+    "EventChainMeasurement": _RUNTIME,
+    "RunnableMeasurement": _RUNTIME,
+    "TaskMeasurement": _RUNTIME,
+}
+
+#: The official converter fails where they have a deviation without a distribution, so there is nothing to reproduce.
+_FAILING = ("SporadicActivation", "PeriodicStimulus")
+
+_LATENCIES = ("LatencyConstant", "LatencyDeviation")
+
+_STEP_LIMITS = ("maxIncreasePerStep", "maxDecreasePerStep")
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.9.2."""
+    found = by_class(models, (*_DEVIATIONS, *_LATENCIES, "ExecutionNeed"))
+    ticks = Ticks(models, notes, official)
+    ticks.convert_needs(found["ExecutionNeed"])
+    ticks.convert_overheads(models.nodes("osOverheads"))
+    models.rename_classes({"OsInstructions": "OsOverhead"})
+    _rename_chunks(models, notes)
+    for name in _LATENCIES:
+        for node in found[name]:
+            _convert_latency(node, notes, official)
+    for name, place in _DEVIATIONS.items():
+        for node in found[name]:
+            _convert_deviations(node, place, notes, official)
+    for node in found["VariableRateStimulus"]:
+        _convert_step_limits(node, notes)
 
 
-STEP = Step("0.9.2", "0.9.3", change)
+def _rename_chunks(models: ModelSet, notes: Notes) -> None:
+    for node in models.nodes("transmissionPolicy"):
+        if node.rename("chunkProcessingInstructions", "chunkProcessingTicks"):
+            message = "instructions per chunk are ticks now, not divided by the instructions per cycle"
+            notes.renamed(node, message, node.get("chunkProcessingTicks"), "chunkProcessingInstructions")
+
+
+def _convert_latency(node: Node, notes: Notes, official: bool) -> None:
+    owner = node.parent or node
+    stated = number(node, node.tag, owner, notes, official)
+    if stated is None:
+        node.remove()
+        return
+    become(node, stated)
+    notes.converted(node, "a latency has a class of its own for each distribution now", node.type)
+
+
+def _convert_deviations(node: Node, place: _Place, notes: Notes, official: bool) -> None:
+    for part in node.all(place.part):
+        if part.type:
+            # Already in the newer form, where a class is always stated.
+            part.tag = place.becomes
+            continue
+        deviation(part, place.kind, place.becomes, node, notes, official and node.type not in _FAILING)
+        notes.converted(part, "a deviation has a class of its own for each distribution now", part.type)
+
+
+def _convert_step_limits(node: Node, notes: Notes) -> None:
+    for part in node.all(*_STEP_LIMITS):
+        if "value" in part.attributes:
+            node.attributes[part.tag] = part.attributes["value"]
+            notes.converted(part, "the limit of a step is an attribute now", part.attributes["value"])
+        else:
+            notes.lost(part, "a limit of a step without a value")
+        part.remove()
+
+
+STEP = Step(
+    "0.9.2",
+    "0.9.3",
+    change,
+    frozenset(
+        {
+            *("NeedConstant", "NeedDeviation", "InstructionsConstant", "InstructionsDeviation"),
+            *("LatencyConstant", "LatencyDeviation", "activationDeviation"),
+            *("BetaDistribution", "Boundaries", "GaussDistribution", "UniformDistribution", "WeibullEstimators"),
+            "WeibullParameters",
+        }
+    ),
+)

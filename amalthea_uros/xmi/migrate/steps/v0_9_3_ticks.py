@@ -1,0 +1,233 @@
+"""0.9.2 -> 0.9.3: execution needs in instructions and overheads of operating systems become ticks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node, remove_all
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.v0_9_3_values import number
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import insert_after, keep_comments
+
+#: The key of needs that are instructions, and the category of the feature that says how many of them a cycle executes.
+_INSTRUCTIONS = "Instructions"
+
+#: What is measured in instructions. The official converter leaves the standard deviation as it is.
+_DIVIDED = ("value", "lowerBound", "upperBound", "mean", "average")
+
+_OVERHEADS = ("apiOverhead", "isrCategory1Overhead", "isrCategory2Overhead")
+
+
+class Ticks:
+    """Converts what is stated in instructions; knows how many of them each kind of processing unit executes per cycle."""
+
+    def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
+        self.notes, self.official = notes, official
+        self.known: dict[Node, float | None] = {}
+        # Also in files of newer versions: the features of definitions are the same in them.
+        definitions = [node for tree in models.trees for node in tree.root.find("hwModel", "definitions")]
+        self.definitions = [node for node in definitions if node.type == "ProcessingUnitDefinition"]
+        #: Definitions on which an instruction does not take one cycle.
+        self.rates = {node: rate for node in self.definitions if (rate := self.rate(node)) is not None and rate != 1}
+
+    def rate(self, definition: Node) -> float | None:
+        """Instructions per cycle, None if unknown. The official converter takes the first feature, too."""
+        if definition not in self.known:
+            features = (feature for feature in definition.references.get("features", ()) if _is_rate(feature))
+            feature = next(features, None)
+            self.known[definition] = self.rate_of(feature) if feature else None
+        return self.known[definition]
+
+    def rate_of(self, feature: Node) -> float | None:
+        """The value of a feature, None if it cannot be the number of instructions per cycle."""
+        try:
+            rate = float(feature.get("value", "0"))
+        except ValueError:
+            rate = 0.0
+        if math.isfinite(rate) and rate > 0:
+            return rate
+        self.notes.defaulted(feature, "not a number of instructions per cycle, 1 is taken", feature.get("value"), "value")
+        return None
+
+    # Execution needs
+
+    def convert_needs(self, needs: Sequence[Node]) -> None:
+        """Convert the items that state execution needs."""
+        if needs and not self.definitions:
+            self.notes.defaulted(needs[0], "no definition of a processing unit in the files: 1 instruction per cycle is taken")
+        following: dict[Node, Node] = {}
+        emptied: list[Node] = []
+        for node in needs:
+            self.convert_need(node, following, emptied)
+        remove_all(emptied)
+        insert_after(following)
+
+    def convert_need(self, node: Node, following: dict[Node, Node], emptied: list[Node]) -> None:
+        """Instructions become ticks; needs of other keys become an item of their own."""
+        defaults, extended = node.all("default"), node.all("extended")
+        if not defaults and not extended:
+            return
+        remove_all([*defaults, *extended])
+        by_key = self.last_of_each_key(defaults)
+        instructions = by_key.pop(_INSTRUCTIONS, None)
+        others = list(by_key.values())
+        by_definition = self.instructions_by_definition(extended)
+        if node.tag == "computationItems":
+            for entry in others:
+                self.notes.lost(entry, "schedulers have no execution needs other than ticks any more", _shown(entry))
+            others = []
+        if not instructions and not by_definition:
+            if others:
+                self.keep_others(node, others)
+            else:
+                emptied.append(node)
+            return
+        if others:
+            following[node] = Node(node.tag, "ExecutionNeed", origin=node.origin)
+            self.keep_others(following[node], others)
+            self.notes.moved(node, "execution needs other than instructions are an item of their own now")
+        node.type = "Ticks"
+        self.notes.renamed(node, "an execution need in instructions is Ticks now")
+        self.fill(node, instructions, by_definition)
+
+    def last_of_each_key(self, entries: list[Node]) -> dict[str, Node]:
+        """The entries by their keys; of several with one key the last one counts, as in the official converter."""
+        found: dict[str, Node] = {}
+        for entry in entries:
+            key = entry.get("key")
+            if key in found:
+                self.notes.lost(found[key], "another need of the same key follows", _shown(found[key]))
+            found[key] = entry
+        return found
+
+    def instructions_by_definition(self, extended: list[Node]) -> list[tuple[Node, Node]]:
+        """The entries of definitions, each with its need in instructions."""
+        found = []
+        for entry in extended:
+            values = entry.all("value")
+            fitting = [value for value in values if value.get("key") == _INSTRUCTIONS]
+            for value in values:
+                if value not in fitting[:1]:
+                    message = "execution needs of definitions have no keys other than instructions any more"
+                    self.notes.lost(value, message, _shown(value))
+            if fitting:
+                found.append((entry, fitting[0]))
+        return found
+
+    def keep_others(self, holder: Node, entries: list[Node]) -> None:
+        """Make needs that are not in instructions parts of an item for them."""
+        kept = []
+        for entry in entries:
+            stated = self.stated(entry, "value", holder)
+            entry.tag, entry.children = "needs", []
+            if stated is not None:
+                entry.take([stated])
+                kept.append(entry)
+        holder.take(kept)
+
+    def stated(self, entry: Node, tag: str, owner: Node) -> Node | None:
+        """The value of an entry in the newer form."""
+        value = entry.child("value")
+        return number(value, tag, owner, self.notes, self.official) if value else None
+
+    def fill(self, node: Node, default: Node | None, by_definition: list[tuple[Node, Node]]) -> None:
+        """Give an item its default ticks, and those of definitions."""
+        parts = []
+        stated = self.stated(default, "default", node) if default else None
+        if default and stated:
+            keep_comments(default, stated)
+            parts.append(stated)
+        for entry, value in by_definition:
+            ticks = self.stated(value, "value", node)
+            entry.children = []
+            # An entry without a value would be nothing that can be read.
+            if ticks is not None:
+                self.divide_for(entry, ticks)
+                entry.take([ticks])
+                parts.append(entry)
+        node.take(parts)
+        if stated and not self.official:
+            self.add_definitions(node, stated)
+
+    def divide_for(self, entry: Node, ticks: Node) -> None:
+        """Turn the instructions of one definition into ticks."""
+        definition = entry.target("key")
+        if definition is None or definition.is_proxy:
+            self.notes.defaulted(entry, "the definition of a processing unit is in no file: 1 instruction per cycle is taken")
+            return
+        rate = self.rate(definition)
+        if rate is not None and rate != 1:
+            self.divide(ticks, rate)
+
+    def add_definitions(self, node: Node, default: Node) -> None:
+        """Keep what the default meant on definitions on which an instruction does not take one cycle: ticks of their own.
+
+        The official converter forgets them: it divides entries of definitions only.
+        """
+        if not self.rates:
+            return
+        known = {target for entry in node.all("extended") for target in entry.references.get("key", ())}
+        for definition, rate in self.rates.items():
+            if definition not in known:
+                entry = node.add("extended", like=default)
+                entry.refer("key", definition)
+                ticks = entry.add("value", default.type, like=default)
+                ticks.attributes = dict(default.attributes)
+                self.divide(ticks, rate)
+
+    def divide(self, ticks: Node, rate: float) -> None:
+        """Divide by the instructions per cycle; fractions are cut off, as the official converter does."""
+        shown = []
+        for name in _DIVIDED:
+            text = ticks.attributes.get(name)
+            if text is None:
+                continue
+            try:
+                divided = str(int(float(text) / rate))
+            except (ValueError, OverflowError):
+                self.notes.lost(ticks, "not a number, so not divided by the instructions per cycle", text, name)
+                continue
+            ticks.attributes[name] = divided
+            shown.append(f"{name} {text} / {rate:g} = {divided}")
+        if shown:
+            message = "instructions are ticks now: divided by the instructions per cycle of the definition"
+            self.notes.converted(ticks, message, ", ".join(shown))
+
+    # Overheads of operating systems
+
+    def convert_overheads(self, overheads: Iterable[Node]) -> None:
+        """Convert the numbers of instructions of the functions of operating systems."""
+        for node in overheads:
+            for group in node.all(*_OVERHEADS):
+                for part in group.children:
+                    if part.tag != "customProperties" and (part.type or part.attributes or part.child("deviation")):
+                        self.convert_overhead(part)
+
+    def convert_overhead(self, part: Node) -> None:
+        """The part stays, and gets its number as the default. Without a class the official converter fails."""
+        stated = number(part, "default", part, self.notes, self.official)
+        if stated and stated.type == "DiscreteValueConstant":
+            stated.attributes.setdefault("value", "0")
+        part.type = ""
+        part.attributes.pop("value", None)
+        properties = part.all("customProperties")
+        part.children = []
+        part.take([*properties, *([stated] if stated else ())])
+        self.notes.converted(part, "instructions of the operating system are ticks now")
+        if stated and not self.official:
+            self.add_definitions(part, stated)
+
+
+def _is_rate(feature: Node) -> bool:
+    """Whether a feature is the number of instructions per cycle."""
+    return feature.parent is not None and feature.parent.name == _INSTRUCTIONS
+
+
+def _shown(entry: Node) -> str:
+    """Key and content of an entry, for messages."""
+    texts = [entry.get("key")]
+    for value in entry.find("value"):
+        texts += [f"{name}={text}" for part in value.walk() for name, text in part.attributes.items()]
+    return " ".join(texts)

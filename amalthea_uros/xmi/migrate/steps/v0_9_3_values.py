@@ -1,0 +1,186 @@
+"""0.9.2 -> 0.9.3: constants and deviations become classes of their own for numbers and for times."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import add_property, keep_comments
+
+DISCRETE, CONTINUOUS, TIME = "DiscreteValue", "ContinuousValue", "Time"
+
+#: Class of a constant -> attribute with its value.
+CONSTANTS = {"NeedConstant": "value", "InstructionsConstant": "value", "LatencyConstant": "cycles"}
+
+#: Class of a deviation -> the part that holds bounds and distribution.
+DEVIATIONS = {"NeedDeviation": "deviation", "InstructionsDeviation": "deviation", "LatencyDeviation": "cycles"}
+
+_LOST = "a deviation without a distribution that has a successor is lost"
+
+
+class _Form(NamedTuple):
+    """The successor of a distribution: what its class ends with, its attributes, and its parameters (old name -> new name)."""
+
+    suffix: str
+    attributes: tuple[str, ...] = ()
+    parameters: dict[str, str] = {}  # noqa: RUF012 (never changed)
+
+
+_BOUNDARIES = _Form("Boundaries", ("samplingType",))
+
+_FORMS = {
+    "BetaDistribution": _Form("BetaDistribution", ("alpha", "beta")),
+    "Boundaries": _BOUNDARIES,
+    "GaussDistribution": _Form("GaussDistribution", (), {"mean": "mean", "sd": "sd"}),
+    "UniformDistribution": _Form("UniformDistribution"),
+    "WeibullEstimators": _Form("WeibullEstimatorsDistribution", ("pRemainPromille",), {"mean": "average"}),
+}
+
+_BOUNDS = {"lowerBound": "lowerBound", "upperBound": "upperBound"}
+_ZEROS = {DISCRETE: "0", CONTINUOUS: "0.0"}
+_WEIBULL_PARAMETERS = ("kappa", "lambda")
+
+
+def number(node: Node, tag: str, owner: Node, notes: Notes, official: bool) -> Node | None:
+    """A need, a number of instructions or a latency in the newer form, as a new part without container; None if nothing is left.
+
+    Parameters
+    ----------
+    tag : that of the new part
+    owner : the nearest object that can have custom properties
+    """
+    _drop_statistics(node, notes)
+    inner = node.child(DEVIATIONS.get(node.type, "deviation"))
+    if node.type in DEVIATIONS or (node.type not in CONSTANTS and inner is not None):
+        if inner is None:
+            notes.lost(node, "states neither a value nor bounds")
+            return None
+        inner.remove()
+        return inner if _restate(inner, DISCRETE, tag, owner, notes, official) else None
+    attribute = CONSTANTS.get(node.type, "value")
+    if node.type not in CONSTANTS and attribute not in node.attributes:
+        notes.lost(node, "states neither a value nor bounds")
+        return None
+    made = Node(tag, "DiscreteValueConstant", origin=node.origin)
+    if attribute in node.attributes:
+        made.attributes["value"] = node.attributes[attribute]
+    return made
+
+
+def _drop_statistics(node: Node, notes: Notes) -> None:
+    for statistic in node.all("fetchStatistic"):
+        notes.lost(statistic, "fetch statistics of instructions have no successor", _summary(statistic))
+        statistic.remove()
+
+
+def _summary(node: Node) -> str:
+    """Everything that the parts state, on one line."""
+    texts = []
+    for part in node.children:
+        stated = " ".join(f"{name}={text}" for name, text in part.attributes.items())
+        texts.append(f"{part.tag}({stated})")
+    return " ".join(texts)
+
+
+def deviation(node: Node, kind: str, tag: str, owner: Node, notes: Notes, official: bool) -> None:
+    """Convert a part that is a deviation itself, such as the jitter of a stimulus; it is removed if nothing is left."""
+    if not _restate(node, kind, tag, owner, notes, official):
+        node.remove()
+
+
+def _restate(node: Node, kind: str, tag: str, owner: Node, notes: Notes, official: bool) -> bool:
+    """Give a deviation the class of its distribution, and the parameters of it; whether a value is left."""
+    distribution = node.child("distribution")
+    form = _FORMS.get(distribution.type) if distribution is not None else None
+    if form is None:
+        if official:
+            notes.lost(node, _LOST, _summary(node))
+            return False
+        if not _keep_bounds(node, distribution, owner, notes):
+            return False
+        form = _BOUNDARIES
+    elif distribution is not None:
+        _take_attributes(node, distribution, form, notes)
+    _take_parameters(node, distribution, kind, form, notes)
+    node.tag, node.type = tag, kind + form.suffix
+    _default_bounds(node, kind, form, notes, official)
+    return True
+
+
+def _keep_bounds(node: Node, distribution: Node | None, owner: Node, notes: Notes) -> bool:
+    """Keep what a deviation states without a distribution that has a successor; whether it states bounds."""
+    if distribution is not None:
+        stated = {name: text for name, text in distribution.attributes.items() if name in _WEIBULL_PARAMETERS}
+        if stated:
+            text = " ".join(f"{name}={value}" for name, value in stated.items())
+            add_property(owner, distribution.type, text)
+            notes.kept(distribution, "a distribution without a successor; only its bounds are part of the model now", text)
+        _report_unknown(distribution, set(stated), notes)
+    if node.child("lowerBound") or node.child("upperBound"):
+        notes.converted(node, "a deviation without a distribution that has a successor: its bounds are Boundaries now")
+        return True
+    notes.lost(node, "states neither a value nor bounds")
+    return False
+
+
+def _take_attributes(node: Node, distribution: Node, form: _Form, notes: Notes) -> None:
+    _report_unknown(distribution, set(form.attributes), notes)
+    for name in form.attributes:
+        if name in distribution.attributes:
+            node.attributes[name] = distribution.attributes[name]
+
+
+def _report_unknown(node: Node, known: set[str], notes: Notes) -> None:
+    for name, text in node.attributes.items():
+        if name not in known:
+            notes.lost(node, "not an attribute of this class", f"{name}={text!r}", name)
+
+
+def _take_parameters(node: Node, distribution: Node | None, kind: str, form: _Form, notes: Notes) -> None:
+    """Bounds, mean and the like: elements of times, attributes of numbers."""
+    parts = [(part, _BOUNDS) for part in node.children if part is not distribution]
+    if distribution is not None:
+        keep_comments(distribution, node)
+        parts += [(part, form.parameters) for part in distribution.children]
+    node.children = []
+    times = []
+    for part, names in parts:
+        part.parent = None
+        name = names.get(part.tag)
+        if name is None:
+            notes.lost(part, f"no part of {node.tag}", f"<{part.tag}>")
+        elif kind == TIME:
+            part.tag, part.type = name, ""
+            times.append(part)
+        else:
+            _take_number(node, part, name, notes)
+    node.take(times)
+
+
+def _take_number(node: Node, part: Node, name: str, notes: Notes) -> None:
+    keep_comments(part, node)
+    if "value" in part.attributes:
+        node.attributes[name] = part.attributes["value"]
+    if "unit" in part.attributes:
+        notes.lost(part, "the unit of a number without dimension", part.attributes["unit"], "unit")
+
+
+def _default_bounds(node: Node, kind: str, form: _Form, notes: Notes, official: bool) -> None:
+    """A missing bound of a number is 0, which is also the default of the newer version.
+
+    The official converter also makes bounds of 0 where a Gauss distribution is not cut off, and times without a default.
+    """
+    if not official and (kind == TIME or form.suffix == "GaussDistribution"):
+        return
+    for name in _BOUNDS:
+        if kind == TIME:
+            bound = node.child_or_new(name)
+            if "value" in bound.attributes:
+                continue
+            bound.attributes["value"] = "0"
+        elif name in node.attributes:
+            continue
+        else:
+            node.attributes[name] = _ZEROS[kind]
+        notes.defaulted(node, "a bound that is not stated is 0", name, name)

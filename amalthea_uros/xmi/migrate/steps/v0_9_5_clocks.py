@@ -1,0 +1,109 @@
+"""0.9.4 -> 0.9.5: clocks are described by frequencies, whose units the older version does not state."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.names import reference_text
+from amalthea_uros.xmi.migrate.node import Node, proxy
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import add_property, by_class, keep_comments, quantity_text
+
+#: The key of the custom properties that keep the older definition, as the official converter writes it.
+_KEY = "old_definition_v0.9.4"
+
+_MESSAGE = "the definition of a clock has no successor whose meaning is certain"
+
+
+class _Function(NamedTuple):
+    """The shape of a clock: its name since 0.9.5, and its numbers, in the order in which they are written down."""
+
+    curve: str
+    numbers: tuple[str, str]
+
+
+_FUNCTIONS = {
+    "ClockSinusFunction": _Function("sine", ("amplitude", "yOffset")),
+    "ClockTriangleFunction": _Function("triangle", ("max", "min")),
+}
+_TIMES = ("period", "shift")
+_LIST = "ClockMultiplierList"
+
+_CLASSES = {**dict.fromkeys(_FUNCTIONS, "ClockFunction"), _LIST: "ClockStepList"}
+
+
+def convert_clocks(models: ModelSet, notes: Notes, official: bool) -> None:
+    """Convert scenarios and clocks; references to clocks follow."""
+    for node in models.nodes("scenario"):
+        _keep_recurrence(node, notes, official)
+    found = by_class(models, (*_FUNCTIONS, _LIST))
+    # It fails on a clock without one of its numbers, so there is nothing to reproduce.
+    official = official and not any(_lacks_number(node) for nodes in found.values() for node in nodes)
+    clocks = [node for nodes in found.values() for node in nodes]
+    if official:
+        _leave_references(models, clocks)
+    else:
+        for node in models.proxies:
+            node.target_class = _CLASSES.get(node.target_class, node.target_class)
+    for name, function in _FUNCTIONS.items():
+        _convert_functions(found[name], function, notes, official)
+    for node in found[_LIST]:
+        _convert_list(node, notes)
+
+
+def _lacks_number(clock: Node) -> bool:
+    if clock.type == _LIST:
+        return any("multiplier" not in entry.attributes for entry in clock.all("entries"))
+    return any(name not in clock.attributes for name in _FUNCTIONS[clock.type].numbers)
+
+
+def _keep_recurrence(scenario: Node, notes: Notes, official: bool) -> None:
+    for recurrence in scenario.all("recurrence"):
+        text = f"recurrence={quantity_text(recurrence, official)}"
+        recurrence.remove()
+        keep_comments(recurrence, scenario)
+        add_property(scenario, _KEY, text)
+        notes.kept(recurrence, "the recurrence of a scenario has no successor", text)
+
+
+def _leave_references(models: ModelSet, clocks: list[Node]) -> None:
+    """The official converter leaves the former classes in references, which so lead nowhere."""
+    lost = {clock: proxy(reference_text(clock).rpartition("?type=")[0], clock.type) for clock in clocks}
+    if not lost:
+        return
+    models.proxies.extend(lost.values())
+    for node in models.walk():
+        for name, targets in node.references.items():
+            node.references[name] = [lost.get(target, target) for target in targets]
+
+
+def _convert_functions(clocks: list[Node], function: _Function, notes: Notes, official: bool) -> None:
+    before: list[str] = []
+    root = None
+    for clock in clocks:
+        clock.type = "ClockFunction"
+        clock.attributes["curveType"] = function.curve
+        texts = [f"{name}={clock.attributes.pop(name)}" for name in function.numbers if name in clock.attributes]
+        for part in clock.all(*_TIMES):
+            texts.append(f"{part.tag}={quantity_text(part, official)}")
+            keep_comments(part, clock)
+            part.remove()
+        if official:
+            # It repeats what it wrote for the clocks before, in the same file.
+            before = before if root is clock.root else []
+            root = clock.root
+            before += texts
+            texts = before
+        if texts:
+            add_property(clock, _KEY, " ".join(texts))
+            notes.kept(clock, _MESSAGE, " ".join(texts))
+
+
+def _convert_list(clock: Node, notes: Notes) -> None:
+    clock.type = "ClockStepList"
+    for entry in clock.all("entries"):
+        if "multiplier" in entry.attributes:
+            text = f"multiplier={entry.attributes.pop('multiplier')}"
+            add_property(entry, _KEY, text)
+            notes.kept(entry, _MESSAGE, text)

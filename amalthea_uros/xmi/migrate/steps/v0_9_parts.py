@@ -1,0 +1,63 @@
+"""What the steps 0.9.2 ... 0.9.5 share: custom properties, elements that become part of others, and nodes by class."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node
+
+
+def add_property(owner: Node, key: str, text: str) -> None:
+    """Keep a text as a custom property, after those that are there; keys are unique."""
+    keys = {child.get("key") for child in owner.children if child.tag == "customProperties"}
+    number, unique = 1, key
+    while unique in keys:
+        number += 1
+        unique = f"{key} {number}"
+    made = owner.add("customProperties", at=len(keys), key=unique)
+    made.add("value", "StringObject", value=text)
+
+
+def keep_comments(dissolved: Node, owner: Node) -> None:
+    """Move the comments in front of an element that goes away to the one that takes its content."""
+    if dissolved.comments and dissolved is not owner:
+        owner.comments = [*(owner.comments or ()), *dissolved.comments]
+        dissolved.comments = None
+
+
+def become(node: Node, other: Node) -> None:
+    """Take class, attributes, references and parts of another node, which goes away."""
+    node.type, node.attributes, node.references = other.type, other.attributes, other.references
+    node.children = []
+    node.take(other.children)
+    keep_comments(other, node)
+
+
+def insert_after(following: dict[Node, Node]) -> None:
+    """Put nodes after others, in time linear in the number of siblings."""
+    for holder in {node.parent: None for node in following if node.parent is not None}:
+        children: list[Node] = []
+        for child in holder.children:
+            children.append(child)
+            added = following.get(child)
+            if added is not None:
+                added.parent = holder
+                children.append(added)
+        holder.children = children
+
+
+def by_class(models: ModelSet, names: Iterable[str]) -> dict[str, list[Node]]:
+    """The objects whose `xsi:type` states one of some classes."""
+    found: dict[str, list[Node]] = {name: [] for name in names}
+    for node in models.walk():
+        if node.type in found:
+            found[node.type].append(node)
+    return found
+
+
+def quantity_text(node: Node, official: bool) -> str:
+    """Value and unit without a blank: `10ms`. The official converter writes what is missing as `null`."""
+    if official:
+        return node.get("value", "null") + node.get("unit", "null")
+    return node.get("value", "0") + node.get("unit")

@@ -1,0 +1,478 @@
+"""0.9.2 -> 0.9.3, as far as the pairs of models do not show it."""
+
+import time
+from functools import partial
+
+import pytest
+from inline_models import check_step, of_kind, text_property, written
+from migration import meaning, migrated
+
+from amalthea_uros.xmi.migrate.notes import Kind
+
+
+@pytest.fixture
+def same(tmp_path):
+    """Assert what some files become."""
+    return partial(check_step, tmp_path, "0.9.2", "0.9.3")
+
+
+def hardware(*definitions, category="Instructions"):
+    """A hardware model with definitions of processing units, by name and the text of their instructions per cycle."""
+    made = [
+        f'<definitions xsi:type="am:ProcessingUnitDefinition" name="{name}" features="{category}/F{number}?type=HwFeature"/>'
+        for number, (name, _) in enumerate(definitions)
+    ]
+    features = [f'<features name="F{number}" value="{value}"/>' for number, (_, value) in enumerate(definitions)]
+    return f'<hwModel>{"".join(made)}<featureCategories name="{category}">{"".join(features)}</featureCategories></hwModel>'
+
+
+def runnable(items):
+    return f'<swModel><runnables name="R">{items}</runnables></swModel>'
+
+
+def need(*entries):
+    return f'<runnableItems xsi:type="am:ExecutionNeed">{"".join(entries)}</runnableItems>'
+
+
+def ticks(*entries, tag="runnableItems"):
+    return f'<{tag} xsi:type="am:Ticks">{"".join(entries)}</{tag}>'
+
+
+def default(value, key="Instructions"):
+    return f'<default key="{key}"><value xsi:type="am:NeedConstant" value="{value}"/></default>'
+
+
+def extended(definition, value, key="Instructions"):
+    inner = f'<value key="{key}"><value xsi:type="am:NeedConstant" value="{value}"/></value>'
+    return f'<extended key="{definition}?type=ProcessingUnitDefinition">{inner}</extended>'
+
+
+def constant(value, tag="default"):
+    return f'<{tag} xsi:type="am:DiscreteValueConstant" value="{value}"/>'
+
+
+def of_definition(definition, value):
+    return f'<extended key="{definition}?type=ProcessingUnitDefinition">{value}</extended>'
+
+
+def deviation(content, key="Instructions"):
+    inner = f'<value xsi:type="am:NeedDeviation"><deviation>{content}</deviation></value>'
+    return f'<default key="{key}">{inner}</default>'
+
+
+def bound(tag, value, kind="LongObject", more=""):
+    return f'<{tag} xsi:type="am:{kind}" value="{value}"{more}/>'
+
+
+# Instructions become ticks
+
+
+def test_the_default_of_instructions_means_other_ticks_where_an_instruction_does_not_take_one_cycle(same):
+    units = hardware(("Fast core", "2.0"), ("Plain", "1.0"), ("Slow", "0.5"))
+    same(
+        runnable(need(default(101))) + units,
+        runnable(
+            ticks(
+                constant(101),
+                of_definition("Fast+core", constant(50, "value")),
+                of_definition("Slow", constant(202, "value")),
+            )
+        )
+        + units,
+    )
+
+
+def test_entries_of_definitions_are_divided_once(same):
+    units = hardware(("P", "2.0"), ("Q", "4"))
+    same(
+        runnable(need(default(101), extended("P", 90))) + units,
+        runnable(ticks(constant(101), of_definition("P", constant(45, "value")), of_definition("Q", constant(25, "value"))))
+        + units,
+    )
+
+
+def test_the_official_converter_does_not_divide_the_default(same):
+    units = hardware(("P", "2.0"))
+    same(runnable(need(default(101))) + units, runnable(ticks(constant(101))) + units, official=True)
+
+
+def test_hardware_in_another_file_counts(same):
+    units = hardware(("P", "2"))
+    same([runnable(need(default(10))), units], [runnable(ticks(constant(10), of_definition("P", constant(5, "value")))), units])
+
+
+def test_only_features_of_the_category_instructions_divide(same):
+    units = hardware(("P", "2.0"), category="FLOP")
+    same(
+        runnable(need(default(10), extended("P", 8))) + units,
+        runnable(ticks(constant(10), of_definition("P", constant(8, "value")))) + units,
+    )
+
+
+@pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "much", ""])
+def test_impossible_instructions_per_cycle_divide_nothing(same, value):
+    units = hardware(("P", value))
+    notes = same(
+        runnable(need(default(10), extended("P", 8))) + units,
+        runnable(ticks(constant(10), of_definition("P", constant(8, "value")))) + units,
+    )
+    assert ("not a number of instructions per cycle, 1 is taken", value) in of_kind(notes, Kind.DEFAULTED)
+
+
+def test_what_is_no_number_stays(same):
+    units = hardware(("P", "2.0"))
+    notes = same(
+        runnable(need(extended("P", "many"))) + units,
+        runnable(ticks(of_definition("P", constant("many", "value")))) + units,
+    )
+    assert ("not a number, so not divided by the instructions per cycle", "many") in of_kind(notes, Kind.LOST)
+
+
+def test_bounds_and_mean_are_divided_the_standard_deviation_is_not(same):
+    units = hardware(("P", "2.0"))
+    gauss = '<distribution xsi:type="am:GaussDistribution">' + bound("sd", 6) + bound("mean", 15) + "</distribution>"
+    given = bound("lowerBound", 11) + bound("upperBound", 21) + gauss
+    entry = f'<value key="Instructions"><value xsi:type="am:NeedDeviation"><deviation>{given}</deviation></value></value>'
+    value = '<value xsi:type="am:DiscreteValueGaussDistribution" lowerBound="5" upperBound="10" mean="7" sd="6"/>'
+    same(
+        runnable(need(of_definition("P", entry))) + units,
+        runnable(ticks(of_definition("P", value))) + units,
+    )
+
+
+def test_missing_hardware_is_reported(tmp_path):
+    _, notes = migrated(written(tmp_path, "0.9.2", runnable(need(default(1), extended("P", 8)))), "0.9.3")
+    assert of_kind(notes, Kind.DEFAULTED) == [
+        ("no definition of a processing unit in the files: 1 instruction per cycle is taken", ""),
+        ("the definition of a processing unit is in no file: 1 instruction per cycle is taken", ""),
+    ]
+
+
+def test_needs_of_other_keys_are_an_item_behind_the_ticks(same):
+    label = '<runnableItems xsi:type="am:RunnableCall"/>'
+    kept = f'<runnableItems xsi:type="am:ExecutionNeed"><needs key="F L">{constant(7, "value")}</needs></runnableItems>'
+    same(
+        runnable(need(default(7, "F L"), default(5)) + label),
+        runnable(ticks(constant(5)) + kept + label),
+    )
+
+
+def test_needs_without_instructions_are_no_ticks(same):
+    kept = f'<runnableItems xsi:type="am:ExecutionNeed"><needs key="FLOP">{constant(7, "value")}</needs></runnableItems>'
+    for official in (False, True):
+        notes = same(runnable(need(default(7, "FLOP"), extended("P", 3, "FLOP"))), runnable(kept), official=official)
+        message = "execution needs of definitions have no keys other than instructions any more"
+        assert (message, "FLOP value=3") in of_kind(notes, Kind.LOST)
+
+
+def test_needs_in_groups_and_switches_are_found(same):
+    def nest(items):
+        inner = f'<items xsi:type="am:RunnableModeSwitch"><defaultEntry>{items}</defaultEntry></items>'
+        return runnable(f'<runnableItems xsi:type="am:Group" ordered="true">{inner}</runnableItems>')
+
+    same(
+        nest(need(default(5), default(2, "FLOP")).replace("runnableItems", "items")),
+        nest(
+            ticks(constant(5), tag="items")
+            + f'<items xsi:type="am:ExecutionNeed"><needs key="FLOP">{constant(2, "value")}</needs></items>'
+        ),
+    )
+
+
+@pytest.mark.parametrize("scheduler", ["taskSchedulers", "interruptControllers"])
+def test_schedulers_have_no_needs_but_ticks(same, scheduler):
+    def system(items):
+        return f'<osModel><operatingSystems><{scheduler} name="S">{items}</{scheduler}></operatingSystems></osModel>'
+
+    notes = same(
+        system(need(default(5), default(2, "FLOP")).replace("runnableItems", "computationItems")),
+        system(ticks(constant(5), tag="computationItems")),
+    )
+    lost = ("schedulers have no execution needs other than ticks any more", "FLOP value=2")
+    assert of_kind(notes, Kind.LOST) == [lost]
+
+
+def test_of_two_needs_of_the_same_key_the_last_one_counts(same):
+    notes = same(runnable(need(default(5), default(6))), runnable(ticks(constant(6))))
+    assert of_kind(notes, Kind.LOST) == [("another need of the same key follows", "Instructions value=5")]
+
+
+def test_custom_properties_and_comments_stay(tmp_path):
+    content = need(text_property("k", "v"), "<!-- why -->", default(5))
+    models, _ = migrated(written(tmp_path, "0.9.2", runnable(content)), "0.9.3")
+    item = models.trees[0].root.find("swModel", "runnables", "runnableItems")[0]
+    assert [child.tag for child in item.children] == ["customProperties", "default"]
+    assert item.children[1].comments == ["<!-- why -->"]
+
+
+# Deviations
+
+
+@pytest.mark.parametrize(
+    ("distribution", "result"),
+    [
+        ('xsi:type="am:BetaDistribution" alpha="0.5" beta="2.0"', 'BetaDistribution" alpha="0.5" beta="2.0"'),
+        ('xsi:type="am:Boundaries" samplingType="BestCase"', 'Boundaries" samplingType="BestCase"'),
+        ('xsi:type="am:UniformDistribution"', 'UniformDistribution"'),
+        ('xsi:type="am:WeibullEstimators" pRemainPromille="3"', 'WeibullEstimatorsDistribution" pRemainPromille="3"'),
+    ],
+)
+def test_each_kind_of_values_has_its_classes(same, distribution, result):
+    def given(kind):
+        return bound("lowerBound", 1, kind) + bound("upperBound", 2, kind) + f"<distribution {distribution}/>"
+
+    times = '<lowerBound value="1"/><upperBound value="2"/>'
+    numbers = 'lowerBound="1" upperBound="2"'
+    rate = '<stimuli xsi:type="am:VariableRateStimulus" name="V">{}</stimuli>'
+    jitter = '<stimuli xsi:type="am:PeriodicStimulus" name="P">{}</stimuli>'
+    same(
+        runnable(need(deviation(given("LongObject"))))
+        + "<stimuliModel>"
+        + rate.format(f"<occurrencesPerStep>{given('DoubleObject')}</occurrencesPerStep>")
+        + jitter.format(f"<jitter>{given('Time')}</jitter>")
+        + "</stimuliModel>",
+        runnable(ticks(f'<default xsi:type="am:DiscreteValue{result} {numbers}/>'))
+        + "<stimuliModel>"
+        + rate.format(f'<occurrencesPerStep xsi:type="am:ContinuousValue{result} {numbers}/>')
+        + jitter.format(f'<jitter xsi:type="am:Time{result}>{times}</jitter>')
+        + "</stimuliModel>",
+    )
+
+
+def activation(name, content):
+    return f'<swModel><activations xsi:type="am:{name}" name="A">{content}</activations></swModel>'
+
+
+def test_the_deviation_of_a_sporadic_activation_is_its_occurrence(same):
+    content = bound("lowerBound", 1, "Time", ' unit="ms"') + bound("upperBound", 2, "Time", ' unit="ms"')
+    uniform = '<distribution xsi:type="am:UniformDistribution"/>'
+    times = '<lowerBound value="1" unit="ms"/><upperBound value="2" unit="ms"/>'
+    for official in (False, True):
+        same(
+            activation("SporadicActivation", f"<activationDeviation>{content}{uniform}</activationDeviation>"),
+            activation("SporadicActivation", f'<occurrence xsi:type="am:TimeUniformDistribution">{times}</occurrence>'),
+            official=official,
+        )
+        # The official converter fails here.
+        same(
+            activation("SporadicActivation", f"<activationDeviation>{content}</activationDeviation>"),
+            activation("SporadicActivation", f'<occurrence xsi:type="am:TimeBoundaries">{times}</occurrence>'),
+            official=official,
+        )
+
+
+def test_occurrences_of_an_activation_are_numbers(same):
+    content = bound("lowerBound", "1.5", "DoubleObject") + bound("upperBound", 2, "DoubleObject")
+    same(
+        activation("VariableRateActivation", f"<occurrencesPerStep>{content}</occurrencesPerStep>"),
+        activation(
+            "VariableRateActivation",
+            '<occurrencesPerStep xsi:type="am:ContinuousValueBoundaries" lowerBound="1.5" upperBound="2"/>',
+        ),
+    )
+
+
+def test_measured_deviations_are_times(same):
+    def model(content):
+        return f'<measurementModel><measurements xsi:type="am:TaskMeasurement">{content}</measurements></measurementModel>'
+
+    given = bound("lowerBound", 1, "Time") + bound("upperBound", 2, "Time")
+    weibull = '<distribution xsi:type="am:WeibullEstimators">' + bound("mean", 3, "Time") + "</distribution>"
+    average = '<lowerBound value="1"/><upperBound value="2"/><average value="3"/>'
+    same(
+        model(f"<runtimeDeviation>{given}{weibull}</runtimeDeviation>"),
+        model(f'<runtimeDeviation xsi:type="am:TimeWeibullEstimatorsDistribution">{average}</runtimeDeviation>'),
+    )
+
+
+def test_weibull_parameters_are_kept_as_text(same):
+    weibull = '<distribution xsi:type="am:WeibullParameters" kappa="5.0" lambda="6.0"/>'
+    given = bound("lowerBound", 10) + bound("upperBound", 20) + weibull
+    bounds = '<default xsi:type="am:DiscreteValueBoundaries" lowerBound="10" upperBound="20"/>'
+    kept = text_property("WeibullParameters", "kappa=5.0 lambda=6.0")
+    same(runnable(need(deviation(given))), runnable(ticks(kept, bounds)))
+    same(runnable(need(deviation(given))), runnable(ticks()), official=True)
+    without_bounds = same(runnable(need(deviation(weibull))), runnable(ticks(kept)))
+    assert of_kind(without_bounds, Kind.LOST) == [("states neither a value nor bounds", "")]
+
+
+def test_bounds_are_kept_where_no_distribution_is_stated(same):
+    def stimulus(content, name="RelativePeriodicStimulus"):
+        return f'<stimuliModel><stimuli xsi:type="am:{name}" name="S">{content}</stimuli></stimuliModel>'
+
+    given = f"<nextOccurrence>{bound('upperBound', 20, 'Time')}</nextOccurrence>"
+    kept = '<nextOccurrence xsi:type="am:TimeBoundaries"><upperBound value="20"/></nextOccurrence>'
+    same(stimulus(given), stimulus(kept))
+    same(stimulus(given), stimulus(""), official=True)
+
+
+def test_the_official_converter_states_every_bound_of_a_time(same):
+    def stimulus(content):
+        return f'<stimuliModel><stimuli xsi:type="am:RelativePeriodicStimulus" name="S">{content}</stimuli></stimuliModel>'
+
+    uniform = '<distribution xsi:type="am:UniformDistribution"/>'
+    given = f'<nextOccurrence><lowerBound xsi:type="am:Time" unit="ms"/>{uniform}</nextOccurrence>'
+    result = '<nextOccurrence xsi:type="am:TimeUniformDistribution">{}</nextOccurrence>'
+    same(stimulus(given), stimulus(result.format('<lowerBound unit="ms"/>')))
+    stated = '<lowerBound unit="ms" value="0"/><upperBound value="0"/>'
+    same(stimulus(given), stimulus(result.format(stated)), official=True)
+
+
+def test_a_missing_bound_of_a_number_is_0(same):
+    given = deviation(bound("upperBound", 20) + '<distribution xsi:type="am:UniformDistribution"/>')
+    result = '<default xsi:type="am:DiscreteValueUniformDistribution" lowerBound="0" upperBound="20"/>'
+    for official in (False, True):
+        notes = same(runnable(need(given)), runnable(ticks(result)), official=official)
+        assert ("a bound that is not stated is 0", "lowerBound") in of_kind(notes, Kind.DEFAULTED)
+
+
+def test_a_gauss_distribution_without_bounds_is_not_cut_off(same):
+    gauss = f'<distribution xsi:type="am:GaussDistribution">{bound("mean", 5)}{bound("sd", 1)}</distribution>'
+    plain = '<default xsi:type="am:DiscreteValueGaussDistribution" mean="5" sd="1"/>'
+    same(runnable(need(deviation(gauss))), runnable(ticks(plain)))
+    cut = plain.replace("mean", 'lowerBound="0" upperBound="0" mean')
+    same(runnable(need(deviation(gauss))), runnable(ticks(cut)), official=True)
+
+
+def test_a_constant_without_a_value_and_a_deviation_without_content(same):
+    empty = '<default key="Instructions"><value xsi:type="am:NeedConstant"/></default>'
+    same(runnable(need(empty)), runnable(ticks('<default xsi:type="am:DiscreteValueConstant"/>')))
+    empty = '<default key="Instructions"><value xsi:type="am:NeedDeviation"/></default>'
+    notes = same(runnable(need(empty)), runnable(ticks()))
+    assert of_kind(notes, Kind.LOST) == [("states neither a value nor bounds", "")]
+
+
+# Stimuli, hardware, operating systems
+
+
+def test_limits_of_a_step_are_attributes(same):
+    def stimulus(attributes, content):
+        return f'<stimuliModel><stimuli xsi:type="am:VariableRateStimulus" {attributes}>{content}</stimuli></stimuliModel>'
+
+    same(
+        stimulus("", '<maxIncreasePerStep value="2.5"/><maxDecreasePerStep/>'),
+        stimulus('maxIncreasePerStep="2.5"', ""),
+    )
+
+
+def test_latencies(same):
+    def access(content):
+        units = f'<modules xsi:type="am:ProcessingUnit" name="P"><accessElements name="a">{content}</accessElements></modules>'
+        return f'<hwModel><structures name="S">{units}</structures></hwModel>'
+
+    given = bound("lowerBound", 1) + bound("upperBound", 4)
+    uniform = '<distribution xsi:type="am:UniformDistribution"/>'
+    same(
+        access(
+            '<readLatency xsi:type="am:LatencyConstant" cycles="9"/>'
+            f'<writeLatency xsi:type="am:LatencyDeviation"><cycles>{given}{uniform}</cycles></writeLatency>'
+        ),
+        access(
+            constant(9, "readLatency")
+            + '<writeLatency xsi:type="am:DiscreteValueUniformDistribution" lowerBound="1" upperBound="4"/>'
+        ),
+    )
+    lost = f'<writeLatency xsi:type="am:LatencyDeviation"><cycles>{given}</cycles></writeLatency>'
+    same(access(lost), access('<writeLatency xsi:type="am:DiscreteValueBoundaries" lowerBound="1" upperBound="4"/>'))
+    same(access(lost), access(""), official=True)
+    memory = '<hwModel><definitions xsi:type="am:MemoryDefinition" name="M">{}</definitions></hwModel>'
+    same(
+        memory.format('<accessLatency xsi:type="am:LatencyConstant" cycles="3"/>'),
+        memory.format(constant(3, "accessLatency")),
+    )
+
+
+def test_chunks(same):
+    def access(attribute):
+        return runnable(f'<runnableItems xsi:type="am:ChannelSend"><transmissionPolicy {attribute}="10"/></runnableItems>')
+
+    notes = same(access("chunkProcessingInstructions"), access("chunkProcessingTicks"))
+    assert notes[-1].attribute == "chunkProcessingInstructions"
+
+
+def overheads(content, more=""):
+    return f'<osModel><osOverheads name="o 1">{content}</osOverheads>{more}</osModel>'
+
+
+def test_overheads_of_operating_systems(same):
+    given = (
+        '<apiOverhead><apiIocRead xsi:type="am:InstructionsConstant"/>'
+        '<apiSetEvent value="4"/><apiWaitEvent xsi:type="am:InstructionsDeviation"><deviation/></apiWaitEvent></apiOverhead>'
+        '<isrCategory2Overhead><postExecutionOverhead xsi:type="am:InstructionsConstant" value="7">'
+        '<fetchStatistic><count xsi:type="am:SingleValueStatistic" value="3"/></fetchStatistic>'
+        "</postExecutionOverhead></isrCategory2Overhead>"
+    )
+    result = (
+        f"<apiOverhead><apiIocRead>{constant(0)}</apiIocRead><apiSetEvent>{constant(4)}</apiSetEvent><apiWaitEvent/></apiOverhead>"
+        f"<isrCategory2Overhead><postExecutionOverhead>{constant(7)}</postExecutionOverhead></isrCategory2Overhead>"
+    )
+    for official in (False, True):
+        notes = same(overheads(given), overheads(result), official=official)
+        lost = ("fetch statistics of instructions have no successor", "count(value=3)")
+        assert lost in of_kind(notes, Kind.LOST)
+
+
+def test_overheads_are_ticks_of_each_definition(same):
+    units = hardware(("P", "2.0"))
+    given = '<apiOverhead><apiSetEvent xsi:type="am:InstructionsConstant" value="9"/></apiOverhead>'
+    result = constant(9) + of_definition("P", constant(4, "value"))
+    same(overheads(given) + units, overheads(f"<apiOverhead><apiSetEvent>{result}</apiSetEvent></apiOverhead>") + units)
+
+
+def test_references_to_overheads_follow_also_into_files_that_are_missing(same):
+    system = '<operatingSystems overhead="{}?type={}"/>'
+    for official in (False, True):
+        same(
+            overheads("", system.format("o+1", "OsInstructions") + system.format("gone", "OsInstructions")),
+            overheads("", system.format("o+1", "OsOverhead") + system.format("gone", "OsOverhead")),
+            official=official,
+        )
+
+
+# Snapshots of the development, damaged files, large files
+
+
+def test_a_file_of_the_newer_version_is_converted_where_it_is_old(tmp_path):
+    content = runnable(need(default(5)) + ticks(constant(6))) + overheads(
+        f"<apiOverhead><apiSetEvent>{constant(4)}</apiSetEvent><apiWaitEvent/></apiOverhead>"
+    )
+    once, notes = migrated(written(tmp_path, "0.9.3", content), "0.9.3")
+    twice, _ = migrated(written(tmp_path, "0.9.3", content.replace(need(default(5)), ticks(constant(5)))), "0.9.3")
+    assert meaning(once) == meaning(twice)
+    assert not of_kind(notes, Kind.LOST)
+
+
+def test_jitter_of_constraints_is_a_time(same):
+    jitter = '<timingConstraints xsi:type="am:RepetitionConstraint"><jitter value="3"/></timingConstraints>'
+    content = f"<constraintsModel>{jitter}</constraintsModel>"
+    same(content, content)
+
+
+@pytest.mark.parametrize("official", [False, True])
+@pytest.mark.parametrize(
+    "content",
+    [
+        runnable(need("<default/>", "<default key='Instructions'/>", "<extended/>", "<extended><value/></extended>")),
+        runnable(need(deviation(""), deviation("<distribution/>", "FLOP"))),
+        runnable(
+            need(deviation('<lowerBound/><upperBound/><distribution xsi:type="am:GaussDistribution"><mean/></distribution>'))
+        ),
+        runnable('<runnableItems xsi:type="am:ExecutionNeed"/>'),
+        runnable(need("<default key='Instructions'><value/></default>")),
+        '<hwModel><definitions xsi:type="am:ProcessingUnitDefinition" features="_gone Instructions/x?type=HwFeature"/></hwModel>'
+        + runnable(need(default(3), extended("_gone", 2))),
+        '<osModel><osOverheads><apiOverhead><apiSetEvent xsi:type="am:InstructionsDeviation"/></apiOverhead></osOverheads></osModel>',
+        '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus"><jitter/></stimuli></stimuliModel>',
+        '<hwModel><definitions><accessLatency xsi:type="am:LatencyDeviation"/></definitions></hwModel>',
+    ],
+)
+def test_damaged_content_is_survived(tmp_path, content, official):
+    migrated(written(tmp_path, "0.9.2", content), "0.9.3", official)
+
+
+def test_time_is_linear(tmp_path):
+    items = need(default(5), default(6, "FLOP")) + need(extended("P", 3, "FLOP"))
+    (path,) = written(tmp_path, "0.9.2", runnable(items * 5_000))
+    start = time.perf_counter()
+    migrated([path], "0.9.3")
+    assert time.perf_counter() - start < 10

@@ -1,0 +1,370 @@
+"""0.9.3 -> 0.9.4, as far as the pairs of models do not show it."""
+
+import time
+from functools import partial
+
+import pytest
+from inline_models import check_step, of_kind, text_property, written
+from migration import meaning, migrated, opened
+
+from amalthea_uros.xmi.migrate.chain import migrate
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+
+
+@pytest.fixture
+def same(tmp_path):
+    """Assert what some files become."""
+    return partial(check_step, tmp_path, "0.9.3", "0.9.4")
+
+
+# Deadlines
+
+
+def deadline_of(name, text):
+    limit = (
+        f'<limit xsi:type="am:TimeRequirementLimit" limitType="UpperLimit" metric="ResponseTime"><limitValue {text}/></limit>'
+    )
+    return f'<requirements xsi:type="am:RunnableRequirement" name="deadline" runnable="{name}?type=Runnable">{limit}</requirements>'
+
+
+def test_deadlines_join_the_requirements_that_are_there(same):
+    other = '<requirements xsi:type="am:ProcessRequirement" name="r"/>'
+    runnables = (
+        '<swModel><runnables name="A">{}</runnables><runnables name="B"/><runnables name="C+ 1">{}</runnables></swModel>'
+    )
+    given = runnables.format('<deadline value="2" unit="ms"/>', '<deadline value="3" unit="us"/>')
+    required = other + deadline_of("A", 'value="2" unit="ms"') + deadline_of("C%2B+1", 'value="3" unit="us"')
+    for official in (False, True):
+        same(
+            f"<constraintsModel>{other}</constraintsModel>{given}",
+            f"<constraintsModel>{required}</constraintsModel>{runnables.format('', '')}",
+            official=official,
+        )
+
+
+def test_deadlines_are_requirements_in_their_files(same):
+    def file(name, content, requirement=""):
+        constraints = requirement and f"<constraintsModel>{requirement}</constraintsModel>"
+        return f'<swModel><runnables name="{name}">{content}</runnables></swModel>{constraints}'
+
+    same(
+        [file("A", '<deadline value="1"/>'), file("B", '<deadline value="2"/>'), file("C", "")],
+        [
+            file("A", "", deadline_of("A", 'value="1"')),
+            file("B", "", deadline_of("B", 'value="2"')),
+            file("C", ""),
+        ],
+    )
+
+
+# Data types and ports
+
+
+def test_aliases_need_not_be_complete(same):
+    types = '<swModel><typeDefinitions xsi:type="am:BaseTypeDefinition" name="t">{}</typeDefinitions></swModel>'
+    for official in (False, True):
+        same(
+            types.format('<dataMapping platformType="int"/><dataMapping platformName="C" platformType="long"/>'),
+            types.format('<aliases alias="int"/><aliases target="C" alias="long"/>'),
+            official=official,
+        )
+
+
+def test_ports_of_modules(same):
+    memory = '<modules xsi:type="am:Memory"><ports name="p" portInterface="{}"/></modules>'
+    ports = f'<hwModel><structures name="S">{memory}</structures></hwModel>'
+    same(ports.format("ABH"), ports.format("AHB"))
+    same(ports.format("AXI"), ports.format("AXI"))
+
+
+# Mode labels
+
+MODES = (
+    '<modes {}name="m 1"><literals name="on x"/><literals name="off"/></modes><modes {}name="n"><literals name="on x"/></modes>'
+)
+OLD_MODES = MODES.format("", "")
+NEW_MODES = MODES.format('xsi:type="am:EnumMode" ', 'xsi:type="am:EnumMode" ')
+
+
+def software(content, old=True):
+    return f"<swModel>{OLD_MODES if old else NEW_MODES}{content}</swModel>"
+
+
+def test_modes_in_another_file(same):
+    for official in (False, True):
+        same(
+            [
+                software(""),
+                '<swModel><modeLabels name="l"><initialValue href="amlt:/#m+1/on+x?type=ModeLiteral"/></modeLabels></swModel>',
+            ],
+            [
+                software("", old=False),
+                '<swModel><modeLabels name="l" initialValue="on x"><mode href="amlt:/#m+1?type=EnumMode"/></modeLabels></swModel>',
+            ],
+            official=official,
+        )
+
+
+def test_modes_in_no_file(same):
+    label = '<swModel><modeLabels name="{}" {}/></swModel>'
+    for official in (False, True):
+        same(
+            label.format("l", 'initialValue="a+%2B+b/letter+%3CA%3E?type=ModeLiteral"'),
+            label.format("l", 'mode="a+%2B+b?type=EnumMode" initialValue="letter &lt;A>"'),
+            official=official,
+        )
+
+
+def test_literals_that_their_mode_lacks(same):
+    label = '<modeLabels name="l" {}/>'
+    same(
+        software(label.format('initialValue="m+1/other?type=ModeLiteral"')),
+        software(label.format('mode="m+1?type=EnumMode" initialValue="other"'), old=False),
+    )
+
+
+def access(data, attributes):
+    return f'<runnableItems xsi:type="am:ModeLabelAccess" data="{data}?type=ModeLabel" {attributes}/>'
+
+
+def test_a_label_without_initial_value_has_the_only_mode_of_its_uses(same):
+    def model(labels, items, old):
+        return software(f'{labels}<runnables name="R">{items}</runnables>', old)
+
+    given = model(
+        '<modeLabels name="a"/><modeLabels name="b"/><modeLabels name="c"/>',
+        access("a", 'access="write" modeValue="m+1/off?type=ModeLiteral"')
+        + access("b", 'access="write" modeValue="m+1/off?type=ModeLiteral"')
+        + access("b", 'access="read" modeValue="n/on+x?type=ModeLiteral"')
+        + access("c", 'access="read"'),
+        old=True,
+    )
+    items = (
+        access("a", 'access="set" value="off"')
+        + access("b", 'access="set" value="off"')
+        + access("b", 'access="read" value="on x"')
+        + access("c", 'access="read"')
+    )
+    with_mode = '<modeLabels name="a" mode="m+1?type=EnumMode"/><modeLabels name="b"/><modeLabels name="c"/>'
+    notes = same(given, model(with_mode, items, old=False))
+    message = "a mode label without initial value has the mode of its uses"
+    assert of_kind(notes, Kind.DEFAULTED) == [(message, "m 1")]
+    without = with_mode.replace(' mode="m+1?type=EnumMode"', "")
+    same(given, model(without, items, old=False), official=True)
+
+
+def test_a_label_without_initial_value_has_the_mode_of_conditions_and_assignments(same):
+    def model(labels, condition, entry, old):
+        lists = f"<setModeValueList><entries {entry}/></setModeValueList>"
+        switch = f"<entries><condition>{condition}</condition></entries>"
+        process = f'<callGraph><graphEntries xsi:type="am:ModeSwitch">{switch}</graphEntries></callGraph>'
+        stimulus = f'<stimuli xsi:type="am:SingleStimulus" name="S">{lists}</stimuli>'
+        return software(f"{labels}<isrs name='I'>{process}</isrs>", old) + f"<stimuliModel>{stimulus}</stimuliModel>"
+
+    same(
+        model(
+            '<modeLabels name="a"/><modeLabels name="b"/>',
+            '<entries xsi:type="am:ModeValue" valueProvider="a?type=ModeLabel" value="m+1/off?type=ModeLiteral"/>',
+            'xsi:type="am:ModeValue" valueProvider="b?type=ModeLabel" value="n/on+x?type=ModeLiteral"',
+            old=True,
+        ),
+        model(
+            '<modeLabels name="a" mode="m+1?type=EnumMode"/><modeLabels name="b" mode="n?type=EnumMode"/>',
+            '<entries xsi:type="am:ModeCondition" label="a?type=ModeLabel" value="off" relation="EQUAL"/>',
+            'label="b?type=ModeLabel" value="on x"',
+            old=False,
+        ),
+    )
+
+
+def test_a_label_without_initial_value_has_the_mode_that_an_older_version_stated(tmp_path):
+    paths = written(tmp_path, "0.9.3", software('<modeLabels name="a"/>'))
+    models, notes = opened(*paths), Notes()
+    (label,), mode = models.parts("swModel", "modeLabels"), models.parts("swModel", "modes")[1]
+    models.set_aside[label, "mode"] = [mode]
+    migrate(models, "0.9.4", notes, official=False)
+    assert label.references == {"mode": [mode]}
+    assert not models.set_aside
+    assert not of_kind(notes.all, Kind.LOST)
+
+
+# Conditions
+
+
+def test_mode_switches_of_interrupts_are_forgotten_by_the_official_converter_only(same):
+    def model(process, condition, old):
+        switch = f'<graphEntries xsi:type="am:ModeSwitch"><entries name="e"><condition>{condition}</condition></entries></graphEntries>'
+        labels = '<modeLabels name="l" {}/>'
+        stated = 'initialValue="m+1/off?type=ModeLiteral"' if old else 'mode="m+1?type=EnumMode" initialValue="off"'
+        return software(f"{labels.format(stated)}<{process} name='P'><callGraph>{switch}</callGraph></{process}>", old)
+
+    given = '<entries xsi:type="am:ModeValue" valueProvider="l?type=ModeLabel" value="m+1/off?type=ModeLiteral"/>'
+    result = '<entries xsi:type="am:ModeCondition" label="l?type=ModeLabel" value="off" relation="EQUAL"/>'
+    for process in ("tasks", "isrs"):
+        same(model(process, given, old=True), model(process, result, old=False))
+    same(model("tasks", given, old=True), model("tasks", result, old=False), official=True)
+    same(model("isrs", given, old=True), model("isrs", given, old=False), official=True)
+
+
+def stimulus(content):
+    labels = "".join(f'<modeLabels name="{name}" displayName="d"/>' for name in "abc")
+    return f'<swModel>{labels}</swModel><stimuliModel><stimuli xsi:type="am:SingleStimulus" name="S">{content}</stimuli></stimuliModel>'
+
+
+def old_list(tag, *entries):
+    return f"<{tag}ModeValueList>{''.join(entries)}</{tag}ModeValueList>"
+
+
+def value(label, literal, single=True):
+    kind = ' xsi:type="am:ModeValue"' if single else ""
+    return f'<entries{kind} valueProvider="{label}?type=ModeLabel" value="x/{literal}?type=ModeLiteral"/>'
+
+
+def all_of(*entries, kind="ModeValueConjunction"):
+    return f'<entries xsi:type="am:{kind}">{"".join(entries)}</entries>'
+
+
+def condition(label, literal, relation="EQUAL", single=True):
+    kind = ' xsi:type="am:ModeCondition"' if single else ""
+    return f'<entries{kind} label="{label}?type=ModeLabel" value="{literal}" relation="{relation}"/>'
+
+
+def conditions(*entries):
+    return f"<executionCondition>{''.join(entries)}</executionCondition>"
+
+
+@pytest.fixture
+def becomes(tmp_path):
+    """Assert what the lists of a stimulus become, apart from the modes of the labels."""
+
+    def check(given, expected, official=False):
+        models, notes = migrated(written(tmp_path, "0.9.3", stimulus(given)), "0.9.4", official)
+        for label in models.parts("swModel", "modeLabels"):
+            label.drop("mode")
+        assert meaning(models) == meaning(opened(*written(tmp_path, "0.9.4", stimulus(expected))))
+        return notes
+
+    return check
+
+
+def test_what_disables_alone_is_excluded(becomes):
+    becomes(old_list("disabling", value("a", "1")), conditions(condition("a", "1", "NOT_EQUAL")))
+    becomes(
+        old_list("disabling", value("a", "1"), value("b", "2")),
+        conditions(
+            all_of(
+                condition("a", "1", "NOT_EQUAL", False),
+                condition("b", "2", "NOT_EQUAL", False),
+                kind="ModeConditionConjunction",
+            )
+        ),
+    )
+
+
+def test_what_disables_is_excluded_from_each_alternative_that_does_not_exclude_it_itself(becomes):
+    notes = becomes(
+        old_list("enabling", value("a", "1"), value("b", "2"), all_of(value("b", "2", False), value("a", "1", False)))
+        + old_list("disabling", value("a", "2"), value("c", "3")),
+        conditions(
+            all_of(
+                condition("a", "1", single=False),
+                condition("c", "3", "NOT_EQUAL", False),
+                kind="ModeConditionConjunction",
+            ),
+            all_of(
+                condition("b", "2", single=False),
+                condition("a", "2", "NOT_EQUAL", False),
+                condition("c", "3", "NOT_EQUAL", False),
+                kind="ModeConditionConjunction",
+            ),
+            all_of(
+                condition("b", "2", single=False),
+                condition("a", "1", single=False),
+                condition("c", "3", "NOT_EQUAL", False),
+                kind="ModeConditionConjunction",
+            ),
+        ),
+    )
+    message = "disablingModeValueList is a part of executionCondition now"
+    assert (message, "a == 2 OR c == 3") in of_kind(notes, Kind.CONVERTED)
+
+
+def test_what_both_enables_and_disables_never_enables(becomes):
+    becomes(
+        old_list("enabling", value("a", "1")) + old_list("disabling", value("a", "1")),
+        conditions(
+            all_of(
+                condition("a", "1", single=False),
+                condition("a", "1", "NOT_EQUAL", False),
+                kind="ModeConditionConjunction",
+            )
+        ),
+    )
+
+
+def test_a_conjunction_that_disables_is_kept_as_text(becomes):
+    given = old_list("disabling", value("c", "3"), all_of(value("a", "1", False), value("b", "2", False)))
+    text = "c == 3 OR (a == 1 AND b == 2)"
+    notes = becomes(given, text_property("disablingModeValueList", text))
+    assert len(of_kind(notes, Kind.KEPT)) == 1
+    notes = becomes(given, "", official=True)
+    assert of_kind(notes, Kind.LOST) == [("disablingModeValueList is lost", text)]
+
+
+def test_an_empty_list_disables_nothing(becomes):
+    becomes(old_list("disabling"), "")
+
+
+def test_abstract_classes_are_left_by_the_official_converter(becomes):
+    given = f"<setModeValueList>{value('a', '1')}</setModeValueList>" + old_list("enabling", all_of(value("a", "1")))
+
+    def expected(kind):
+        entry = f'<entries {kind} label="a?type=ModeLabel" value="1"'
+        alternative = all_of(f'{entry} relation="EQUAL"/>', kind="ModeConditionConjunction")
+        return f"<setModeValueList>{entry}/></setModeValueList>{conditions(alternative)}"
+
+    becomes(given, expected(""))
+    becomes(given, expected('xsi:type="am:ModeValue"'), official=True)
+
+
+# Snapshots of the development, damaged files, large files
+
+
+def test_what_is_new_already_is_left_alone(tmp_path):
+    def model(alias):
+        types = f'<typeDefinitions xsi:type="am:BaseTypeDefinition" name="t">{alias}</typeDefinitions>'
+        label = '<modeLabels name="a" mode="m+1?type=EnumMode" initialValue="off"/>'
+        lists = '<setModeValueList><entries label="a?type=ModeLabel" value="off"/></setModeValueList>'
+        new = lists + conditions(condition("a", "off", "NOT_EQUAL"), condition("a", "off"))
+        return software(types + label, old=False) + f'<stimuliModel><stimuli name="S">{new}</stimuli></stimuliModel>'
+
+    result, notes = migrated(written(tmp_path, "0.9.4", model('<dataMapping platformName="C"/>')), "0.9.4")
+    expected, _ = migrated(written(tmp_path, "0.9.4", model('<aliases target="C"/>')), "0.9.4")
+    assert meaning(result) == meaning(expected)
+    assert not of_kind(notes, Kind.CONVERTED)
+
+
+@pytest.mark.parametrize("official", [False, True])
+@pytest.mark.parametrize(
+    "content",
+    [
+        software('<modeLabels name="a" initialValue="on"/><modeLabels name="b" initialValue="_none"/>'),
+        software('<modeLabels name="a" initialValue="m+1?type=Mode"/>'),
+        software('<runnables><deadline/><deadline/><runnableItems xsi:type="am:ModeLabelAccess"/></runnables>'),
+        stimulus(old_list("disabling", "<entries/>", all_of(), all_of("<entries/>")) + old_list("enabling", "<entries/>")),
+        stimulus("<setModeValueList><entries/></setModeValueList>" + old_list("enabling") * 2 + old_list("disabling") * 2),
+        stimulus(old_list("disabling", '<entries xsi:type="am:ModeValue" valueProvider="gone?type=ModeLabel"/>')),
+        "<swModel><typeDefinitions><dataMapping/></typeDefinitions></swModel>",
+    ],
+)
+def test_damaged_content_is_survived(tmp_path, content, official):
+    migrated(written(tmp_path, "0.9.3", content), "0.9.4", official)
+
+
+def test_time_is_linear(tmp_path):
+    runnables = "".join(f'<runnables name="R{n}"><deadline value="{n}"/></runnables>' for n in range(5_000))
+    labels = "".join(f'<modeLabels name="L{n}" initialValue="m+1/off?type=ModeLiteral"/>' for n in range(5_000))
+    (path,) = written(tmp_path, "0.9.3", software(runnables + labels))
+    start = time.perf_counter()
+    migrated([path], "0.9.4")
+    assert time.perf_counter() - start < 10

@@ -1,0 +1,276 @@
+"""0.9.4 -> 0.9.5, as far as the pairs of models do not show it."""
+
+import time
+from functools import partial
+
+import pytest
+from inline_models import check_step, of_kind, text_property, written
+from migration import meaning, migrated
+
+from amalthea_uros.xmi.migrate.notes import Kind
+
+KEY = "old_definition_v0.9.4"
+
+
+@pytest.fixture
+def same(tmp_path):
+    """Assert what some files become."""
+    return partial(check_step, tmp_path, "0.9.4", "0.9.5")
+
+
+# Call graphs
+
+
+def process(tag, content):
+    return f"<swModel><{tag} name='P'><callGraph>{content}</callGraph></{tag}></swModel>"
+
+
+def sequence(attributes, content, tag="graphEntries"):
+    return f'<{tag} xsi:type="am:CallSequence" {attributes}>{content}</{tag}>'
+
+
+def group(attributes, content):
+    return f'<items xsi:type="am:Group" ordered="true" {attributes}>{content}</items>'
+
+
+CALL = '<{} xsi:type="am:{}" runnable="R?type=Runnable">{}</{}>'
+
+
+def old_call(content=""):
+    return CALL.format("calls", "TaskRunnableCall", content, "calls")
+
+
+def new_call(content=""):
+    return CALL.format("items", "RunnableCall", content, "items")
+
+
+@pytest.mark.parametrize("tag", ["tasks", "isrs"])
+def test_call_graphs_of_processes(same, tag):
+    given = (
+        '<graphEntries xsi:type="am:ProbabilitySwitch"><entries probability="1.0">'
+        + sequence('name=""', old_call(), "items")
+        + "</entries></graphEntries>"
+        + '<graphEntries xsi:type="am:ModeSwitch"><defaultEntry>'
+        + sequence('name="s"', '<calls xsi:type="am:SetEvent"><counter offset="2"/></calls>', "items")
+        + "</defaultEntry></graphEntries>"
+        + sequence("", "")
+    )
+    result = (
+        '<items xsi:type="am:ProbabilitySwitch"><entries probability="1.0">'
+        + group('name="CallSequence"', new_call())
+        + "</entries></items>"
+        + '<items xsi:type="am:ModeSwitch"><defaultEntry>'
+        + group('name="s"', '<items xsi:type="am:SetEvent"><counter offset="2"/></items>')
+        + "</defaultEntry></items>"
+        + group('name="CallSequence"', "")
+    )
+    same(process(tag, given), process(tag, result))
+    same(process(tag, given), process(tag, given if tag == "isrs" else result), official=True)
+
+
+def test_custom_properties_of_a_sequence_are_no_calls(same):
+    for official in (False, True):
+        same(
+            process("tasks", sequence('name="s"', text_property("k", "v") + old_call())),
+            process("tasks", group('name="s"', text_property("k", "v") + new_call())),
+            official=official,
+        )
+
+
+def test_calls_keep_counters_and_statistics(same):
+    statistic = '<statistic><statistic xsi:type="am:SingleValueStatistic" value="3"/></statistic>'
+    content = f'<counter prescaler="2"/>{statistic}'
+    for official in (False, True):
+        same(
+            process("tasks", sequence('name="s"', old_call(content))),
+            process("tasks", group('name="s"', new_call(content))),
+            official=official,
+        )
+
+
+@pytest.mark.parametrize("name", ["SchedulePoint", "EnforcedMigration"])
+def test_steps_without_a_counter_keep_it_as_text(same, name):
+    counter = '<counter prescaler="2" offset="1"/>'
+    notes = same(
+        process("tasks", sequence('name="s"', f'<calls xsi:type="am:{name}">{counter}</calls>')),
+        process(
+            "tasks",
+            group('name="s"', f'<items xsi:type="am:{name}">{text_property("counter", "prescaler=2 offset=1")}</items>'),
+        ),
+    )
+    assert of_kind(notes, Kind.KEPT) == [(f"{name} has no counter any more", "prescaler=2 offset=1")]
+
+
+def test_items_of_runnables_keep_their_order_and_the_rest_of_the_runnable(same):
+    same(
+        '<swModel><runnables name="R" service="true">'
+        '<runnableItems xsi:type="am:LabelAccess" data="L?type=Label"/><parameters name="p"/>'
+        '<runnableItems xsi:type="am:Group" name="g"><items xsi:type="am:RunnableModeSwitch"/></runnableItems>'
+        "</runnables><labels name='L'/></swModel>",
+        '<swModel><runnables name="R" service="true"><parameters name="p"/><callGraph>'
+        '<items xsi:type="am:LabelAccess" data="L?type=Label"/>'
+        '<items xsi:type="am:Group" name="g"><items xsi:type="am:ModeSwitch"/></items>'
+        "</callGraph></runnables><labels name='L'/></swModel>",
+    )
+
+
+# Clocks
+
+
+def stimuli(content):
+    return f"<stimuliModel>{content}</stimuliModel>"
+
+
+def clock(name, kind, attributes="", content=""):
+    return f'<clocks xsi:type="am:{kind}" name="{name}" {attributes}>{content}</clocks>'
+
+
+def scenario(clock, kind):
+    inner = f'<scenario clock="{clock}?type={kind}"/>'
+    return f'<stimuli xsi:type="am:VariableRateStimulus" name="V{clock}">{inner}</stimuli>'
+
+
+def test_triangles_and_lists_keep_their_definition_as_text(same):
+    times = '<shift value="5" unit="ms"/><period value="1" unit="s"/>'
+    for official in (False, True):
+        same(
+            stimuli(
+                clock("t 1", "ClockTriangleFunction", 'max="3" min="-1"', times)
+                + clock("l", "ClockMultiplierList", "", '<entries multiplier="1.5"/><entries multiplier="2"/>')
+            ),
+            stimuli(
+                clock("t 1", "ClockFunction", 'curveType="triangle"', text_property(KEY, "max=3 min=-1 shift=5ms period=1s"))
+                + clock(
+                    "l",
+                    "ClockStepList",
+                    "",
+                    f"<entries>{text_property(KEY, 'multiplier=1.5')}</entries><entries>{text_property(KEY, 'multiplier=2')}</entries>",
+                )
+            ),
+            official=official,
+        )
+
+
+def test_the_official_converter_repeats_texts_within_a_kind_and_a_file(same):
+    def file(number, texts=None):
+        kinds = ("ClockTriangleFunction", 'max="{0}" min="0"'), ("ClockSinusFunction", 'amplitude="{0}" yOffset="0"')
+        if texts is None:
+            return stimuli(
+                "".join(clock(f"{kind}{n}", kind, more.format(n)) for n in (number, number + 1) for kind, more in kinds)
+            )
+        curves = {"ClockTriangleFunction": "triangle", "ClockSinusFunction": "sine"}
+        return stimuli(
+            "".join(
+                clock(f"{kind}{n}", "ClockFunction", f'curveType="{curves[kind]}"', text_property(KEY, texts.pop(0)))
+                for n in (number, number + 1)
+                for kind, _ in kinds
+            )
+        )
+
+    first = ["max=1 min=0", "amplitude=1 yOffset=0"]
+    second = ["max=2 min=0", "amplitude=2 yOffset=0"]
+    third = ["max=5 min=0", "amplitude=5 yOffset=0"]
+    fourth = ["max=6 min=0", "amplitude=6 yOffset=0"]
+
+    def joined(before, after):
+        return [f"{one} {other}" for one, other in zip(before, after, strict=True)]
+
+    same([file(1), file(5)], [file(1, first + second), file(5, third + fourth)])
+    same(
+        [file(1), file(5)],
+        [file(1, first + joined(first, second)), file(5, third + joined(third, fourth))],
+        official=True,
+    )
+
+
+def test_references_to_clocks_follow(same):
+    given = (
+        scenario("t+1", "ClockTriangleFunction") + scenario("l", "ClockMultiplierList") + scenario("gone", "ClockSinusFunction")
+    )
+    clocks = clock("t 1", "ClockTriangleFunction", 'max="3" min="-1"') + clock("l", "ClockMultiplierList")
+    kept = clock("t 1", "ClockFunction", 'curveType="triangle"', text_property(KEY, "max=3 min=-1")) + clock(
+        "l", "ClockStepList"
+    )
+    result = scenario("t+1", "ClockFunction") + scenario("l", "ClockStepList") + scenario("gone", "ClockFunction")
+    same(stimuli(given + clocks), stimuli(result + kept))
+    same(stimuli(given + clocks), stimuli(given + kept), official=True)
+
+
+def test_clocks_in_another_file(same):
+    def user(kind):
+        inner = f'<scenario><clock href="amlt:/#c?type={kind}"/></scenario>'
+        return stimuli(f'<stimuli xsi:type="am:VariableRateStimulus">{inner}</stimuli>')
+
+    same(
+        [user("ClockMultiplierList"), stimuli(clock("c", "ClockMultiplierList"))],
+        [user("ClockStepList"), stimuli(clock("c", "ClockStepList"))],
+    )
+
+
+def test_clocks_without_numbers_make_the_official_converter_fail(same):
+    given = (
+        scenario("c", "ClockSinusFunction")
+        + clock("c", "ClockSinusFunction", 'amplitude="3"')
+        + clock("d", "ClockSinusFunction")
+    )
+    result = (
+        scenario("c", "ClockFunction")
+        + clock("c", "ClockFunction", 'curveType="sine"', text_property(KEY, "amplitude=3"))
+        + clock("d", "ClockFunction", 'curveType="sine"')
+    )
+    for official in (False, True):
+        same(stimuli(given), stimuli(result), official=official)
+
+
+def test_properties_that_are_there_stay(same):
+    before = text_property("a", "1") + text_property(KEY, "mine")
+    given = f'<scenario>{before}<recurrence value="10"/></scenario>'
+    result = f"<scenario>{before}{text_property(KEY + ' 2', 'recurrence=10')}</scenario>"
+    stimulus = '<stimuli xsi:type="am:VariableRateStimulus">{}</stimuli>'
+    notes = same(stimuli(stimulus.format(given)), stimuli(stimulus.format(result)))
+    assert of_kind(notes, Kind.KEPT) == [("the recurrence of a scenario has no successor", "recurrence=10")]
+
+
+def test_what_is_missing_is_null_for_the_official_converter(same):
+    stimulus = '<stimuli xsi:type="am:VariableRateStimulus"><scenario>{}</scenario></stimuli>'
+    given = stimulus.format('<recurrence value="10"/>')
+    same(stimuli(given), stimuli(stimulus.format(text_property(KEY, "recurrence=10"))))
+    same(stimuli(given), stimuli(stimulus.format(text_property(KEY, "recurrence=10null"))), official=True)
+
+
+# Snapshots of the development, damaged files, large files
+
+
+def test_what_is_new_already_is_left_alone(tmp_path):
+    new = "<swModel><runnables name='R'><callGraph><items xsi:type='am:Ticks'/>{}</callGraph>{}</runnables></swModel>"
+    clocks = stimuli(clock("c", "ClockFunction", 'curveType="sine"', '<period value="1" unit="s"/>'))
+    late = "{} xsi:type='am:LabelAccess'/>"
+    result, notes = migrated(written(tmp_path, "0.9.5", new.format("", late.format("<runnableItems")) + clocks), "0.9.5")
+    expected, _ = migrated(written(tmp_path, "0.9.5", new.format(late.format("<items"), "") + clocks), "0.9.5")
+    assert meaning(result) == meaning(expected)
+    assert not of_kind(notes, Kind.LOST)
+
+
+@pytest.mark.parametrize("official", [False, True])
+@pytest.mark.parametrize(
+    "content",
+    [
+        process("tasks", "<graphEntries/>" + sequence("", "<calls/>")),
+        stimuli('<stimuli><scenario clock="_gone"><recurrence/></scenario></stimuli>'),
+        stimuli(
+            clock("c", "ClockSinusFunction", "", "<period/><shift/>") * 2 + clock("d", "ClockMultiplierList", "", "<entries/>")
+        ),
+        stimuli('<clocks xsi:type="am:ClockTriangleFunction" max="1" min="2"/>' + scenario("", "ClockTriangleFunction")),
+    ],
+)
+def test_damaged_content_is_survived(tmp_path, content, official):
+    migrated(written(tmp_path, "0.9.4", content), "0.9.5", official)
+
+
+def test_time_is_linear(tmp_path):
+    items = "<runnableItems xsi:type='am:SemaphoreAccess'/>" * 10_000
+    calls = process("tasks", sequence("", old_call() * 10_000) + sequence("", "") * 5_000)
+    (path,) = written(tmp_path, "0.9.4", f"<swModel><runnables name='R'>{items}</runnables></swModel>{calls}")
+    start = time.perf_counter()
+    migrated([path], "0.9.5")
+    assert time.perf_counter() - start < 10
