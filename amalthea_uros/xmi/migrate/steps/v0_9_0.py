@@ -24,8 +24,9 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     Structures(clocks, notes, official).convert(models)
     AccessPaths(models, notes, official).convert()
     definitions.convert()
-    if convert_instructions(models, notes):
-        definitions.need_category()
+    needs = convert_instructions(models, notes)
+    if needs:
+        definitions.need_category(needs[0])
     references.mix_up_properties()
 
 

@@ -17,8 +17,8 @@ _LATENCIES = {"R": ("readLatency",), "W": ("writeLatency",), "RW": ("readLatency
 #: Classes to which an access element may lead.
 _DESTINATIONS = ("Memory", "ProcessingUnit")
 
-#: How many paths a path may consist of by references to other paths, one inside the other.
-_DEEPEST = 50
+#: How many paths a path may consist of, by references to other paths.
+_MOST_INNER_PATHS = 50
 
 
 class AccessPaths:
@@ -28,6 +28,7 @@ class AccessPaths:
         self.models = models
         self.notes = notes
         self.official = official
+        self.inner_paths = 0
 
     def convert(self) -> None:
         """Convert all access paths."""
@@ -97,6 +98,7 @@ class AccessPaths:
     def latencies(self, path: Node, core: Node) -> list[Node]:
         """One latency for reading and one for writing: all latencies on the way, those of paths that are part of it included."""
         costs: dict[str, list[Node]] = {"readLatency": [], "writeLatency": []}
+        self.inner_paths = 0
         self._collect(path, core, costs, [])
         found = []
         for tag, latencies in costs.items():
@@ -125,9 +127,11 @@ class AccessPaths:
                 self.notes.lost(stated, "latency without value", path.name)
 
     def _collect_inner(self, path: Node, core: Node, costs: dict[str, list[Node]], outer: list[Node]) -> None:
-        count = sum(map(len, costs.values()))
-        if path in outer or len(outer) > _DEEPEST or count > _DEEPEST or path.is_proxy:
-            self.notes.lost(outer[0], "access path that is part of another one: not found, or part of itself", path.name)
+        self.inner_paths += 1
+        if path in outer or path.is_proxy or self.inner_paths > _MOST_INNER_PATHS:
+            self.notes.lost(
+                outer[0], "access path that is part of another one: not found, part of itself, or too many", path.name
+            )
         else:
             self._collect(path, core, costs, outer)
 

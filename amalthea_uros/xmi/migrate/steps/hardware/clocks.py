@@ -32,7 +32,7 @@ class Clocks:
     def convert_quartzes(self, models: ModelSet) -> None:
         """Make every quartz a frequency domain of its hardware model."""
         for hardware in models.parts("hwModel"):
-            quartzes = [node for node in hardware.walk() if node.tag == "quartzes" and self._is_convertible(node)]
+            quartzes = [node for node in list(hardware.walk()) if node.tag == "quartzes" and self._is_convertible(node)]
             # The order has no meaning: that of the official converter, so that results can be compared.
             hardware.take(hash_order(quartzes))
             for quartz in quartzes:
@@ -43,6 +43,7 @@ class Clocks:
         if quartz.name or (not self.official and quartz.children):
             return True
         self.notes.lost(quartz, "quartz without name")
+        quartz.remove()
         return False
 
     def _convert_quartz(self, quartz: Node) -> None:

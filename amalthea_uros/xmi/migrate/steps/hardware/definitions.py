@@ -60,7 +60,7 @@ class Definitions:
         _MEMORY_TYPE.reduce(node, self.notes, self.official)
         self.notes.converted(node, "memory type -> memory definition")
         if kind.startswith("FLASH_") and not self.official:
-            keep_text(node, "type", kind)
+            keep_text(node, "memoryType", kind)
             self.notes.kept(node, "'type' of memory types", kind, "type")
         elif kind != "_undefined_":
             self.notes.lost(node, "'type' of memory types", kind, "type")
@@ -90,10 +90,10 @@ class Definitions:
         self.category = hardware.add("featureCategories", like=like, name=INSTRUCTIONS, featureType="performance")
         return self.category
 
-    def need_category(self) -> None:
-        """Make sure that there is a category for the instructions of runnables, if there is hardware at all."""
-        hardware = next(iter(self.models.parts("hwModel")), None)
-        if self.category is None and hardware is not None:
+    def need_category(self, item: Node) -> None:
+        """Make sure that there is a category for the instructions of runnables; if there is no hardware, where they are."""
+        if self.category is None:
+            hardware = next(iter(self.models.parts("hwModel")), None) or item.root.add("hwModel")
             self._add_category(hardware)
 
     def _convert_network_type(self, node: Node) -> None:

@@ -10,8 +10,8 @@ from amalthea_uros.xmi.migrate.steps.hardware.definitions import INSTRUCTIONS
 _NEEDS = {"InstructionsConstant": "NeedConstant", "InstructionsDeviation": "NeedDeviation"}
 
 
-def convert_instructions(models: ModelSet, notes: Notes) -> bool:
-    """Convert the instructions of runnables and schedulers; whether there were any."""
+def convert_instructions(models: ModelSet, notes: Notes) -> list[Node]:
+    """Convert the instructions of runnables and schedulers, and return them."""
     found = [node for node in models.walk() if node.type == "RunnableInstructions"]
     for item in found:
         item.type = "ExecutionNeed"
@@ -21,7 +21,7 @@ def convert_instructions(models: ModelSet, notes: Notes) -> bool:
             for value in extended.all("value"):
                 _make_entry(value, notes)
         notes.converted(item, "instructions -> execution need with key 'Instructions'")
-    return bool(found)
+    return found
 
 
 def _make_entry(instructions: Node, notes: Notes) -> None:

@@ -17,7 +17,7 @@ _NOTHING = frozenset({"", "_undefined_", "0", "0x0"})
 def convert_ports(node: Node, notes: Notes, official: bool) -> None:
     """Convert the ports of a structure or module."""
     for port in node.all("ports"):
-        port.type = ""
+        port.type, port.target_class = "", "HwPort"
         master = port.attributes.pop("master", None)
         is_initiator = master is not None and master.strip().lower() == "true"
         if master is not None:

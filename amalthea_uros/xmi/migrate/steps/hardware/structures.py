@@ -63,7 +63,7 @@ class Structures:
                 self.notes.moved(module, "module inside another one: moved into the structure", node.name)
         node.take(modules)
         convert_ports(node, self.notes, self.official)
-        node.tag, node.type = "structures", ""
+        node.tag, node.type, node.target_class = "structures", "", "HwStructure"
         node.attributes["structureType"] = kind
         self._finish(node, _STRUCTURE, f"{kind} -> structure")
 
