@@ -284,7 +284,9 @@ class TestStructures:
             "initiator",
         )
         assert c.get("portType") == "responder"
-        assert {"'readCycles' of ports", "'addressRange' of ports", "'pins' of ports"} <= lost(notes)
+        assert {"'readCycles' of initiator ports", "'addressRange' of initiator ports", "'pins' of initiator ports"} <= lost(
+            notes
+        )
         root, _ = convert(content, official=True)
         assert not any(node.all("customProperties") for node in chip(root).walk())
 

@@ -6,7 +6,9 @@ from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, keep_reference, keep_text
 
-_PORT = Shape("ports", attributes=frozenset({"bitWidth", "portType", "priority", "portInterface"}))
+_ATTRIBUTES = frozenset({"bitWidth", "portType", "priority", "portInterface"})
+_PORT = Shape("ports", _ATTRIBUTES)
+_INITIATOR = Shape("initiator ports", _ATTRIBUTES)
 
 #: What is worth a custom property, where it says something. Addresses and cycles belong to what answers an access.
 _KEPT = ("direction", "schedValue")
@@ -25,7 +27,7 @@ def convert_ports(node: Node, notes: Notes, official: bool) -> None:
             notes.converted(port, "'master' of ports -> 'portType'", f"{master} -> {port.get('portType')}", "master")
         if not official:
             _keep(port, _KEPT if is_initiator else _KEPT_OF_RESPONDERS, notes)
-        _PORT.reduce(port, notes, official)
+        (_INITIATOR if is_initiator else _PORT).reduce(port, notes, official)
 
 
 def _keep(port: Node, names: tuple[str, ...], notes: Notes) -> None:
