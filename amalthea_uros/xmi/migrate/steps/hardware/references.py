@@ -92,7 +92,12 @@ class References:
             return
         lost = {target: None for target in targets if (self.official if target.is_proxy else self._becomes_cache(target))}
         if lost:
-            self.notes.lost(node, f"{name!r}: caches cannot be referred to", ", ".join(target.name for target in lost), name)
+            self.notes.lost(
+                node,
+                f"{name!r}: caches cannot be referred to",
+                ", ".join(target.name or target.get("path") for target in lost),
+                name,
+            )
             node.references[name] = [target for target in targets if target not in lost]
             if not node.references[name]:
                 del node.references[name]
