@@ -28,6 +28,7 @@ from amalthea_uros.xmi.migrate.steps import (
     v2_1_0,
     v3_0_0,
 )
+from amalthea_uros.xmi.migrate.steps.hardware.units import state_units
 
 #: From the oldest version to the newest.
 UP = (
@@ -48,7 +49,7 @@ UP = (
     v0_9_5.STEP,
     v0_9_6.STEP,
     v0_9_7.STEP,
-    Step("0.9.7", "0.9.8"),
+    Step("0.9.7", "0.9.8", state_units),
     Step("0.9.8", "0.9.9"),
     v1_0_0.STEP,
     Step("1.0.0", "1.1.0"),

@@ -1,14 +1,50 @@
-"""0.8.3 -> 0.9.0."""
+"""0.8.3 -> 0.9.0: the hardware model was built anew."""
 
 from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.hardware.access_paths import AccessPaths
+from amalthea_uros.xmi.migrate.steps.hardware.clocks import Clocks
+from amalthea_uros.xmi.migrate.steps.hardware.definitions import Definitions
+from amalthea_uros.xmi.migrate.steps.hardware.needs import convert_instructions
+from amalthea_uros.xmi.migrate.steps.hardware.references import References
+from amalthea_uros.xmi.migrate.steps.hardware.structures import Structures
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.8.3."""
+    references = References(models, notes, official)
+    references.convert()
+    references.convert_proxies()
+    clocks = Clocks(notes, official)
+    clocks.convert_quartzes(models)
+    definitions = Definitions(models, notes, official)
+    Structures(clocks, notes, official).convert(models)
+    AccessPaths(models, notes, official).convert()
+    definitions.convert()
+    needs = convert_instructions(models, notes)
+    if needs:
+        definitions.need_category(needs[0])
+    references.mix_up_properties()
 
 
-STEP = Step("0.8.3", "0.9.0", change)
+STEP = Step(
+    "0.8.3",
+    "0.9.0",
+    change,
+    frozenset(
+        {
+            "accessPaths",
+            "coreTypes",
+            "ecus",
+            "memoryTypes",
+            "microcontrollers",
+            "networkTypes",
+            "quartzes",
+            "system",
+            "RunnableInstructions",
+        }
+    ),
+)

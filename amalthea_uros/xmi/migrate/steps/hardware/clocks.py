@@ -1,0 +1,140 @@
+"""Quartzes -> frequency domains; prescalers -> the domain of the quartz, or one of its own with the resulting frequency."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from fractions import Fraction
+from math import isfinite
+
+from amalthea_uros.metamodel.naming import encode
+from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, copy_of, hash_order
+
+_DOMAIN = Shape("quartzes", parts=frozenset({"defaultValue"}))
+_HERTZ = {"": 1, "_undefined_": 1, "Hz": 1, "kHz": 10**3, "MHz": 10**6, "GHz": 10**9}
+
+
+class Clocks:
+    """The frequency domains of a set of files.
+
+    Parameters
+    ----------
+    official : name domains of prescalers by the encoded name of the quartz; a prescaler without ratio stops the clock
+    """
+
+    def __init__(self, notes: Notes, official: bool) -> None:
+        self.notes = notes
+        self.official = official
+        self.domains: dict[tuple[Node, str], Node] = {}
+
+    def convert_quartzes(self, models: ModelSet) -> None:
+        """Make every quartz a frequency domain of its hardware model."""
+        for hardware in models.parts("hwModel"):
+            quartzes = [node for node in list(hardware.walk()) if node.tag == "quartzes" and self._is_convertible(node)]
+            # The order has no meaning: that of the official converter, so that results can be compared.
+            hardware.take(hash_order(quartzes))
+            for quartz in quartzes:
+                self.notes.converted(quartz, "quartz -> frequency domain")
+                self._convert_quartz(quartz)
+
+    def _is_convertible(self, quartz: Node) -> bool:
+        if quartz.name or (not self.official and quartz.children):
+            return True
+        self.notes.lost(quartz, "quartz without name")
+        quartz.remove()
+        return False
+
+    def _convert_quartz(self, quartz: Node) -> None:
+        quartz.tag, quartz.type = "domains", "FrequencyDomain"
+        frequency = quartz.child("frequency")
+        if frequency is not None:
+            frequency.tag = "defaultValue"
+        _DOMAIN.reduce(quartz, self.notes, self.official)
+
+    def convert_prescaler(self, module: Node) -> None:
+        """Replace the prescaler of a module by a reference to a frequency domain."""
+        prescaler = module.child("prescaler")
+        if prescaler is None:
+            return
+        prescaler.remove()
+        quartz = prescaler.target("quartz")
+        if quartz is None:
+            if prescaler.get("clockRatio", "1.0") not in ("0.0", "1.0"):
+                self.notes.lost(module, "clock ratio of a prescaler without quartz", prescaler.get("clockRatio"))
+            return
+        ratio = self.ratio(prescaler)
+        if ratio is None:
+            domain: Node | None = quartz
+        elif quartz.tag == "domains":
+            domain = self.domain(quartz, ratio)
+        else:
+            domain = None
+        if domain is None or (self.official and domain.is_proxy):
+            self.notes.lost(
+                module, "prescaler: its quartz is in none of the files", f"{quartz.get('path') or quartz.name} x {ratio}"
+            )
+            return
+        module.refer("frequencyDomain", domain)
+        self.notes.converted(module, "prescaler -> frequency domain", domain.name)
+
+    def ratio(self, prescaler: Node) -> str | None:
+        """The factor as text; None if the clock is that of the quartz."""
+        text = prescaler.get("clockRatio")
+        if self.official:
+            return None if text.strip() == "1.0" else text or "0.0"
+        number = _number(text)
+        if not text or number == 0:
+            self.notes.defaulted(prescaler, "prescaler without clock ratio, or with ratio 0: taken as 1", text, "clockRatio")
+            return None
+        return None if number == 1 else text.strip()
+
+    def domain(self, quartz: Node, ratio: str) -> Node:
+        """The domain of the prescalers with that quartz and that ratio."""
+        known = self.domains.get((quartz, ratio))
+        if known is not None:
+            return known
+        made = self.domains[quartz, ratio] = copy_of(quartz)
+        made.attributes["name"] = f"{encode(quartz.name) if self.official else quartz.name}__{ratio}"
+        assert quartz.parent is not None
+        quartz.parent.insert(made)
+        frequency = made.child("defaultValue")
+        if frequency is not None and "value" in frequency.attributes:
+            factor, value = _number(ratio), _number(frequency.get("value"))
+            if factor is not None and value is not None:
+                frequency.attributes["value"] = java_text(value * factor)
+            elif not self.official:
+                # Without a number this is not the frequency of the quartz either.
+                self.notes.lost(made, "frequency behind a prescaler: not a number", f"{frequency.get('value')} x {ratio}")
+                frequency.remove()
+        return made
+
+
+def frequency_of(domain: Node | None) -> Fraction | None:
+    """The frequency of a domain in Hz, None if it is not known; without unit it is in Hz."""
+    stated = domain.child("defaultValue") if domain is not None else None
+    number = _number(stated.get("value")) if stated is not None else None
+    scale = _HERTZ.get(stated.get("unit")) if stated is not None else None
+    return Fraction(number) * scale if number and scale else None
+
+
+def _number(text: str) -> float | None:
+    try:
+        number = float(text)
+    except ValueError:
+        return None
+    return number if isfinite(number) else None
+
+
+def java_text(value: float) -> str:
+    """A number as Java writes it: `2.0E8`.
+
+    >>> java_text(2e8), java_text(100.0), java_text(0.00025)
+    ('2.0E8', '100.0', '2.5E-4')
+    """
+    if value == 0 or 1e-3 <= abs(value) < 1e7:
+        return repr(value)
+    sign, digits, _ = Decimal(repr(value)).normalize().as_tuple()
+    mantissa = "".join(map(str, digits))
+    return f"{'-' if sign else ''}{mantissa[0]}.{mantissa[1:] or '0'}E{Decimal(repr(value)).adjusted()}"

@@ -1,0 +1,572 @@
+"""0.8.3 -> 0.9.0: what the vectors do not show."""
+
+import pytest
+from migration import meaning, migrated, opened
+
+from amalthea_uros.xmi.migrate.notes import Kind
+
+HEAD = (
+    '<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/{version}" xmlns:xmi="http://www.omg.org/XMI"'
+    ' xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmi:version="2.0">'
+)
+
+QUARTZ = '<quartzes name="Q"><frequency value="100.0" unit="MHz"/></quartzes>'
+
+
+def write(path, content, version="0.8.3"):
+    path.write_text(f"{HEAD.format(version=version)}{content}</am:Amalthea>")
+    return path
+
+
+@pytest.fixture
+def convert(tmp_path):
+    """One file of 0.8.3 with that content -> the root after the step, and its notes."""
+
+    def converted(content, target="0.9.0", official=False, version="0.8.3"):
+        models, notes = migrated([write(tmp_path / "model.amxmi", content, version)], target, official)
+        return models.trees[0].root, notes
+
+    return converted
+
+
+def on_chip(content, around="", before=""):
+    """A hardware model with something in a microcontroller."""
+    chip = f'<ecus name="E"><microcontrollers name="M">{content}</microcontrollers></ecus>'
+    return f'<hwModel>{before}<system name="S">{chip}{QUARTZ}</system>{around}</hwModel>'
+
+
+def chip(root):
+    return root.find("hwModel", "structures", "structures", "structures")[0]
+
+
+def module(root, name):
+    return next(node for node in chip(root).walk() if node.name == name and node.tag in ("modules", "caches"))
+
+
+def lost(notes):
+    return {note.message for note in notes if note.kind is Kind.LOST}
+
+
+def properties(node):
+    return {each.get("key"): each.children[0].get("value") for each in node.all("customProperties")}
+
+
+def domain_of(root, name="C"):
+    domain = module(root, name).target("frequencyDomain")
+    value = domain.child("defaultValue")
+    return domain.name, value.get("value"), value.get("unit")
+
+
+class TestClocks:
+    def prescaled(self, ratio, quartz=QUARTZ):
+        prescaler = f'<cores name="C"><prescaler {ratio} quartz="Q?type=Quartz"/></cores>'
+        return on_chip(prescaler).replace(QUARTZ, quartz)
+
+    @pytest.mark.parametrize("ratio", ["", 'clockRatio="1"', 'clockRatio="1.0"', 'clockRatio="0.0"', 'clockRatio="0"'])
+    def test_without_a_ratio_the_clock_is_that_of_the_quartz(self, convert, ratio):
+        root, _ = convert(self.prescaled(ratio))
+        assert domain_of(root) == ("Q", "100.0", "MHz")
+
+    def test_a_ratio_of_zero_is_noted_as_assumption(self, convert):
+        _, notes = convert(self.prescaled('clockRatio="0.0"'))
+        assert [note.detail for note in notes if note.kind is Kind.DEFAULTED] == ["0.0"]
+
+    @pytest.mark.parametrize(
+        ("ratio", "name", "value"), [("1", "Q__1", "100.0"), ("0.0", "Q__0.0", "0.0"), ("2.5", "Q__2.5", "250.0")]
+    )
+    def test_official_takes_the_ratio_as_text(self, convert, ratio, name, value):
+        root, _ = convert(self.prescaled(f'clockRatio="{ratio}"'), official=True)
+        assert domain_of(root) == (name, value, "MHz")
+
+    def test_modules_with_the_same_ratio_share_a_domain(self, convert):
+        prescaler = '<prescaler clockRatio="2.0" quartz="Q?type=Quartz"/>'
+        root, _ = convert(on_chip(f'<cores name="C">{prescaler}</cores><memories name="R">{prescaler}</memories>'))
+        assert module(root, "C").target("frequencyDomain") is module(root, "R").target("frequencyDomain")
+        assert [node.name for node in root.find("hwModel", "domains")] == ["Q", "Q__2.0"]
+
+    def test_large_frequencies_are_written_as_java_does(self, convert):
+        quartz = '<quartzes name="Q"><frequency value="2.0E8"/></quartzes>'
+        root, _ = convert(self.prescaled('clockRatio="0.5"', quartz))
+        assert domain_of(root) == ("Q__0.5", "1.0E8", "")
+
+    def test_a_frequency_that_is_no_number_is_not_that_of_the_quartz(self, convert):
+        quartz = '<quartzes name="Q"><frequency value="fast"/></quartzes>'
+        root, notes = convert(self.prescaled('clockRatio="0.5"', quartz))
+        assert module(root, "C").target("frequencyDomain").child("defaultValue") is None
+        assert "frequency behind a prescaler: not a number" in lost(notes)
+
+    @pytest.mark.parametrize("official", [False, True])
+    def test_official_encodes_the_name_of_the_quartz(self, convert, official):
+        content = on_chip('<cores name="C"><prescaler clockRatio="0.5" quartz="My+Q?type=Quartz"/></cores>').replace(
+            '"Q"', '"My Q"'
+        )
+        root, _ = convert(content, official=official)
+        assert domain_of(root)[0] == ("My+Q__0.5" if official else "My Q__0.5")
+
+    def test_a_quartz_that_is_in_no_file(self, convert):
+        content = '<cores name="C{0}"><prescaler clockRatio="{0}"><quartz href="amlt:/#X?type=Quartz"/></prescaler></cores>'
+        root, notes = convert(on_chip(content.format("1.0") + content.format("0.5")))
+        target = module(root, "C1.0").target("frequencyDomain")
+        assert (target.get("path"), target.target_class) == ("X", "FrequencyDomain")
+        assert "frequencyDomain" not in module(root, "C0.5").references
+        assert "prescaler: its quartz is in none of the files" in lost(notes)
+
+    def test_a_prescaler_without_quartz(self, convert):
+        root, notes = convert(on_chip('<cores name="C"><prescaler clockRatio="0.5"/></cores>'))
+        assert not module(root, "C").references
+        assert "clock ratio of a prescaler without quartz" in lost(notes)
+
+    def test_the_unit_is_stated_after_the_last_version_with_known_official_results(self, convert):
+        quartz = '<quartzes name="Q"><frequency value="2.0E8"/></quartzes>'
+        content = self.prescaled('clockRatio="0.5"', quartz).replace(
+            "<hwModel>", '<hwModel><memoryTypes name="T"><size value="32768"/></memoryTypes>'
+        )
+        for target, units in (("0.9.7", {""}), ("0.9.8", {"Hz", "B"})):
+            root, _ = convert(content, target)
+            found = root.find("hwModel", "domains", "defaultValue") + root.find("hwModel", "definitions", "size")
+            assert {node.get("unit") for node in found} == units
+        native = '<hwModel><domains xsi:type="am:FrequencyDomain" name="D"><defaultValue value="5.0"/></domains></hwModel>'
+        root, _ = convert(native, "0.9.8", version="0.9.7")
+        assert root.find("hwModel", "domains", "defaultValue")[0].get("unit") == ""
+
+
+class TestDefinitions:
+    def test_each_text_of_instructions_per_cycle_is_a_feature(self, convert):
+        types = "".join(f'<coreTypes name="T{text}" instructionsPerCycle="{text}"/>' for text in ("1", "1.0", "0.8"))
+        root, _ = convert(f"<hwModel>{types}<coreTypes name='T' instructionsPerCycle='1'/></hwModel>")
+        (category,) = root.find("hwModel", "featureCategories")
+        assert [(node.name, node.get("value")) for node in category.children] == [
+            ("IPC_1", "1"),
+            ("IPC_1.0", "1.0"),
+            ("IPC_0.8", "0.8"),
+        ]
+        assert [node.target("features").name for node in root.find("hwModel", "definitions")] == [
+            "IPC_1",
+            "IPC_1.0",
+            "IPC_0.8",
+            "IPC_1",
+        ]
+
+    def test_without_instructions_per_cycle_there_is_no_feature(self, convert):
+        root, _ = convert("<hwModel><coreTypes name='T'/></hwModel>")
+        assert meaning_of_hardware(root) == ["definitions ProcessingUnitDefinition T"]
+
+    @pytest.mark.parametrize(
+        ("policy", "expected"),
+        [
+            ("RROBIN", "RoundRobin"),
+            ("PRIORITY", "PriorityBased"),
+            ("_undefined_", "_undefined_"),
+            ("odd", "_undefined_"),
+            (None, ""),
+        ],
+    )
+    @pytest.mark.parametrize("kind", ["Bus", "Bridge", "CrossbarSwitch", ""])
+    def test_networks_types(self, convert, kind, policy, expected):
+        stated = f' schedPolicy="{policy}"' if policy else ""
+        stated += f' xsi:type="am:{kind}"' if kind else ""
+        root, _ = convert(f'<hwModel><networkTypes name="N" conConnections="0"{stated}/></hwModel>')
+        (node,) = root.find("hwModel", "definitions")
+        assert (node.type, node.get("policy")) == ("ConnectionHandlerDefinition", expected)
+
+    def test_classifiers_stay(self, convert):
+        root, notes = convert(
+            '<commonElements><coreClassifiers name="A"/><memoryClassifiers name="B"/></commonElements><hwModel>'
+            '<coreTypes name="C" classifiers="A?type=CoreClassifier"/><memoryTypes name="M" classifiers="B?type=MemoryClassifier"/>'
+            '<memoryTypes name="Cache" type="CACHE" classifiers="B?type=MemoryClassifier"/></hwModel>'
+        )
+        found = {
+            node.name: [each.name for each in node.references.get("classifiers", [])]
+            for node in root.find("hwModel", "definitions")
+        }
+        assert found == {"M": ["B"], "Cache": [], "C": ["A"]}
+        assert "'classifiers' of cache types" in lost(notes)
+
+    def test_kind_of_memory(self, convert):
+        types = "".join(f'<memoryTypes name="{kind}" type="{kind}"/>' for kind in ("RAM", "FLASH_INT"))
+        root, notes = convert(f"<hwModel>{types}</hwModel>")
+        assert {node.name: properties(node) for node in root.find("hwModel", "definitions")} == {
+            "RAM": {},
+            "FLASH_INT": {"memoryType": "FLASH_INT"},
+        }
+        assert ("'type' of memory types", "RAM") in {(note.message, note.detail) for note in notes if note.kind is Kind.LOST}
+
+    def test_types_of_structures_are_lost(self, convert):
+        root, notes = convert(
+            '<hwModel><systemTypes name="A"/><ecuTypes name="B"/><mcTypes name="C"/>'
+            '<system name="S" systemType="A?type=SystemType"><ecus name="E" ecuType="B?type=ECUType"/></system></hwModel>'
+        )
+        assert meaning_of_hardware(root) == ["structures  S", "structures  E"]
+        assert len(lost(notes)) == 5
+
+
+def meaning_of_hardware(root):
+    return [f"{node.tag} {node.type} {node.name}" for node in root.child("hwModel").walk() if node.tag != "hwModel"]
+
+
+class TestStructures:
+    def test_memories_and_networks_are_lifted_in_the_official_order(self, convert):
+        content = (
+            '<memories name="m1"><memories name="m2"><networks name="n1"/></memories></memories>'
+            '<networks name="n2"><components name="c"><networks name="n3"/><memories name="m3"/></components></networks>'
+            '<components name="d"><nestedComponents name="e"><memories name="m4"/><networks name="n4"/></nestedComponents></components>'
+            '<cores name="C"><memories name="m5"/><networks name="n5"/></cores><memories name="m6"/>'
+        )
+        for official in (False, True):
+            root, notes = convert(on_chip(content), official=official)
+            expected = ["m1", "m6", "m2", "m3", "m4", "n2", "n3", "n1", "n4", "C", "m5", "n5"]
+            assert [node.name for node in chip(root).all("modules")] == expected
+            assert "'components' of systems, ECUs and microcontrollers" in lost(notes)
+
+    def test_cores_keep_their_order(self, convert):
+        content = on_chip('<cores name="e200z6"/><cores name="e200z0"/>')
+        for official, names in ((False, ["e200z6", "e200z0"]), (True, ["e200z0", "e200z6"])):
+            root, _ = convert(content, official=official)
+            assert [node.name for node in chip(root).all("modules")] == names
+
+    def test_a_cache_in_a_core_with_port_and_clock(self, convert):
+        cache = (
+            '<memories name="$" type="T?type=MemoryType"><ports name="p"/><prescaler clockRatio="1.0" quartz="Q?type=Quartz"/>'
+            '<memories name="inner"/></memories>'
+        )
+        content = on_chip(f'<cores name="C">{cache}</cores>', before='<memoryTypes name="T" type="CACHE"/>')
+        content += (
+            '<swModel><labels name="L"/></swModel>'
+            '<mappingModel><memoryMapping abstractElement="L?type=Label" memory="%24?type=Memory"/></mappingModel>'
+        )
+        root, notes = convert(content)
+        assert [(node.name, node.type) for node in chip(root).all("modules")] == [("C", "ProcessingUnit"), ("inner", "Memory")]
+        (found,) = chip(root).find("modules", "caches")
+        assert (found.type, found.target("definition").type, domain_of(root, "$")[0]) == ("Cache", "CacheDefinition", "Q")
+        assert [node.name for node in found.children] == ["p"]
+        assert "'memory': caches cannot be referred to" in lost(notes)
+        root, _ = convert(content, official=True)
+        assert [(node.name, node.type) for node in chip(root).all("modules")][1] == ("$", "Memory")
+        assert len(chip(root).find("modules", "caches")) == 1
+        assert root.find("mappingModel", "memoryMapping")[0].target("memory").type == "Memory"
+
+    def test_custom_properties_and_tags_stay(self, convert):
+        own = '<customProperties key="k"><value xsi:type="am:StringObject" value="v"/></customProperties>'
+        content = on_chip(f'<cores name="C" tags="t?type=Tag" lockstepGroup="2">{own}</cores>', before=own)
+        content += '<commonElements><tags name="t"/></commonElements>'
+        root, _ = convert(content)
+        core = module(root, "C")
+        assert properties(core) == {"k": "v", "lockstepGroup": "2"}
+        assert core.target("tags").name == "t"
+        assert properties(root.child("hwModel")) == {"k": "v"}
+        root, notes = convert(content, official=True)
+        assert not module(root, "C").children
+        assert not module(root, "C").references
+        assert "'customProperties' of cores" in lost(notes)
+
+    def test_ports(self, convert):
+        cycles = 'readCycles="8" writeCycles="0" baseAddress="0x0" addressRange="0x100" schedValue="2" direction="R"'
+        content = on_chip(
+            f'<memories name="m"><ports xsi:type="am:ComplexPort" name="a" {cycles} network="n?type=Network"/></memories>'
+            f'<cores name="C"><ports xsi:type="am:ComplexPort" name="b" master="true" {cycles}><pins name="pin"/></ports></cores>'
+            '<networks name="n"/><ports xsi:type="am:HwPort" name="c" master="false"/>'
+        )
+        root, notes = convert(content)
+        (a,), (b,), (c,) = module(root, "m").all("ports"), module(root, "C").all("ports"), chip(root).all("ports")
+        assert properties(a) == {
+            "readCycles": "8",
+            "baseAddress": "0x0",
+            "addressRange": "0x100",
+            "direction": "R",
+            "schedValue": "2",
+            "network": "",
+        }
+        assert a.all("customProperties")[-1].children[0].target("value") is module(root, "n")
+        assert (a.type, a.get("portType"), properties(b), b.get("portType")) == (
+            "",
+            "",
+            {"direction": "R", "schedValue": "2"},
+            "initiator",
+        )
+        assert c.get("portType") == "responder"
+        assert {"'readCycles' of initiator ports", "'addressRange' of initiator ports", "'pins' of initiator ports"} <= lost(
+            notes
+        )
+        root, _ = convert(content, official=True)
+        assert not any(node.all("customProperties") for node in chip(root).walk())
+
+
+def path(latencies, source="C?type=Core", target="R?type=Memory", name="p"):
+    return f'<accessPaths xsi:type="am:LatencyAccessPath" name="{name}" source="{source}" target="{target}">{latencies}</accessPaths>'
+
+
+def constant(value, access="RW", more=""):
+    return f'<latencies xsi:type="am:LatencyConstant" accessType="{access}" value="{value}" {more}/>'
+
+
+class TestAccessPaths:
+    def costs(self, root, core="C"):
+        return [
+            {each.tag: each.get("cycles") for each in element.children} for element in module(root, core).all("accessElements")
+        ]
+
+    def test_access_types(self, convert):
+        paths = path(constant(1, "R") + constant(2, "W")) + path(constant(3, "W"), name="q")
+        for official in (False, True):
+            root, _ = convert(on_chip('<cores name="C"/><memories name="R"/>', paths), official=official)
+            assert self.costs(root) == [{"readLatency": "1", "writeLatency": "2"}, {"writeLatency": "3"}]
+
+    def test_a_path_to_a_core(self, convert):
+        root, _ = convert(on_chip('<cores name="C"/><cores name="D"/>', path(constant(1), target="D?type=Core")))
+        assert module(root, "C").child("accessElements").target("destination") is module(root, "D")
+
+    def test_paths_without_successor(self, convert):
+        cache = '<memoryTypes name="T" type="CACHE"/>'
+        content = on_chip(
+            '<cores name="C"/><memories name="R"/><networks name="N"/><memories name="L2" type="T?type=MemoryType"/>',
+            path(constant(1), source="N?type=Network")
+            + path(constant(1), target="N?type=Network")
+            + path(constant(1), target="L2?type=Memory")
+            + '<accessPaths xsi:type="am:HwAccessPath" name="h"/><accessPaths/>',
+            cache,
+        )
+        root, notes = convert(content)
+        assert module(root, "C").children == []
+        assert len([message for message in lost(notes) if "access path" in message]) == 3
+
+    def test_official_refers_to_a_cache_as_memory(self, convert):
+        content = on_chip('<cores name="C"/><memories name="L2" type="T?type=MemoryType"/>', path("", target="L2?type=Memory"))
+        root, _ = convert(content.replace("<hwModel>", '<hwModel><memoryTypes name="T" type="CACHE"/>'), official=True)
+        target = module(root, "C").child("accessElements").target("destination")
+        assert (target.is_proxy, target.get("path"), target.target_class) == (True, "L2", "Memory")
+
+    def test_without_access_type_both_directions_are_meant(self, convert):
+        latency = '<latencies xsi:type="am:LatencyConstant" value="4"/>'
+        root, notes = convert(on_chip('<cores name="C"/><memories name="R"/>', path(latency)))
+        assert self.costs(root) == [{"readLatency": "4", "writeLatency": "4"}]
+        assert any(note.kind is Kind.DEFAULTED for note in notes)
+
+    def test_latencies_are_in_cycles_of_the_core(self, convert):
+        core = '<cores name="C"><prescaler clockRatio="1.5" quartz="Q?type=Quartz"/></cores><memories name="R"/>'
+        deviation = (
+            '<latencies xsi:type="am:LatencyDeviation" accessType="R" quartz="Q?type=Quartz"><deviation>'
+            '<lowerBound xsi:type="am:LongObject" value="1"/><upperBound xsi:type="am:LongObject" value="9"/></deviation></latencies>'
+        )
+        paths = path(constant(9, "RW", 'quartz="Q?type=Quartz"')) + path(deviation, name="q") + path(constant(9), name="r")
+        root, notes = convert(on_chip(core, paths))
+        first, _, third = self.costs(root)
+        assert first == {"readLatency": "14", "writeLatency": "14"}
+        assert third == {"readLatency": "9", "writeLatency": "9"}
+        latency = module(root, "C").all("accessElements")[1].children[0]
+        assert [node.get("value") for node in latency.find("cycles")[0].children] == ["1", "14"]
+        assert any("cycles of a quartz" in note.message for note in notes)
+        root, _ = convert(on_chip(core, paths), official=True)
+        assert self.costs(root)[0] == {"readLatency": "9", "writeLatency": "9"}
+
+    def test_latencies_of_a_quartz_without_frequency(self, convert):
+        more = 'quartz="P?type=Quartz"'
+        content = on_chip(
+            '<cores name="C"><prescaler quartz="Q?type=Quartz"/></cores><memories name="R"/>', path(constant(9, "R", more))
+        )
+        root, notes = convert(content.replace(QUARTZ, QUARTZ + '<quartzes name="P"/>'))
+        assert self.costs(root) == [{"readLatency": "9"}]
+        assert any("frequency" in message for message in lost(notes))
+
+    def test_several_latencies_are_added_up(self, convert):
+        inner = path(constant(2) + constant(3, "R"), name="inner")
+        outer = path('<latencies xsi:type="am:AccessPathRef" ref="inner?type=LatencyAccessPath"/>' + constant(10), name="outer")
+        root, _ = convert(on_chip('<cores name="C"/><memories name="R"/>', inner + outer))
+        assert self.costs(root) == [{"readLatency": "5", "writeLatency": "2"}, {"readLatency": "15", "writeLatency": "12"}]
+
+    def test_a_path_that_is_part_of_itself(self, convert):
+        ref = '<latencies xsi:type="am:AccessPathRef" ref="{}?type=LatencyAccessPath"/>'
+        paths = path(ref.format("b") + constant(1), name="a") + path(ref.format("a") + ref.format("x"), name="b")
+        root, notes = convert(on_chip('<cores name="C"/><memories name="R"/>', paths))
+        assert len(self.costs(root)) == 2
+        assert any("part of itself" in message for message in lost(notes))
+
+    def test_paths_that_grow_without_bound(self, convert):
+        ref = '<latencies xsi:type="am:AccessPathRef" ref="p{}?type=LatencyAccessPath"/>'
+        paths = path(constant(1), name="p0") + "".join(path(ref.format(at) * 2, name=f"p{at + 1}") for at in range(60))
+        root, _ = convert(on_chip('<cores name="C"/><memories name="R"/>', paths))
+        assert len(self.costs(root)) == 61
+
+
+class TestNeeds:
+    def test_wherever_instructions_are(self, convert):
+        item = '<{0} xsi:type="am:RunnableInstructions"><default xsi:type="am:{1}"/></{0}>'
+        constant_, deviation = "InstructionsConstant", "InstructionsDeviation"
+        group = f'<runnableItems xsi:type="am:Group">{item.format("items", constant_)}</runnableItems>'
+        scheduler = item.format("computationItems", deviation)
+        scheduler = f"<operatingSystems><taskSchedulers>{scheduler}</taskSchedulers></operatingSystems>"
+        root, _ = convert(f"<swModel><runnables name='R'>{group}</runnables></swModel><osModel>{scheduler}</osModel>")
+        found = [node for node in root.walk() if node.type == "ExecutionNeed"]
+        assert [node.children[0].children[0].type for node in found] == ["NeedConstant", "NeedDeviation"]
+        assert [node.children[0].get("key") for node in found] == ["Instructions"] * 2
+
+    def test_the_fetches_are_lost(self, convert):
+        root, notes = convert(
+            '<swModel><runnables name="R"><runnableItems xsi:type="am:RunnableInstructions">'
+            '<default xsi:type="am:InstructionsDeviation">'
+            '<fetchStatistic value="3"/><deviation><lowerBound xsi:type="am:LongObject" value="1"/></deviation></default>'
+            "</runnableItems></runnables></swModel>"
+        )
+        (need,) = root.find("swModel", "runnables", "runnableItems", "default", "value")
+        assert [node.tag for node in need.children] == ["deviation"]
+        assert lost(notes) == {"'fetchStatistic' of instructions"}
+
+    def test_the_category_is_made_once_for_all_files(self, tmp_path):
+        default = '<default xsi:type="am:InstructionsConstant" value="1"/>'
+        item = f'<runnableItems xsi:type="am:RunnableInstructions">{default}</runnableItems>'
+        software = [
+            write(tmp_path / f"{at}.amxmi", f"<swModel><runnables name='{at}'>{item}</runnables></swModel>") for at in "ab"
+        ]
+        models, _ = migrated(software, "0.9.0")
+        assert [len(tree.root.find("hwModel", "featureCategories")) for tree in models.trees] == [1, 0]
+        hardware = write(tmp_path / "hw.amxmi", "<hwModel><coreTypes name='T' instructionsPerCycle='2'/></hwModel>")
+        models, _ = migrated([*software, hardware], "0.9.0")
+        assert [len(tree.root.find("hwModel", "featureCategories")) for tree in models.trees] == [0, 0, 1]
+
+    def test_instructions_elsewhere_stay(self, convert):
+        overhead = (
+            '<osOverheads><apiOverhead><apiSchedule xsi:type="am:InstructionsConstant" value="1"/></apiOverhead></osOverheads>'
+        )
+        root, _ = convert(f"<osModel>{overhead}</osModel>")
+        assert root.find("osModel", "osOverheads", "apiOverhead", "apiSchedule")[0].type == "InstructionsConstant"
+
+
+class TestReferences:
+    def test_across_files(self, tmp_path):
+        hardware = write(
+            tmp_path / "hw.amxmi",
+            on_chip('<cores name="Core 0" coreType="CT?type=CoreType"/><memories name="R"/>', before='<coreTypes name="CT"/>'),
+        )
+        rest = write(
+            tmp_path / "rest.amxmi",
+            '<swModel><labels name="L"/></swModel><mappingModel>'
+            '<taskAllocation><coreAffinity href="amlt:/#Core+0?type=Core"/></taskAllocation>'
+            '<memoryMapping abstractElement="L?type=Label"><memory href="amlt:/#R?type=Memory"/></memoryMapping></mappingModel>',
+        )
+        for official in (False, True):
+            models, _ = migrated([rest, hardware], "0.9.0", official)
+            mapping = models.trees[0].root.child("mappingModel")
+            assert mapping.child("taskAllocation").target("affinity").type == "ProcessingUnit"
+            assert mapping.child("memoryMapping").target("memory").type == "Memory"
+
+    CONSTRAINTS = (
+        '<constraintsModel><affinityConstraints xsi:type="am:RunnablePairingConstraint"><target xsi:type="am:TargetCore">'
+        '<cores href="amlt:/#c1?type=Core"/></target></affinityConstraints>'
+        '<affinityConstraints xsi:type="am:DataSeparationConstraint"><target xsi:type="am:TargetMemory">'
+        '<memories href="amlt:/#m?type=Memory"/></target></affinityConstraints>'
+        '<physicalSectionConstraints name="p"><memories href="amlt:/#m?type=Memory"/></physicalSectionConstraints></constraintsModel>'
+        "<eventModel>{}</eventModel>"
+        '<mappingModel><physicalSectionMapping><memory href="amlt:/#m?type=Memory"/></physicalSectionMapping></mappingModel>'
+    )
+
+    def test_hardware_in_no_file(self, convert):
+        kinds = ("ProcessEvent", "ProcessChainEvent", "RunnableEvent", "SemaphoreEvent")
+        content = self.CONSTRAINTS.format("".join(f'<events xsi:type="am:{kind}" core="c1?type=Core"/>' for kind in kinds))
+        for official in (False, True):
+            root, notes = convert(content, official=official)
+            targets = root.find("constraintsModel", "affinityConstraints", "target")
+            assert targets[0].target("cores").target_class == "ProcessingUnit"
+            assert [node.target("processingUnit").target_class for node in root.find("eventModel", "events")] == [
+                "ProcessingUnit"
+            ] * 4
+            memories = [
+                targets[1].target("memories"),
+                root.find("constraintsModel", "physicalSectionConstraints")[0].target("memories"),
+            ]
+            memories.append(root.find("mappingModel", "physicalSectionMapping")[0].target("memory"))
+            # The official converter only knows memories that it has converted.
+            assert [each is None for each in memories] == [official] * 3
+            assert bool(lost(notes)) == official
+
+    def test_hardware_context(self, convert):
+        limit = '<requirements name="r{0}"><limit xsi:type="am:CPUPercentageRequirementLimit" hardwareContext="{0}"/></requirements>'
+        limits = limit.format("C?type=Core") + limit.format("E?type=ECU")
+        root, notes = convert(on_chip('<cores name="C"/>') + f"<constraintsModel>{limits}</constraintsModel>")
+        found = [node.target("hardwareContext") for node in root.find("constraintsModel", "requirements", "limit")]
+        assert found == [module(root, "C"), None]
+        assert "'hardwareContext' other than a core" in lost(notes)
+
+    def test_order_of_references(self, convert):
+        cores = on_chip('<cores name="e200z6"/><cores name="e200z0"/>')
+        mapping = '<mappingModel><schedulerAllocation responsibility="e200z6?type=Core e200z0?type=Core"/></mappingModel>'
+        for official, names in ((False, ["e200z6", "e200z0"]), (True, ["e200z0", "e200z6"])):
+            root, _ = convert(cores + mapping, official=official)
+            assert [
+                node.name for node in root.find("mappingModel", "schedulerAllocation")[0].references["responsibility"]
+            ] == names
+
+    def test_custom_properties(self, convert):
+        value = '<customProperties key="{0}"><value xsi:type="am:ReferenceObject" value="{0}"/></customProperties>'
+        targets = {
+            "C?type=Core": ("C", "ProcessingUnitDefinition"),
+            "T?type=CoreType": ("T", "ProcessingUnit"),
+            "N?type=Network": ("N", "ConnectionHandlerDefinition"),
+            "B?type=Bus": ("B", "Bus"),
+            "M?type=Microcontroller": ("M", "HwStructure"),
+            "Q?type=Quartz": ("Q", "FrequencyDomain"),
+            "x?type=Task": ("x", "Task"),
+        }
+        content = on_chip(
+            '<cores name="C"/><networks name="N"/>', before='<coreTypes name="T"/><networkTypes xsi:type="am:Bus" name="B"/>'
+        )
+        content += f"<swModel><tasks name='x'>{''.join(map(value.format, targets))}</tasks></swModel>"
+        root, _ = convert(content)
+        kept = [node.children[0].target("value") for node in root.find("swModel", "tasks", "customProperties")]
+        assert [node.name for node in kept] == ["C", "T", "N", "B", "M", "Q", "x"]
+        assert not any(node.is_proxy for node in kept)
+        root, _ = convert(content, official=True)
+        found = [node.children[0].target("value") for node in root.find("swModel", "tasks", "customProperties")]
+        assert [(node.get("path") or node.name, node.target_class) for node in found if node.is_proxy] == list(
+            targets.values()
+        )[:4]
+
+
+def test_old_content_under_the_new_namespace_is_converted(tmp_path, convert):
+    content = on_chip('<cores name="C"/>', before='<coreTypes name="T" instructionsPerCycle="1"/>')
+    root, _ = convert(content)
+    again, _ = convert(content, version="0.9.0")
+    later, _ = convert(content, "0.9.1", version="0.9.1")
+    assert meaning_of_hardware(again) == meaning_of_hardware(root) == meaning_of_hardware(later)
+
+
+def test_new_content_stays(tmp_path):
+    text = (
+        '<hwModel><definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="Instructions/IPC_2?type=HwFeature"/>'
+        '<featureCategories name="Instructions"><features name="IPC_2" value="2"/></featureCategories>'
+        '<structures name="S" structureType="System">'
+        '<modules xsi:type="am:ProcessingUnit" name="C" definition="D?type=ProcessingUnitDefinition">'
+        '<ports name="p" portType="initiator" priority="3"/><accessElements name="a">'
+        '<readLatency xsi:type="am:LatencyConstant" cycles="2"/>'
+        "</accessElements></modules></structures></hwModel>{}"
+        '<eventModel><events xsi:type="am:ProcessEvent" name="e" processingUnit="C?type=ProcessingUnit"/></eventModel>'
+    )
+    models, _ = migrated([write(tmp_path / "a.amxmi", text.format(""), "0.8.3")], "0.9.0")
+    assert meaning(models) == meaning(opened(write(tmp_path / "b.amxmi", text.format(""), "0.9.0")))
+    # A core type that is still old uses the category that is there.
+    old = text.replace("<hwModel>", '<hwModel><coreTypes name="T" instructionsPerCycle="2"/>')
+    models, _ = migrated([write(tmp_path / "a.amxmi", old.format(""), "0.9.0")], "0.9.0")
+    assert len(models.trees[0].root.find("hwModel", "featureCategories", "features")) == 1
+
+
+@pytest.mark.parametrize("official", [False, True])
+@pytest.mark.parametrize(
+    "content",
+    [
+        "<hwModel/>",
+        "<hwModel><system/></hwModel>",
+        "<hwModel><coreTypes instructionsPerCycle='much'/><memoryTypes/><networkTypes/></hwModel>",
+        "<hwModel><system><quartzes/><ecus><microcontrollers><cores><prescaler/><memories/></cores></microcontrollers></ecus></system></hwModel>",
+        on_chip('<cores name="C" coreType="x"><prescaler clockRatio="fast" quartz="Q?type=Quartz"/></cores>'),
+        on_chip('<memories name="R" type="RAM"/><memories name="R2" type="no?type=MemoryType"/>'),
+        on_chip('<cores name="C"/>', "<accessPaths/>" + path("<latencies/>") + path(constant("many"), target="no?type=Memory")),
+        on_chip('<cores name="C" coreType="C?type=Core"><memories name="R" type="C?type=Core"/></cores>'),
+        "<swModel><runnables><runnableItems xsi:type='am:RunnableInstructions'><default/><extended/><extended><value/></extended>"
+        "</runnableItems></runnables></swModel>",
+        "<mappingModel><taskAllocation coreAffinity='C'/><memoryMapping memory='R'/></mappingModel>"
+        "<eventModel><events core='C'/></eventModel>",
+        "<swModel><tasks><customProperties key='k'><value xsi:type='am:ReferenceObject'/></customProperties>"
+        "<customProperties/></tasks></swModel>",
+    ],
+)
+def test_damaged_files(convert, content, official):
+    convert(content, official=official)
+    convert(content, "0.9.2", official=official)
