@@ -36,6 +36,9 @@ def migrate(models: ModelSet, target: str, notes: Notes, official: bool) -> None
     highest = max(models.trees, key=lambda tree: position(tree.version)).version
     while position(highest) > goal:
         highest = _take(models, _DOWN[highest], notes, official)
+    for (node, name), targets in models.set_aside.items():
+        lost = ", ".join(repr(target.name) for target in targets)
+        notes.lost(node, f"reference {name!r}: this version has no place for it", lost, name)
     drop_dangling(models, notes)
 
 

@@ -83,12 +83,15 @@ class ModelSet:
     trees : the files
     origins : where everything comes from
     proxies : what stands for objects to which the files refer, but which no file contains
+    set_aside : targets of references that the versions in between cannot express, by object and name; the step to the version that
+        can do so again takes them back (`pop`), and what is left in the end is lost
     """
 
     def __init__(self, trees: list[Tree], origins: Origins) -> None:
         self.trees = trees
         self.origins = origins
         self.proxies: list[Node] = []
+        self.set_aside: dict[tuple[Node, str], list[Node]] = {}
         self._by_tag: dict[str, list[Node]] | None = None
         self._active: list[Tree] = trees
 
