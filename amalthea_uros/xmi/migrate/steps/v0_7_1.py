@@ -52,7 +52,7 @@ def _make_element(holders: Iterable[Node], name: str, notes: Notes) -> None:
         holder.child_or_new(name).attributes.setdefault("value", text)
         notes.converted(
             holder,
-            f"{name} of {holder.tag} -> element with value; the old version states no unit, nor does the new one",
+            f"{name} of {holder.tag} -> element with value; neither version states its unit",
             text,
             name,
         )
@@ -98,7 +98,7 @@ def _find_default(switch: Node, entries: Iterable[Node], notes: Notes, official:
         if stated is None or not (official or stated in _TRUE):
             continue
         if found is not None:
-            notes.lost(entry, "only one entry of a mode switch can be the default one: the first is, this one is not any more")
+            notes.lost(entry, "second default entry of a mode switch: it is an ordinary entry now")
             continue
         found = entry
         entry.tag = "defaultEntry"

@@ -46,12 +46,11 @@ def _remove(models: ModelSet, notes: Notes, official: bool) -> None:
     removed = [node for node in models.nodes("timingConstraints", "affinityConstraints") if node.type in REMOVED_CONSTRAINTS]
     kept: dict[Node, list[tuple[str, str]]] = {}
     for constraint in removed:
-        detail = content_of(constraint)
         if official or constraint.parent is None:
-            notes.lost(constraint, f"{constraint.type}: there is no successor", detail)
+            notes.lost(constraint, f"{constraint.type}: there is no successor", content_of(constraint))
         else:
             kept.setdefault(constraint.parent, []).append((removed_key(constraint.type, "0.7.1"), xml_text(constraint)))
-            notes.kept(constraint, f"{constraint.type}: there is no successor", detail)
+            notes.kept(constraint, f"{constraint.type}: there is no successor", constraint.name)
     remove_all(removed)
     for holder, properties in kept.items():
         keep_as_properties(holder, properties)

@@ -34,7 +34,7 @@ def _place(member: Node, tag: str, section: Node, notes: Notes) -> None:
     placed = member.target("section")
     if placed is None:
         member.refer("section", section)
-        notes.moved(member, "labels and runnables name their section, no longer the section its members", section.name)
+        notes.moved(member, "member of a section -> reference of the member to the section", section.name)
     elif placed is not section:
         notes.lost(member, "another section of a label or runnable: only the first is kept", section.name)
 
@@ -65,5 +65,5 @@ def _remove_constraints(models: ModelSet, notes: Notes, official: bool) -> None:
             notes.lost(constraint, "constraint for the mapping of a section", content_of(constraint))
         else:
             keep_as_properties(holder, [(removed_key(constraint.type, "0.7.1"), xml_text(constraint))])
-            notes.kept(constraint, "constraint for the mapping of a section", content_of(constraint))
+            notes.kept(constraint, "constraint for the mapping of a section")
     remove_all(removed)

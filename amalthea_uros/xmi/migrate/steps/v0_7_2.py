@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
@@ -169,14 +167,9 @@ def _change_traced_events(models: ModelSet, notes: Notes, official: bool) -> Non
         else:
             config.refer("event", *events)
     for root, events in moved.items():
-        _take_events(root, events, official)
+        if events or official:
+            root.child_or_new("eventModel").take(events)
     remove_all(removed)
-
-
-def _take_events(root: Node, events: Iterable[Node], official: bool) -> None:
-    taken = list(events)
-    if taken or official:
-        root.child_or_new("eventModel").take(taken)
 
 
 STEP = Step(
@@ -190,6 +183,5 @@ STEP = Step(
             *_REMOVED_TARGETS,
             *_RENAMED_CLASSES,
         }
-    )
-    - {"Instructions"},
+    ),
 )

@@ -66,7 +66,7 @@ class _Mover:
         """Move hardware to a place below the hardware model, unless there is such a thing; what is meant by it now."""
         if not node.name:
             self.removed.append(node)
-            self.notes.lost(node, f"{node.tag} without a name in a property constraint", content_of(node))
+            self.notes.lost(node, f"unnamed {node.tag} of a property constraint", content_of(node))
             return None
         known = self.known.get((tag, node.name))
         if known is not None:

@@ -65,7 +65,7 @@ def _unwrapped(wrapper: Node, notes: Notes, official: bool) -> list[Node]:
         items[0].children[:0] = properties
     for item in items:
         item.tag = "items"
-        notes.converted(item, "item of a group: the element around it, with the deviation, is gone")
+        notes.converted(item, "DeviationRunnableItem of a group -> the item itself")
     if rest := ", ".join(filter(None, map(content_of, wrapper.children))):
         notes.lost(wrapper, "deviation of an item of a group", rest)
     return items

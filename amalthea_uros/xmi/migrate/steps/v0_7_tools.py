@@ -36,7 +36,7 @@ def wrap_sub_models(models: ModelSet, notes: Notes) -> None:
             continue
         tree.root = Node("Amalthea", origin=root.origin)
         tree.root.insert(root)
-        notes.converted(root, "a sub-model is no root of a file any more: a model contains it now", root.tag)
+        notes.converted(root, "sub-model as root of a file -> part of a model", root.tag)
         root.tag = tag
 
 
@@ -73,8 +73,13 @@ def _xml_text(node: Node, depth: int, declaration: str) -> str:
     start = f"<{node.tag}{declaration}" + "".join(f' {name}="{escape(text)}"' for name, text in texts.items())
     if not node.children:
         return start + " />"
-    inner = "".join(f"\n{'  ' * (depth + 1)}{_xml_text(child, depth + 1, '')}" for child in node.children)
-    return f"{start}>{inner}\n{'  ' * depth}</{node.tag}>"
+    inner = "".join(_line(depth + 1) + _xml_text(child, depth + 1, "") for child in node.children)
+    return f"{start}>{inner}{_line(depth)}</{node.tag}>"
+
+
+def _line(depth: int) -> str:
+    """A new line, with the line ends of the official converters."""
+    return "\r\n" + "  " * depth
 
 
 def names_of(nodes: Iterable[Node]) -> str:

@@ -107,7 +107,7 @@ def _keep_hardware_constraint(constraint: Node, notes: Notes) -> None:
     key = removed_key("hwConstraint", "0.8.0")
     keep_as_properties(constraint, [(key, xml_text(condition)) for condition in conditions])
     for condition in conditions:
-        notes.kept(condition, "condition for the hardware of a property constraint", content_of(condition))
+        notes.kept(condition, "condition for the hardware of a property constraint", condition.type)
     remove_all(conditions)
 
 
