@@ -139,7 +139,8 @@ def test_constraints_of_sections_are_kept_as_text_if_they_constrain_anything(up)
 SWITCH = """
 <swModel><{process} name="t"><callGraph><graphEntries t="ModeSwitch">
   <entries {first}><value href="amlt:/#m/a?type=ModeLiteral"/><graphEntries t="ProbabiltitySwitch">
-    <entries probability="1"><graphEntries t="ModeSwitch"><entries value="m/a?type=ModeLiteral" default="true"/></graphEntries></entries>
+    <entries probability="1"><graphEntries t="ModeSwitch"><entries value="m/a?type=ModeLiteral" default="true"/>
+    </graphEntries></entries>
   </graphEntries></entries>
   <entries {second}/>
 </graphEntries></callGraph></{process}><modes name="m"><literals name="a"/></modes></swModel>
@@ -166,8 +167,10 @@ def test_only_true_makes_an_entry_the_default_one(up):
 
 
 def test_entries_of_anything_else_are_not_those_of_switches(up):
-    result = up('<stimuliModel><stimuli t="Periodic" name="p"><setModeValueList><entries value="m/a?type=ModeLiteral"/></setModeValueList>'
-                "</stimuli></stimuliModel>")  # fmt: skip
+    entries = '<entries value="m/a?type=ModeLiteral"/>'
+    result = up(
+        f'<stimuliModel><stimuli t="Periodic" name="p"><setModeValueList>{entries}</setModeValueList></stimuli></stimuliModel>'
+    )
     assert "entries value -> ?m/a:ModeLiteral" in result.lines
 
 
@@ -235,7 +238,10 @@ def test_scopes_that_differ_and_groupings_are_lost(up):
 
 
 def test_a_file_of_the_next_version_with_old_constraints_takes_the_step_and_keeps_the_rest(up):
-    new = '<hwModel><memoryTypes name="m"><size value="1" unit="kB"/></memoryTypes></hwModel><swModel><labels name="l" section="s?type=Section"/>'
+    new = (
+        '<hwModel><memoryTypes name="m"><size value="1" unit="kB"/></memoryTypes></hwModel><swModel>'
+        '<labels name="l" section="s?type=Section"/>'
+    )
     result = up(new + '<sections name="s"/></swModel>' + CONSTRAINTS, source="0.7.1")
     assert "size unit='kB' value='1'" in result.lines
     assert "labels name='l' section -> /swModel.0/sections.0" in result.lines
@@ -246,10 +252,12 @@ def test_a_file_of_the_next_version_with_old_constraints_takes_the_step_and_keep
 def test_damaged_files_are_no_problem(up, official):
     up(
         '<swModel><sections labels="x"/><sections labels="s?type=Section" runEntities="t?type=Task"/><tasks name="t"><callGraph>'
-        '<graphEntries t="ModeSwitch"><entries value="x" default=""/><entries/></graphEntries><entries value="1"/></callGraph></tasks></swModel>'
+        '<graphEntries t="ModeSwitch"><entries value="x" default=""/><entries/></graphEntries><entries value="1"/>'
+        "</callGraph></tasks></swModel>"
         '<hwModel><memoryTypes size=""/><memoryTypes size="x"><size value="1"/></memoryTypes><quartzes frequency=""/></hwModel>'
         '<mappingModel><mapping/><mapping t="SectionMapping" section="x" memory="y"/></mappingModel>'
-        '<constraintsModel><timingConstraints/><affinityConstraints/><runnableSequencingConstraints><runnableGroups><entries runnable="x"/>'
+        "<constraintsModel><timingConstraints/><affinityConstraints/><runnableSequencingConstraints><runnableGroups>"
+        '<entries runnable="x"/>'
         '<entries processScope="y"><z/></entries></runnableGroups></runnableSequencingConstraints></constraintsModel>'
         '<timingConstraints t="OrderConstraint"/>',
         official=official,

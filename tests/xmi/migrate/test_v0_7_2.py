@@ -109,8 +109,10 @@ def test_new_runnable_items_stay(up):
 
 def test_what_is_around_items_of_groups_is_not_lost_silently(up):
     text = runnable(
-        '<runnableItems t="Group"><customProperties key="g"/><items><customProperties key="w"/><deviation><lowerBound t="LongObject" value="4"/>'
-        '</deviation><runnableItem t="LabelAccess"><statistic/></runnableItem></items><items/><items><deviation samplingType="BestCase"/></items>'
+        '<runnableItems t="Group"><customProperties key="g"/><items><customProperties key="w"/><deviation>'
+        '<lowerBound t="LongObject" value="4"/>'
+        '</deviation><runnableItem t="LabelAccess"><statistic/></runnableItem></items><items/><items>'
+        '<deviation samplingType="BestCase"/></items>'
         "</runnableItems>"
     )
     result = up(text)
@@ -122,7 +124,7 @@ def test_what_is_around_items_of_groups_is_not_lost_silently(up):
         "customProperties key='w'",
         "statistic",
     ]
-    assert [note for note in result.notes if note[0] == "LOST"][0] == (
+    assert next(note for note in result.notes if note[0] == "LOST") == (
         "LOST",
         "deviation of an item of a group",
         "lowerBound (value=4)",
@@ -130,7 +132,10 @@ def test_what_is_around_items_of_groups_is_not_lost_silently(up):
     assert "key='w'" not in up(text, official=True).text
 
 
-DEVIATION = '<stimuliModel><stimuli t="Periodic" name="p"><stimulusDeviation samplingType="WorstCase">{}</stimulusDeviation></stimuli></stimuliModel>'
+DEVIATION = (
+    '<stimuliModel><stimuli t="Periodic" name="p">'
+    '<stimulusDeviation samplingType="WorstCase">{}</stimulusDeviation></stimuli></stimuliModel>'
+)
 
 
 @pytest.mark.parametrize(
@@ -152,7 +157,8 @@ def test_a_sampling_type_needs_boundaries(up, distribution, kept, officially_kep
 def test_instructions_of_the_operating_system_get_the_classes_of_runnables(up):
     result = up(
         '<osModel><osOverheads name="o"><apiOverhead><apiSetEvent t="OsExecutionInstructionsConstant" value="1"/></apiOverhead>'
-        '<isrCategory1Overhead><preExecutionOverhead t="OsExecutionInstructionsDeviation"/></isrCategory1Overhead></osOverheads></osModel>'
+        '<isrCategory1Overhead><preExecutionOverhead t="OsExecutionInstructionsDeviation"/></isrCategory1Overhead>'
+        "</osOverheads></osModel>"
     )
     assert "apiSetEvent [InstructionsConstant] value='1'" in result.lines
     assert "preExecutionOverhead [InstructionsDeviation]" in result.lines
@@ -197,7 +203,8 @@ def test_pairing_constraints_have_a_group(up):
 def test_tags_of_one_name_are_one(up):
     result = up(
         '<swModel><tags name="t 1"/><tags name="u" tagType="a"/><runnables name="r" tags="t+1?type=Tag"/></swModel>'
-        '<componentsModel><tags name="t 1"/><tags name="u" tagType="b"/><components t="Component" name="c" tags="t+1?type=Tag u?type=Tag"/>'
+        '<componentsModel><tags name="t 1"/><tags name="u" tagType="b"/>'
+        '<components t="Component" name="c" tags="t+1?type=Tag u?type=Tag"/>'
         '</componentsModel><commonElements><tags name="u" tagType="a"/></commonElements>'
     )
     assert [line for line in result.lines if line.startswith("tags")] == ["tags name='u' tagType='a'", "tags name='t 1'"]
@@ -246,7 +253,8 @@ def test_the_official_converter_removes_what_contained_a_traced_event(up):
 CONDITIONS = """
 <propertyConstraintsModel>
   <allocationConstraints t="ProcessAllocationConstraint"><hwConstraint t="HwCoreConjunction">
-    <firstConstraint t="HwCoreProperty"><core name="{core}" coreType="ct?type=CoreType"><memories name="inner"/></core></firstConstraint>
+    <firstConstraint t="HwCoreProperty"><core name="{core}" coreType="ct?type=CoreType"><memories name="inner"/></core>
+    </firstConstraint>
     <secondConstraint t="HwCoreProperty"><core name="{core}"/></secondConstraint>
   </hwConstraint></allocationConstraints>
   <mappingConstraints t="AbstractElementMappingConstraint">
@@ -304,7 +312,8 @@ def test_damaged_files_are_no_problem(up, official):
         '<swModel><tags/><tags/><runnables><runnableItems t="Group"><items><runnableItem/><runnableItem/></items></runnableItems>'
         '<runnableItems t="ProbabilityGroup"><items/><items><runnableItem/></items></runnableItems></runnables></swModel>'
         '<propertyConstraintsModel><coreTypeDefinitions/><memoryTypeDefinitions name="m"/><memoryTypeDefinitions name="m"/>'
-        '<allocationConstraints><hwConstraint t="HwCoreProperty"><core name="a"/><core name="b"/></hwConstraint></allocationConstraints>'
+        '<allocationConstraints><hwConstraint t="HwCoreProperty"><core name="a"/><core name="b"/></hwConstraint>'
+        "</allocationConstraints>"
         '</propertyConstraintsModel><configModel><eventsToTrace/><eventsToTrace t="EventConfigElement" event="x"/></configModel>'
         '<constraintsModel><affinityConstraints/><affinityConstraints t="DataPairingConstraint"/></constraintsModel>',
         official=official,

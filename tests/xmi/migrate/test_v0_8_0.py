@@ -20,14 +20,16 @@ def test_common_elements_can_be_a_root(up):
 
 def test_a_mapping_keeps_its_address(up):
     result = up(
-        '<mappingModel><mapping t="AbstractElementMapping" memoryPositionAddress="8"><customProperties key="k"/></mapping></mappingModel>'
+        '<mappingModel><mapping t="AbstractElementMapping" memoryPositionAddress="8"><customProperties key="k"/>'
+        "</mapping></mappingModel>"
     )
     assert result.lines[3:] == ["memoryMapping memoryPositionAddress='8'", "customProperties key='k'"]
 
 
 UNITS = """
 <swModel><labels name="l"><size value="1" unit="kB"/></labels><channels name="c"><size value="1" unit="byte"/></channels>
-<runnables name="r"><runnableItems t="LabelAccess"><transmissionPolicy><chunkSize value="1" unit="kibit"/></transmissionPolicy></runnableItems>
+<runnables name="r"><runnableItems t="LabelAccess"><transmissionPolicy><chunkSize value="1" unit="kibit"/>
+</transmissionPolicy></runnableItems>
 <rate value="1" unit="bytePerSecond"/><rate value="1" unit="kibitPerSecond"/></runnables></swModel>
 """
 
@@ -48,7 +50,8 @@ TIMES = """
     <stimulusDeviation><lowerBound t="SignedTime" value="2"/></stimulusDeviation></stimuli>
   <clocks t="ClockSinusFunction" name="c"><shift t="SignedTime" value="3"/></clocks>
 </stimuliModel>
-<constraintsModel><requirements><limit t="TimeRequirementLimit"><limitValue t="SignedTime" value="4"/></limit></requirements></constraintsModel>
+<constraintsModel><requirements><limit t="TimeRequirementLimit"><limitValue t="SignedTime" value="4"/></limit>
+</requirements></constraintsModel>
 """
 
 
@@ -167,7 +170,8 @@ def test_a_file_of_the_new_version_stays_as_it_is(up):
 @pytest.mark.parametrize("official", [False, True])
 def test_damaged_files_are_no_problem(up, official):
     up(
-        '<mappingModel><mapping t="Unknown"/><mapping/></mappingModel><swModel><modeLabels mode="x"/><modeLabels mode="y" initialValue="z"/></swModel>'
+        '<mappingModel><mapping t="Unknown"/><mapping/></mappingModel><swModel><modeLabels mode="x"/>'
+        '<modeLabels mode="y" initialValue="z"/></swModel>'
         "<osModel><osDataConsistency/><osDataConsistency/><operatingSystems/></osModel>"
         "<propertyConstraintsModel><mappingConstraints/><allocationConstraints><hwConstraint/><hwConstraint/></allocationConstraints>"
         "</propertyConstraintsModel>",
