@@ -90,6 +90,39 @@ def test_instructions_are_wrapped_everywhere(up):
     ]
 
 
+OFFICIAL_ITEMS = (
+    '<runnableItems t="InstructionsConstant" value="1"><customProperties key="k"/><fetchStatistic/></runnableItems>'
+    '<runnableItems t="InstructionsDeviation"><customProperties key="k"/><deviation/></runnableItems>'
+    '<runnableItems t="RunnableModeSwitch"><entries><items t="InstructionsConstant" value="3"/>'
+    '<items t="LabelAccess" buffered="buffered"/>'
+    '</entries></runnableItems><runnableItems t="Group"><items>'
+    '<runnableItem t="LabelAccess" buffered="buffered"/></items></runnableItems>'
+)
+
+
+def test_the_official_converter_forgets_some_instructions(up):
+    assert up(runnable(OFFICIAL_ITEMS), official=True).lines[5:] == [
+        "runnableItems [RunnableInstructions]",
+        "customProperties key='k'",
+        "default [InstructionsConstant] value='1'",
+        "fetchStatistic",
+        "runnableItems [RunnableInstructions]",
+        "default [InstructionsDeviation]",
+        "customProperties key='k'",
+        "deviation",
+        "runnableItems [RunnableModeSwitch]",
+        "entries",
+        "items [InstructionsConstant] value='3'",
+        "items [LabelAccess] buffered='buffered'",
+        "runnableItems [Group]",
+        "items [LabelAccess] dataStability='customProtection'",
+    ]
+    result = up(runnable(OFFICIAL_ITEMS))
+    assert result.text.count("customProperties") == 2
+    assert result.text.count("[RunnableInstructions]") == 3
+    assert "buffered" not in result.text
+
+
 def test_new_runnable_items_stay(up):
     items = (
         '<runnableItems t="RunnableInstructions"><default t="InstructionsConstant" value="1"/></runnableItems>'
@@ -213,6 +246,12 @@ def test_tags_of_one_name_are_one(up):
     assert result.of("LOST") == ["a tag differs from another one of the same name, which is kept"]
 
 
+def test_the_official_converter_keeps_tags_of_one_name_apart(up):
+    text = '<swModel><tags name="t"/></swModel><hwModel><tags name="t"/></hwModel>'
+    assert up(text, official=True).lines.count("tags name='t'") == 2
+    assert up(text).lines.count("tags name='t'") == 1
+
+
 def test_every_file_keeps_its_tags(up):
     result = up('<hwModel><tags name="t"/></hwModel>', '<swModel><runnables name="r" tags="t?type=Tag"/></swModel>')
     assert "runnables name='r' tags -> a.amxmi/commonElements.0/tags.0" in result.lines
@@ -276,6 +315,15 @@ def test_new_hardware_of_constraints_moves_to_the_hardware_model(up):
     assert "cores name='c 1' coreType -> /hwModel.0/coreTypes.0" in result.lines
     assert "ecus name='migration_gen_ecu'" in result.lines
     assert result.of("LOST") == []
+
+
+def test_the_official_converter_keeps_only_the_names_of_memories(up):
+    text = CONDITIONS.format(core="c").replace(
+        '<memory name="inner"/>', '<memory name="new" type="ct?type=MemoryType"><quartzes name="q"/></memory>'
+    )
+    assert "memories name='new'" in up(text, official=True).lines
+    assert "quartzes name='q'" not in up(text, official=True).lines
+    assert "quartzes name='q'" in up(text).lines
 
 
 def test_known_hardware_of_constraints_is_referred_to(up):

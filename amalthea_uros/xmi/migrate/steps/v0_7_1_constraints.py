@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, keep_as_properties, names_of, removed_key, xml_text
+from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, names_of, remove_and_keep
 
 #: Old class -> new class.
 RENAMED_CONSTRAINTS = {
@@ -44,16 +44,16 @@ def _rename(models: ModelSet, notes: Notes) -> None:
 
 def _remove(models: ModelSet, notes: Notes, official: bool) -> None:
     removed = [node for node in models.nodes("timingConstraints", "affinityConstraints") if node.type in REMOVED_CONSTRAINTS]
-    kept: dict[Node, list[tuple[str, str]]] = {}
     for constraint in removed:
-        if official or constraint.parent is None:
-            notes.lost(constraint, f"{constraint.type}: there is no successor", content_of(constraint))
+        message = f"{constraint.type}: there is no successor"
+        if official:
+            notes.lost(constraint, message, content_of(constraint))
         else:
-            kept.setdefault(constraint.parent, []).append((removed_key(constraint.type, "0.7.1"), xml_text(constraint)))
-            notes.kept(constraint, f"{constraint.type}: there is no successor", constraint.name)
-    remove_all(removed)
-    for holder, properties in kept.items():
-        keep_as_properties(holder, properties)
+            notes.kept(constraint, message, constraint.name)
+    if official:
+        remove_all(removed)
+    else:
+        remove_and_keep(removed, "0.7.1")
 
 
 def _change_groups(constraint: Node, notes: Notes, official: bool) -> None:

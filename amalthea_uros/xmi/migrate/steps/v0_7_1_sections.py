@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, keep_as_properties, names_of, removed_key, xml_text
+from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, names_of, remove_and_keep
 
 #: Reference of a section -> element of the members.
 _MEMBERS = {"labels": "labels", "runEntities": "runnables"}
@@ -57,13 +57,13 @@ def _change_mappings(models: ModelSet, notes: Notes, official: bool) -> None:
 
 
 def _remove_constraints(models: ModelSet, notes: Notes, official: bool) -> None:
-    removed = [node for node in models.nodes("mappingConstraints") if node.type == "SectionMappingConstraint"]
-    for constraint in removed:
-        holder = constraint.parent
-        # Without a condition for the memory it constrains nothing.
-        if official or holder is None or constraint.child("hwConstraint") is None:
-            notes.lost(constraint, "constraint for the mapping of a section", content_of(constraint))
-        else:
-            keep_as_properties(holder, [(removed_key(constraint.type, "0.7.1"), xml_text(constraint))])
-            notes.kept(constraint, "constraint for the mapping of a section")
-    remove_all(removed)
+    constraints = [node for node in models.nodes("mappingConstraints") if node.type == "SectionMappingConstraint"]
+    # Without a condition for the memory a constraint says nothing.
+    kept = [node for node in constraints if not official and node.child("hwConstraint") is not None]
+    for constraint in kept:
+        notes.kept(constraint, "constraint for the mapping of a section", names_of(constraint.references.get("section", ())))
+    remove_and_keep(kept, "0.7.1")
+    lost = [node for node in constraints if node.parent is not None]
+    for constraint in lost:
+        notes.lost(constraint, "constraint for the mapping of a section", content_of(constraint))
+    remove_all(lost)

@@ -24,6 +24,8 @@ _RENAMED_CLASSES = {
     "OsExecutionInstructionsDeviation": "InstructionsDeviation",
 }
 
+_MODELS_WITH_TAGS = ("componentsModel", "hwModel", "swModel")
+
 _REMOVED_TARGETS = frozenset({"TargetProcess", "TargetCallSequence"})
 
 #: Class of a constraint -> the old tag of its group.
@@ -36,8 +38,8 @@ _LEVELS = {"processLevel": "process", "runnableLevel": "runnable", "scheduleSect
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.7.1."""
     wrap_sub_models(models, notes)
-    change_runnable_items(models, notes, official)
     _change_attributes(models, notes, official)
+    change_runnable_items(models, notes, official)
     for found in models.rename_classes(_RENAMED_CLASSES):
         notes.renamed(found, f"instructions of the operating system -> {found.type}")
     for curve in models.nodes("arrivalCurveEntries"):
@@ -46,16 +48,17 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     _change_constraints(models, notes, official)
     for os_model in models.parts("osModel"):
         _change_buffering(os_model, notes, official)
-    _move_tags(models, notes)
+    _move_tags(models, notes, official)
     move_hardware(models, notes, official)
     _change_traced_events(models, notes, official)
 
 
 def _change_attributes(models: ModelSet, notes: Notes, official: bool) -> None:
     """Attributes that several classes have."""
-    for node in list(models.walk()):
+    for node in models.walk():
         attributes = node.attributes
-        if "buffered" in attributes:
+        # The official converter forgets the items of switches.
+        if "buffered" in attributes and not (official and node.tag == "items"):
             old = attributes.pop("buffered")
             attributes["dataStability"] = _STABILITY.get(old, old)
             notes.converted(node, "buffered -> dataStability", f"{old} -> {attributes['dataStability']}", "buffered")
@@ -120,15 +123,16 @@ def _change_buffering(os_model: Node, notes: Notes, official: bool) -> None:
         notes.lost(buffering, "level of osBuffering: data stability has only one", ", ".join(levels[1:]))
 
 
-def _move_tags(models: ModelSet, notes: Notes) -> None:
-    """Tags of all models are common elements; those of the same name in a file are one."""
+def _move_tags(models: ModelSet, notes: Notes, official: bool) -> None:
+    """Tags of all models are common elements; those of the same name in a file become one, except for the official converter."""
     replaced: dict[Node, Node] = {}
     for root in models.roots:
-        moved = [tag for model in ("swModel", "hwModel", "componentsModel") for tag in root.find(model, "tags")]
+        moved = [tag for model in root.all(*_MODELS_WITH_TAGS) for tag in model.all("tags")]
         if not moved:
             continue
         common = root.child_or_new("commonElements")
-        first = {tag.name: tag for tag in reversed([*common.all("tags"), *moved]) if tag.name}
+        known = [] if official else [*common.all("tags"), *moved]
+        first = {tag.name: tag for tag in reversed(known) if tag.name}
         for tag in moved:
             same = first.get(tag.name, tag)
             if same is tag:

@@ -29,6 +29,9 @@ def move_hardware(models: ModelSet, notes: Notes, official: bool) -> None:
             condition = part.parent
             if condition is None or condition.type != condition_class:
                 continue
+            if official and tag == "memory":
+                # The official converter makes a new memory, of which only the name is known.
+                _keep_name(part, notes)
             # For the official converter, what is inside of a moved core is not known by its name.
             meant = mover.move(part, new_tag, containers, not official)
             if meant is not None:
@@ -74,7 +77,7 @@ class _Mover:
             self.replace(node, known)
             return known
         self.notes.moved(node, f"{node.tag} of a property constraint -> {tag} of the hardware model", node.name)
-        holder = self.hardware_model(node)
+        holder = self.hardware_model()
         for container, name in containers:
             holder = _part(holder, container, name)
         self.moved.setdefault(holder, []).append(node)
@@ -96,10 +99,11 @@ class _Mover:
         else:
             self.notes.converted(node, message, node.name)
 
-    def hardware_model(self, node: Node) -> Node:
-        """The hardware model of the same file, else the first one, else a new one."""
-        models = node.root.all("hwModel") or self.models.parts("hwModel")
-        return models[0] if models else node.root.add("hwModel")
+    def hardware_model(self) -> Node:
+        """The first hardware model, else a new one in the first file, as with the official converter."""
+        roots = [tree.root for tree in sorted(self.models.active, key=lambda tree: tree.path)]
+        models = [model for root in roots for model in root.all("hwModel")]
+        return models[0] if models else roots[0].add("hwModel")
 
     def finish(self) -> None:
         """Move and remove all at once, and let nothing refer to what is removed."""
@@ -107,6 +111,16 @@ class _Mover:
             holder.take(nodes)
         remove_all(self.removed)
         relink(self.models, self.replaced)
+
+
+def _keep_name(node: Node, notes: Notes) -> None:
+    name = node.name
+    node.attributes.pop("name", None)
+    if content := content_of(node):
+        notes.lost(node, f"content of a {node.tag} of a property constraint", content)
+    node.attributes = {"name": name} if name else {}
+    node.references = {}
+    remove_all(list(node.children))
 
 
 def _part(holder: Node, tag: str, name: str) -> Node:

@@ -14,27 +14,30 @@ _INSTRUCTIONS = frozenset({"InstructionsConstant", "InstructionsDeviation"})
 
 def change_runnable_items(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change all items of runnables, however deep they are."""
-    for item in models.nodes(*_ITEMS):
-        if item.type == "Group":
-            _unwrap_items(item, notes, official)
-        elif item.type == "ProbabilityGroup":
+    items = models.nodes(*_ITEMS)
+    for item in items:
+        # The official converter forgets the items of switches.
+        if item.type in _INSTRUCTIONS and not (official and item.tag == "items"):
+            _wrap_instructions(item, notes, official)
+    for item in items:
+        if item.type == "ProbabilityGroup":
             _make_switch(item, notes)
-        elif item.type in _INSTRUCTIONS:
-            _wrap_instructions(item, notes)
+        elif item.type == "Group":
+            _unwrap_items(item, notes, official)
 
 
-def _wrap_instructions(item: Node, notes: Notes) -> None:
+def _wrap_instructions(item: Node, notes: Notes, official: bool) -> None:
     """The item stays, and what it said becomes a part of it."""
     default = Node("default", item.type, item.attributes, item.origin)
-    # Instructions are no objects with custom properties any more.
-    properties = item.all("customProperties")
-    content = [child for child in item.children if child.tag != "customProperties"]
     default.references = item.references
-    item.type, item.attributes, item.references, item.children = "RunnableInstructions", {}, {}, properties
-    for child in content:
-        child.parent = default
-    default.children = content
+    # Instructions have no custom properties any more; the official converter moves all parts, or none if they are constant.
+    if official:
+        moved = [] if item.type == "InstructionsConstant" else list(item.children)
+    else:
+        moved = [child for child in item.children if child.tag != "customProperties"]
+    default.take(moved)
     item.insert(default)
+    item.type, item.attributes, item.references = "RunnableInstructions", {}, {}
     notes.converted(item, f"{default.type} -> RunnableInstructions with default")
 
 

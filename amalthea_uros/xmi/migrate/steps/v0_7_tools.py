@@ -8,7 +8,7 @@ from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XSI_NAMESPACE
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.names import reference_text
-from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 
 #: Class of a sub-model that is the root of a file -> its element below the root of a model.
@@ -52,6 +52,18 @@ def keep_as_properties(holder: Node, properties: Iterable[tuple[str, str]]) -> N
     holder.children = [*holder.all("customProperties"), *added, *others]
 
 
+def remove_and_keep(nodes: Iterable[Node], version: str) -> None:
+    """Remove objects, and keep the text of each as a custom property of its container."""
+    removed = list(nodes)
+    kept: dict[Node, list[tuple[str, str]]] = {}
+    for node in removed:
+        if node.parent is not None:
+            kept.setdefault(node.parent, []).append((removed_key(node.type, version), xml_text(node)))
+    remove_all(removed)
+    for holder, properties in kept.items():
+        keep_as_properties(holder, properties)
+
+
 def removed_key(what: str, version: str) -> str:
     """The key of the custom property that keeps an element, as the official converter to 0.8.0 writes it for one of its cases."""
     return f"{what} (element removed during Migration of Model to {version} version)"
@@ -63,18 +75,23 @@ def xml_text(node: Node) -> str:
     holder = node.parent
     while holder is not None:
         depth, holder = depth + 1, holder.parent
-    return _xml_text(node, depth, f' xmlns:xsi="{XSI_NAMESPACE}"')
+    return _xml_text(node, node.root, depth, f' xmlns:xsi="{XSI_NAMESPACE}"')
 
 
-def _xml_text(node: Node, depth: int, declaration: str) -> str:
+def _xml_text(node: Node, root: Node, depth: int, declaration: str) -> str:
     texts = {"xsi:type": f"am:{node.type}"} if node.type else {}
     texts |= node.attributes
-    texts |= {name: " ".join(map(reference_text, targets)) for name, targets in node.references.items()}
+    parts = []
+    for name, targets in node.references.items():
+        if all(target.is_proxy or target.root is root for target in targets):
+            texts[name] = " ".join(map(reference_text, targets))
+        else:
+            parts += [f'<{name} href="amlt:/#{escape(reference_text(target))}" />' for target in targets]
+    parts += [_xml_text(child, root, depth + 1, "") for child in node.children]
     start = f"<{node.tag}{declaration}" + "".join(f' {name}="{escape(text)}"' for name, text in texts.items())
-    if not node.children:
+    if not parts:
         return start + " />"
-    inner = "".join(_line(depth + 1) + _xml_text(child, depth + 1, "") for child in node.children)
-    return f"{start}>{inner}{_line(depth)}</{node.tag}>"
+    return start + ">" + "".join(_line(depth + 1) + part for part in parts) + f"{_line(depth)}</{node.tag}>"
 
 
 def _line(depth: int) -> str:
