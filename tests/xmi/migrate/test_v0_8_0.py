@@ -181,8 +181,8 @@ def test_damaged_files_are_no_problem(up, official):
 
 def test_the_text_of_a_condition_names_hardware_of_other_files_as_files_do(up):
     result = up(
-        '<propertyConstraintsModel><mappingConstraints><hwConstraint t="HwMemoryProperty"><memory href="amlt:/#a+1?type=Memory"/></hwConstraint>'
-        "</mappingConstraints></propertyConstraintsModel>",
+        '<propertyConstraintsModel><mappingConstraints><hwConstraint t="HwMemoryProperty">'
+        '<memory href="amlt:/#a+1?type=Memory"/></hwConstraint></mappingConstraints></propertyConstraintsModel>',
         '<hwModel><system name="s"><memories name="a 1"/></system></hwModel>',
     )
     assert '<memory href="amlt:/#a+1?type=Memory" />' in result.text
