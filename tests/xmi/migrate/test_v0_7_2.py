@@ -23,6 +23,10 @@ def test_labels_from_itea_files_have_a_boolean(up):
     assert "labels dataStability='customProtection' name='a'" in result.lines
     assert "labels dataStability='noProtection' name='b'" in result.lines
     assert "labels dataStability='odd' name='c'" in result.lines
+    assert (
+        "labels dataStability='true' name='a'"
+        in up('<swModel><labels name="a" buffered="true"/></swModel>', official=True).lines
+    )
 
 
 @pytest.mark.parametrize(

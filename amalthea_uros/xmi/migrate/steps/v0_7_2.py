@@ -10,13 +10,10 @@ from amalthea_uros.xmi.migrate.steps.v0_7_2_hardware import move_hardware
 from amalthea_uros.xmi.migrate.steps.v0_7_2_runnables import change_runnable_items
 from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, names_of, relink, wrap_sub_models
 
-_STABILITY = {
-    "buffered": "customProtection",
-    "notBuffered": "noProtection",
-    # Files that came from ITEA versions have the boolean of those.
-    "true": "customProtection",
-    "false": "noProtection",
-}
+_STABILITY = {"buffered": "customProtection", "notBuffered": "noProtection"}
+
+#: Files that came from ITEA versions have the boolean of those, which the official converter keeps as it is.
+_STABILITY_OF_BOOLEANS = {"true": "customProtection", "false": "noProtection"}
 
 _RENAMED_CLASSES = {
     "OsExecutionInstructions": "Instructions",
@@ -55,12 +52,13 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
 
 def _change_attributes(models: ModelSet, notes: Notes, official: bool) -> None:
     """Attributes that several classes have."""
+    stability = _STABILITY if official else _STABILITY | _STABILITY_OF_BOOLEANS
     for node in models.walk():
         attributes = node.attributes
         # The official converter forgets the items of switches.
         if "buffered" in attributes and not (official and node.tag == "items"):
             old = attributes.pop("buffered")
-            attributes["dataStability"] = _STABILITY.get(old, old)
+            attributes["dataStability"] = stability.get(old, old)
             notes.converted(node, "buffered -> dataStability", f"{old} -> {attributes['dataStability']}", "buffered")
         if "initalValue" in attributes:
             attributes["initialValue"] = attributes.pop("initalValue")
