@@ -1,14 +1,125 @@
-"""0.7.2 -> 0.8.0."""
+"""0.7.2 -> 0.8.0: memory mapping, units, signed times, and property constraints."""
 
 from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.v0_7_tools import (
+    content_of,
+    keep_as_properties,
+    names_of,
+    removed_key,
+    wrap_sub_models,
+    xml_text,
+)
+
+_SIZE_UNITS = {"kibit": "Kibit", "byte": "B"}
+#: The official converter does not touch those.
+_RATE_UNITS = {"kibitPerSecond": "KibitPerSecond", "bytePerSecond": "BPerSecond"}
+
+_TIMES = {"SignedTime": "Time", "SignedTimeObject": "TimeObject"}
+
+#: Abstract classes; concrete ones keep their names.
+_RENAMED_CLASSES = {"AllocationConstraint": "CoreAllocationConstraint", "MappingConstraint": "MemoryMappingConstraint"}
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.7.2."""
+    wrap_sub_models(models, notes)
+    for mapping in models.parts("mappingModel", "mapping"):
+        if mapping.type in ("AbstractElementMapping", ""):
+            mapping.tag, mapping.type = "memoryMapping", ""
+            notes.renamed(mapping, "mapping -> memoryMapping")
+    _change_values(models, notes, official)
+    for label in models.nodes("modeLabels"):
+        _drop_mode(models, label, notes, official)
+    for os_model in models.parts("osModel"):
+        _distribute_consistency(os_model, notes)
+    for constraint in models.nodes("allocationConstraints", "mappingConstraints"):
+        _keep_hardware_constraint(constraint, notes)
+    for found in models.rename_classes(_RENAMED_CLASSES):
+        notes.renamed(found, f"abstract class -> {found.type}")
 
 
-STEP = Step("0.7.2", "0.8.0", change)
+def _change_values(models: ModelSet, notes: Notes, official: bool) -> None:
+    """Classes and units that occur in many places."""
+    units = _SIZE_UNITS if official else _SIZE_UNITS | _RATE_UNITS
+    for node in models.walk():
+        unit = node.attributes.get("unit", "")
+        if unit in units:
+            node.attributes["unit"] = units[unit]
+            notes.renamed(node, f"unit {unit} -> {units[unit]}", attribute="unit")
+        if node.type in _TIMES:
+            # The official converter knows only these two places.
+            if not official or node.enclosing("stimulusDeviation", "customProperties") is not None:
+                notes.renamed(node, f"{node.type} -> {_TIMES[node.type]}")
+                node.type = _TIMES[node.type]
+        elif node.type == "ProbabiltitySwitch" and not (official and node.enclosing("isrs") is not None):
+            # The official converter forgets interrupt service routines.
+            node.type = "ProbabilitySwitch"
+            notes.renamed(node, "ProbabiltitySwitch -> ProbabilitySwitch")
+
+
+def _drop_mode(models: ModelSet, label: Node, notes: Notes, official: bool) -> None:
+    """The mode of a mode label follows from its initial value."""
+    if text := label.attributes.pop("mode", ""):
+        notes.lost(label, "mode of a mode label that is no reference", text, "mode")
+    mode = label.references.pop("mode", None)
+    if mode is None:
+        return
+    if "initialValue" in label.references:
+        notes.converted(label, "mode of a mode label -> mode of its initial value", names_of(mode), "mode")
+    elif official:
+        notes.lost(label, "mode of a mode label without initial value", names_of(mode), "mode")
+    else:
+        models.set_aside[label, "mode"] = mode
+
+
+def _distribute_consistency(os_model: Node, notes: Notes) -> None:
+    """Every operating system says on its own how it keeps data consistent."""
+    systems = os_model.all("operatingSystems")
+    for consistency in os_model.all("osDataConsistency"):
+        consistency.remove()
+        for system in systems:
+            if system.child("osDataConsistency") is None:
+                system.insert(_copied(consistency))
+        if systems:
+            notes.moved(consistency, "osDataConsistency -> every operating system")
+        elif content := content_of(consistency):
+            notes.lost(consistency, "osDataConsistency: there is no operating system", content)
+
+
+def _copied(node: Node) -> Node:
+    made = Node(node.tag, node.type, dict(node.attributes), node.origin)
+    made.references = {name: list(targets) for name, targets in node.references.items()}
+    for child in node.children:
+        made.insert(_copied(child))
+    return made
+
+
+def _keep_hardware_constraint(constraint: Node, notes: Notes) -> None:
+    """Conditions for the hardware have no successor; the official converter keeps their text."""
+    conditions = constraint.all("hwConstraint")
+    if not conditions:
+        return
+    key = removed_key("hwConstraint", "0.8.0")
+    keep_as_properties(constraint, [(key, xml_text(condition)) for condition in conditions])
+    for condition in conditions:
+        notes.kept(condition, "condition for the hardware of a property constraint", condition.type)
+    remove_all(conditions)
+
+
+STEP = Step(
+    "0.7.2",
+    "0.8.0",
+    change,
+    frozenset(
+        {
+            *("hwConstraint", "mapping", "AbstractElementMapping", "ProbabiltitySwitch"),
+            *("HwCoreConjunction", "HwCoreProperty", "HwMemoryConjunction", "HwMemoryProperty"),
+            *_TIMES,
+        }
+    ),
+)

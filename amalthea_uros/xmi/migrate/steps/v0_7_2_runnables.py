@@ -1,0 +1,83 @@
+"""Items of runnables in 0.7.2: instructions, groups and probability groups."""
+
+from __future__ import annotations
+
+from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node, remove_all
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of
+
+_ITEMS = ("runnableItems", "runnableItem", "items")
+
+_INSTRUCTIONS = frozenset({"InstructionsConstant", "InstructionsDeviation"})
+
+
+def change_runnable_items(models: ModelSet, notes: Notes, official: bool) -> None:
+    """Change all items of runnables, however deep they are."""
+    items = models.nodes(*_ITEMS)
+    for item in items:
+        # The official converter forgets the items of switches.
+        if item.type in _INSTRUCTIONS and not (official and item.tag == "items"):
+            _wrap_instructions(item, notes, official)
+    for item in items:
+        if item.type == "ProbabilityGroup":
+            _make_switch(item, notes)
+        elif item.type == "Group":
+            _unwrap_items(item, notes, official)
+
+
+def _wrap_instructions(item: Node, notes: Notes, official: bool) -> None:
+    """The item stays, and what it said becomes a part of it."""
+    default = Node("default", item.type, item.attributes, item.origin)
+    default.references = item.references
+    # Instructions have no custom properties any more; the official converter moves all parts, or none if they are constant.
+    if official:
+        moved = [] if item.type == "InstructionsConstant" else list(item.children)
+    else:
+        moved = [child for child in item.children if child.tag != "customProperties"]
+    default.take(moved)
+    item.insert(default)
+    item.type, item.attributes, item.references = "RunnableInstructions", {}, {}
+    notes.converted(item, f"{default.type} -> RunnableInstructions with default")
+
+
+def _unwrap_items(group: Node, notes: Notes, official: bool) -> None:
+    """Items of groups without the deviation around each of them."""
+    children: list[Node] = []
+    wrappers = []
+    for child in group.children:
+        if child.tag != "items" or child.type:
+            children.append(child)
+            continue
+        wrappers.append(child)
+        children += _unwrapped(child, notes, official)
+    if wrappers:
+        remove_all(wrappers)
+        for child in children:
+            child.parent = group
+        group.children = children
+
+
+def _unwrapped(wrapper: Node, notes: Notes, official: bool) -> list[Node]:
+    items = wrapper.all("runnableItem")
+    properties = [] if official or not items else wrapper.all("customProperties")
+    remove_all([*items, *properties])
+    for found in properties:
+        found.parent = items[0]
+    if items:
+        items[0].children[:0] = properties
+    for item in items:
+        item.tag = "items"
+        notes.converted(item, "DeviationRunnableItem of a group -> the item itself")
+    if rest := ", ".join(filter(None, map(content_of, wrapper.children))):
+        notes.lost(wrapper, "deviation of an item of a group", rest)
+    return items
+
+
+def _make_switch(group: Node, notes: Notes) -> None:
+    group.type = "RunnableProbabilitySwitch"
+    notes.converted(group, "ProbabilityGroup -> RunnableProbabilitySwitch")
+    for entry in group.all("items"):
+        entry.tag = "entries"
+        for item in entry.all("runnableItem"):
+            item.tag = "items"
