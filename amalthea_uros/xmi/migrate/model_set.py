@@ -83,12 +83,15 @@ class ModelSet:
     trees : the files
     origins : where everything comes from
     proxies : what stands for objects to which the files refer, but which no file contains
+    stated : text of a reference to an object, where it was its position or, in ITEA versions, lacked the package of the class:
+        such references are what official converters lose
     """
 
     def __init__(self, trees: list[Tree], origins: Origins) -> None:
         self.trees = trees
         self.origins = origins
         self.proxies: list[Node] = []
+        self.stated: dict[Node, str] = {}
         self._by_tag: dict[str, list[Node]] | None = None
         self._active: list[Tree] = trees
 

@@ -19,11 +19,17 @@ _new = object.__new__
 
 
 class Href(NamedTuple):
-    """A reference as an element: `<task href="amlt:/#T?type=Task"/>`."""
+    """A reference as an element: `<task href="amlt:/#T?type=Task"/>`.
+
+    Attributes
+    ----------
+    type : class of the target that `xsi:type` states, "" if it states none
+    """
 
     holder: Node
     tag: str
     text: str
+    type: str
 
 
 @dataclass
@@ -67,7 +73,6 @@ class _Parser:
         self.ids: dict[str, Node] = {}
         self.packages: dict[str, str] = {}
         self.xsi_type, self.xmi_id = "xsi:type", "xmi:id"
-        self.special: tuple[str, ...] = ()
         self.comments: list[str] = []
         self.prolog: list[str] = []
 
@@ -106,10 +111,9 @@ class _Parser:
         self.xsi_type = f"{by_namespace.get(XSI_NAMESPACE, 'xsi')}:type"
         xmi = by_namespace.get(XMI_NAMESPACE, "xmi")
         self.xmi_id = f"{xmi}:id"
-        self.special = (self.xsi_type, self.xmi_id)
         prefix, _, tag = name.rpartition(":")
         self.version = namespace_version(prefixes.get(prefix, ""))
-        self.packages = {prefix + ":": package + ":" for prefix, uri in prefixes.items() if (package := itea_package(uri))}
+        self.declare_packages(attributes)
         own = {key: text for key, text in attributes.items() if not key.startswith(("xmlns", f"{xmi}:version", f"{prefix}:"))}
         self.prolog, self.comments = self.comments, []
         self.expat.StartElementHandler = self.start
@@ -121,7 +125,7 @@ class _Parser:
             self.skip(tag, parent)
             return
         if "href" in attributes:
-            self.hrefs.append(Href(parent, tag, attributes["href"]))
+            self.hrefs.append(Href(parent, tag, attributes["href"], self.type_of(attributes.get(self.xsi_type, ""))))
             self.stack.append(None)
             return
         node = self.open(tag, attributes, parent)
@@ -142,25 +146,37 @@ class _Parser:
         origins.ends.append(0)
         origins.parents.append(-1 if parent is None else parent.origin)
         origins.labels.append((tag, attributes.get("name", "")))
-        for special in self.special:
-            if special in attributes:
-                self.take_special(node, special)
+        marked = [key for key in attributes if ":" in key]
+        if marked:
+            self.take_marked(node, marked)
         if self.comments:
             node.comments, self.comments = self.comments, []
         self.stack.append(node)
-        for key in [key for key in attributes if ":" in key]:
-            if not key.startswith("xmlns:"):
-                self.notes.lost(node, "attribute of another namespace", f"{key}={attributes[key]!r}", key)
-            del attributes[key]
         return node
 
-    def take_special(self, node: Node, special: str) -> None:
-        text = node.attributes.pop(special)
-        if special == self.xmi_id:
-            self.ids.setdefault(text, node)
-            return
+    def take_marked(self, node: Node, keys: list[str]) -> None:
+        """Take the attributes with a prefix away from a node; nothing of a model has one."""
+        attributes = node.attributes
+        self.declare_packages(attributes)
+        for key in keys:
+            text = attributes.pop(key)
+            if key == self.xsi_type:
+                node.type = self.type_of(text)
+            elif key == self.xmi_id:
+                self.ids.setdefault(text, node)
+            elif not key.startswith("xmlns:"):
+                self.notes.lost(node, "attribute of another namespace", f"{key}={text!r}", key)
+
+    def declare_packages(self, attributes: dict[str, str]) -> None:
+        """Note the sub-models of ITEA versions that some of the attributes declare as namespaces."""
+        for key, uri in attributes.items():
+            if key.startswith("xmlns:") and (package := itea_package(uri)):
+                self.packages[key.partition(":")[2] + ":"] = package + ":"
+
+    def type_of(self, text: str) -> str:
+        """The class that an `xsi:type` states, in ITEA versions with its package."""
         prefix, mark, name = text.rpartition(":")
-        node.type = self.packages.get(prefix + mark, "") + name
+        return self.packages.get(prefix + mark, "") + name
 
     def skip(self, tag: str, parent: Node | None) -> None:
         """An element that is no part of a model: of another namespace, or inside a reference."""
