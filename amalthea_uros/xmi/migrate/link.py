@@ -63,8 +63,9 @@ class _Linker:
         self.by_name: dict[str, list[Node]] = {}
         self.siblings: dict[tuple[Node, str], list[Node]] = {}
         nameless: list[Node] = []
-        for one in parsed:
-            for node in one.tree.root.walk():
+        self.nodes = {one.tree.root: list(one.tree.root.walk()) for one in parsed}
+        for nodes in self.nodes.values():
+            for node in nodes:
                 name = node.attributes.get("name")
                 if name:
                     self.by_name.setdefault(name, []).append(node)
@@ -79,8 +80,8 @@ class _Linker:
 
     def link(self, one: Parsed) -> None:
         """Link the references of one file."""
-        root, ids = one.tree.root, one.ids
-        for node in root.walk():
+        ids = one.ids
+        for node in self.nodes.pop(one.tree.root):
             attributes = node.attributes
             linked: list[str] | None = None
             for key, text in attributes.items():

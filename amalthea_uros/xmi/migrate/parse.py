@@ -72,6 +72,7 @@ class _Parser:
         self.hrefs: list[Href] = []
         self.ids: dict[str, Node] = {}
         self.packages: dict[str, str] = {}
+        self.types: dict[str, str] = {}
         self.xsi_type, self.xmi_id = "xsi:type", "xmi:id"
         self.comments: list[str] = []
         self.prolog: list[str] = []
@@ -157,26 +158,31 @@ class _Parser:
     def take_marked(self, node: Node, keys: list[str]) -> None:
         """Take the attributes with a prefix away from a node; nothing of a model has one."""
         attributes = node.attributes
-        self.declare_packages(attributes)
+        declared = {key: attributes.pop(key) for key in keys if key.startswith("xmlns:")}
+        if declared:
+            self.declare_packages(declared)
         for key in keys:
-            text = attributes.pop(key)
-            if key == self.xsi_type:
-                node.type = self.type_of(text)
-            elif key == self.xmi_id:
-                self.ids.setdefault(text, node)
-            elif not key.startswith("xmlns:"):
-                self.notes.lost(node, "attribute of another namespace", f"{key}={text!r}", key)
+            if key == self.xmi_id:
+                self.ids.setdefault(attributes.pop(key), node)
+            elif key == self.xsi_type:
+                node.type = self.type_of(attributes.pop(key))
+            elif key not in declared:
+                self.notes.lost(node, "attribute of another namespace", f"{key}={attributes.pop(key)!r}", key)
 
     def declare_packages(self, attributes: dict[str, str]) -> None:
         """Note the sub-models of ITEA versions that some of the attributes declare as namespaces."""
         for key, uri in attributes.items():
             if key.startswith("xmlns:") and (package := itea_package(uri)):
                 self.packages[key.partition(":")[2] + ":"] = package + ":"
+                self.types.clear()
 
     def type_of(self, text: str) -> str:
         """The class that an `xsi:type` states, in ITEA versions with its package."""
-        prefix, mark, name = text.rpartition(":")
-        return self.packages.get(prefix + mark, "") + name
+        known = self.types.get(text)
+        if known is None:
+            prefix, mark, name = text.rpartition(":")
+            known = self.types[text] = self.packages.get(prefix + mark, "") + name
+        return known
 
     def skip(self, tag: str, parent: Node | None) -> None:
         """An element that is no part of a model: of another namespace, or inside a reference."""

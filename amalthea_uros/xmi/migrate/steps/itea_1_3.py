@@ -11,7 +11,6 @@ from amalthea_uros.xmi.migrate.steps.itea_defaults import write_defaults
 from amalthea_uros.xmi.migrate.steps.itea_modes import convert_label_values
 from amalthea_uros.xmi.migrate.steps.itea_tools import (
     SUB_MODELS,
-    add_property,
     by_root,
     lose_positions,
     sub_model_or_new,
@@ -46,7 +45,9 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     convert_label_values(models, notes, official)
     _convert_deadlines(models, notes, official)
     for label in models.nodes("labels"):
-        _take_initial_value(label, notes, official)
+        value = label.attributes.pop("initialValue", None)
+        if value is not None:
+            notes.lost(label, "initial value of a label", f"{label.name}: {value}", "initialValue")
 
 
 def _rename_attributes(models: ModelSet, notes: Notes, official: bool) -> None:
@@ -92,10 +93,7 @@ def _convert_deadlines(models: ModelSet, notes: Notes, official: bool) -> None:
         for process in processes:
             deadlines = process.all("deadline")
             for deadline in deadlines[:1] if official else deadlines:
-                if official or "value" in deadline.attributes:
-                    _require(sub_model_or_new(trees[root], "constraintsModel"), process, deadline, notes)
-                else:
-                    notes.lost(deadline, "deadline without value")
+                _require(sub_model_or_new(trees[root], "constraintsModel"), process, deadline, notes)
             remove_all(deadlines[:1] if official else deadlines)
 
 
@@ -105,20 +103,10 @@ def _require(model: Node, process: Node, deadline: Node, notes: Notes) -> None:
     requirement.attributes["severity"] = "Cosmetic"
     requirement.refer("process", process)
     limit = requirement.add("limit", "constraints:TimeRequirementLimit", limitType="UpperLimit", metric="ResponseTime")
+    # A time without value was 0.
     value, unit = deadline.get("value", "0"), deadline.get("unit", "ps")
     limit.add("limitValue", value=value, unit=unit)
     notes.converted(deadline, "deadline: requirement for the response time", f"{process.name}: {value} {unit}")
-
-
-def _take_initial_value(label: Node, notes: Notes, official: bool) -> None:
-    value = label.attributes.pop("initialValue", None)
-    if value is None:
-        return
-    if official:
-        notes.lost(label, "initial value of a label", f"{label.name}: {value}", "initialValue")
-        return
-    add_property(label, "initialValue", "common:StringObject", value)
-    notes.kept(label, "initial value of a label: custom property 'initialValue'", f"{label.name}: {value}", "initialValue")
 
 
 STEP = Step(

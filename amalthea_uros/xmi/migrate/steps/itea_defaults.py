@@ -42,7 +42,6 @@ _DEFAULTS: dict[str, tuple[tuple[str, str, str], ...]] = {
     "runnableItems": _ITEMS,
     "runnableSequencingConstraints": (("", "orderType", "successor"),),
     "secondConstraint": _EQUAL,
-    "tasks": (("", "preemption", "cooperative"),),
     "Bus": (("", "busType", "CAN"),),
     "ComplexPin": (("", "direction", "R"), ("", "type", "ANALOG")),
     "ComplexPort": (("", "direction", "R"),),
@@ -96,6 +95,7 @@ def write_defaults(models: ModelSet, notes: Notes, official: bool) -> None:
             for class_name, attribute, value in rules:
                 if not class_name or local_name(node.type) == class_name:
                     _write(node, attribute, value, notes)
+    _write_preemption(models, notes)
     for tag, containers in (_TIMES if official else _TIMES | _MORE_TIMES).items():
         for node in models.nodes(tag):
             if _is_in(node, containers):
@@ -112,10 +112,18 @@ def _is_overlooked(node: Node) -> bool:
     holder = node.parent
     if node.tag == "runnableGroups" and holder is not None:
         holder = holder.parent
-    if node.tag in ("runnableGroups", "runnableSequencingConstraints"):
-        return holder is None or holder.tag != "constraintsModel"
-    # In files that hold nothing but the software model, it overlooks the tasks.
-    return node.tag == "tasks" and (holder is None or holder.tag != "swModel")
+    return node.tag in ("runnableGroups", "runnableSequencingConstraints") and (
+        holder is None or holder.tag != "constraintsModel"
+    )
+
+
+def _write_preemption(models: ModelSet, notes: Notes) -> None:
+    for task in models.nodes("tasks"):
+        if task.parent is not None and task.parent.tag == "swModel":
+            _write(task, "preemption", "cooperative", notes)
+        elif "preemption" not in task.attributes:
+            # The published conversions leave it unstated in files that hold nothing but the software model.
+            notes.lost(task, "preemption of a task: 'cooperative' was the default, and the file does not state it", task.name)
 
 
 def _is_in(node: Node, containers: dict[str, tuple[str, ...]]) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.metamodel.naming import TYPE_MARK
 from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_hardware import convert_values
@@ -117,15 +117,17 @@ def _split_allocation(allocation: Node, notes: Notes, official: bool) -> None:
     for old, name in renamed.items():
         allocation.rename(old, name)
     notes.renamed(allocation, f"processAllocation is {allocation.tag}")
-    if official:
-        _keep_references_only(allocation, notes)
+    _keep_references(allocation, notes, official)
 
 
-def _keep_references_only(allocation: Node, notes: Notes) -> None:
-    """Do as the official converter, which makes a new element for the two references."""
-    for part in list(allocation.children):
+def _keep_references(allocation: Node, notes: Notes, official: bool) -> None:
+    """Leave away what conversions leave away: custom properties; the official one all but the two references."""
+    lost = list(allocation.children) if official else allocation.all("customProperties")
+    for part in lost:
         notes.lost(part, f"{part.tag} of an allocation", part.get("key"))
-        part.remove()
+    remove_all(lost)
+    if not official:
+        return
     for name, text in allocation.attributes.items():
         notes.lost(allocation, "attribute of an allocation", f"{name}={text}", name)
     allocation.attributes.clear()
