@@ -200,8 +200,10 @@ class _Parser:
                 self.comments = []
 
     def characters(self, data: str) -> None:
+        if data.isspace():
+            return
         holder = next((node for node in reversed(self.stack) if node is not None), None)
-        if holder is not None and not data.isspace():
+        if holder is not None:
             self.notes.lost(holder, "text between the elements", repr(data.strip()[:30]))
 
     def refuse_doctype(self, *_declaration: Any) -> None:
