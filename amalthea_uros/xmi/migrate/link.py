@@ -94,26 +94,29 @@ class _Linker:
             for key in linked or ():
                 del attributes[key]
         for href in one.hrefs:
-            target = self.elsewhere(one, href.text) or self.outside(href)
+            target = self.elsewhere(one, href.text) or self.outside(one, href)
             href.holder.refer(href.tag, target)
 
     def elsewhere(self, one: Parsed, href: str) -> Node | None:
         """The object that an `href` names."""
         fragment = href.rpartition("#")[2]
-        file = file_of(href)
-        if not file:
-            return self.target(one, fragment)
-        named = self.by_path.get(_normal(one.tree.path.parent / file))
+        named = self.file_at(one, href) if file_of(href) else one
         if named is not None:
             return self.target(named, fragment)
         # The file was renamed or is not here; such an id is unique wherever it is.
         return self.ids.get(fragment) if _UUID(fragment) else None
 
-    def outside(self, href: Href) -> Node:
+    def file_at(self, one: Parsed, href: str) -> Parsed | None:
+        """The file that an `href` names, if it belongs to the set."""
+        return self.by_path.get(_normal(one.tree.path.parent / file_of(href)))
+
+    def outside(self, one: Parsed, href: Href) -> Node:
         """What stands for the target of an `href` that is in no file."""
         file, _, fragment = href.text.rpartition("#")
-        is_model = not file or ":" in file or _SUFFIX in file.rpartition("/")[2]
-        made = self.proxy(fragment if is_model else href.text)
+        is_outside = bool(file_of(href.text)) and self.file_at(one, href.text) is None
+        # Names and ids are unique whatever the file is; positions are not, and other models have rules of their own.
+        is_local = is_outside and (fragment.startswith("/") or _SUFFIX not in file.rpartition("/")[2])
+        made = self.proxy(href.text if is_local else fragment)
         if href.type:
             # Evidence for steps, no part of the reference.
             made.attributes.setdefault("class", href.type)

@@ -102,6 +102,7 @@ def _require(model: Node, process: Node, deadline: Node, notes: Notes) -> None:
     requirement.attributes |= {"name": process.name} if "name" in process.attributes else {}
     requirement.attributes["severity"] = "Cosmetic"
     requirement.refer("process", process)
+    requirement.comments = deadline.comments
     limit = requirement.add("limit", "constraints:TimeRequirementLimit", limitType="UpperLimit", metric="ResponseTime")
     # A time without value was 0.
     value, unit = deadline.get("value", "0"), deadline.get("unit", "ps")

@@ -37,7 +37,8 @@ def convert_values(models: ModelSet, notes: Notes, official: bool) -> None:
             if local_name(value.type) == "CharValue" and text is not None:
                 text = _character(text, value, notes)
             value_class = _VALUES.get(local_name(value.type), "StringObject")
-            add_property(holder, key, f"common:{value_class}", text, like=value)
+            made = add_property(holder, key, f"common:{value_class}", text, like=value)
+            made.comments = value.comments
             notes.kept(value, f"{tag} of a hardware node: custom property", f"{key}={text}")
             converted.append(value)
     remove_all(converted)
