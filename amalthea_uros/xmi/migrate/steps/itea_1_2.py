@@ -7,7 +7,7 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
-from amalthea_uros.xmi.migrate.steps.itea_tools import sub_models
+from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr, sub_models
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
@@ -85,7 +85,7 @@ class _Allocations:
         process, scheduler = allocation.target("process"), allocation.target("scheduler")
         if self.official and _is_unresolved(process, scheduler):
             return
-        if process is not None and _is_isr(process):
+        if process is not None and is_isr(process):
             allocation.type = "mapping:ISRAllocation"
             self.notes.converted(allocation, "allocation of a process is one of an ISR", process.name)
             if scheduler is not None:
@@ -106,7 +106,8 @@ class _Allocations:
         system = scheduler.parent
         if scheduler.is_proxy or system is None:
             allocation.references.pop("scheduler", None)
-            self.notes.lost(allocation, "scheduler of an ISR: it is in no file, and ISRs have interrupt controllers now")
+            message = "scheduler of an ISR: it is in no file, and ISRs have interrupt controllers now"
+            self.notes.lost(allocation, message, scheduler.get("path"), "scheduler")
             return
         controller = self.controllers.get(system)
         if controller is None:
@@ -122,10 +123,6 @@ class _Allocations:
             f"{scheduler.name} -> {controller.name}",
             "scheduler",
         )
-
-
-def _is_isr(process: Node) -> bool:
-    return process.tag == "isrs" or local_name(process.type or process.get("class")) == "ISR"
 
 
 def _is_unresolved(process: Node | None, scheduler: Node | None) -> bool:

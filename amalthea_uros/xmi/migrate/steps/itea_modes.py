@@ -80,15 +80,14 @@ class _Converter:
 
     def mode_label(self, label: Node, source: Node) -> Node:
         """The mode label of the name of a label; the label stays, because others may access it."""
-        if label.tag != "labels":
+        holder = label.parent
+        if label.tag != "labels" or holder is None:
             if label.is_proxy:
                 self.notes.lost(source, "mode label of a label that is in no file", label.get("path"))
             return label
         key = (source if self.official else None, label)
         found = self.made.get(key) or (self.known.get((label.root, label.name)) if label.name else None)
         if found is None:
-            holder = label.parent
-            assert holder is not None  # no root has that tag
             found = holder.add("modeLabels", like=label)
             found.attributes |= {"name": label.name} if "name" in label.attributes else {}
             found.target_class = "sw:ModeLabel"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
 from amalthea_uros.xmi.migrate.node import Node, proxy
 
@@ -40,6 +41,11 @@ def sub_model_or_new(tree: Tree, tag: str) -> Node:
         root.tag = SUB_MODELS[root.tag]
         tree.root.insert(root)
     return tree.root.child_or_new(tag)
+
+
+def is_isr(process: Node) -> bool:
+    """Whether a process is an ISR, as far as that is known of one that is in no file."""
+    return process.tag == "isrs" or local_name(process.type or process.get("class")) == "ISR"
 
 
 def add_property(holder: Node, key: str, value_class: str, value: str | None, like: Node | None = None) -> Node:

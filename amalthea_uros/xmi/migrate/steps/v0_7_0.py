@@ -9,7 +9,7 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_hardware import convert_values
-from amalthea_uros.xmi.migrate.steps.itea_tools import add_property, lose_positions
+from amalthea_uros.xmi.migrate.steps.itea_tools import add_property, is_isr, lose_positions
 
 #: Classes that did not only lose their package.
 _CLASSES = {
@@ -111,7 +111,7 @@ def _split_allocation(allocation: Node, notes: Notes, official: bool) -> None:
         if official:
             return
         process = allocation.target("process")
-        known = _ISR_ALLOCATION if process is not None and process.tag == "isrs" else _TASK_ALLOCATION
+        known = _ISR_ALLOCATION if process is not None and is_isr(process) else _TASK_ALLOCATION
     allocation.tag, renamed = known
     allocation.type = ""
     for old, name in renamed.items():
