@@ -189,8 +189,8 @@ class _Linker:
     def at(self, root: Node, text: str) -> Node | None:
         """The object at a position such as `//@swModel/@tasks.0`."""
         node = root
-        steps = text.strip("/")
-        for step in steps.split("/") if steps not in ("", "0") else ():
+        # The first step is the root: nothing, or its number.
+        for step in filter(None, text.strip("/").removeprefix("0").split("/")):
             match = _STEP(step)
             if match is None:
                 return None
