@@ -321,6 +321,15 @@ def test_a_stimuli_file_puts_its_mode_where_the_labels_are(tmp_path):
     assert all(entry.target("value").parent is mode for entry in all_of(models, "entries"))
 
 
+def test_a_model_without_software_gets_a_software_model_for_its_mode(tmp_path):
+    models, _ = step(
+        tmp_path,
+        a__amxmi=f"<stimuliModel>{STIMULUS.format('')}</stimuliModel>",
+        b__amxmi='<swModel><labels xmi:id="_l" name="L"/></swModel>',
+    )
+    assert [mode.root for mode in all_of(models, "modes")] == [models.trees[0].root]
+
+
 def test_officially_a_stimuli_file_without_software_model_keeps_the_values(tmp_path):
     models, _ = split_stimuli(tmp_path, official=True)
     assert all_of(models, "modes") == []

@@ -132,12 +132,12 @@ class _Converter:
             entry.refer("value", literal)
 
     def model_for(self, tree: Tree, entries: Sequence[Node], reference: str) -> Node | None:
-        """The software model that the mode of a file belongs to: its own; or else that of the labels, or a new one."""
+        """The software model that the mode of a file belongs to: its own; a new one, or that of the labels if the file has no place."""
         own = tree.root if tree.root.tag == "SWModel" else tree.root.child("swModel")
         if own is not None or self.official:
             # Without one, the official converter leaves the values as they are.
             return own
-        for entry in entries:
+        for entry in entries if tree.root.tag in SUB_MODELS else ():
             label = entry.target(reference)
             if (
                 label is not None
