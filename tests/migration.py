@@ -27,11 +27,17 @@ def meaning(models):
     """The whole set as lines."""
     places = {}
     for tree in models.trees:
-        number_places(tree.root, tree.path.name if len(models.trees) > 1 else "", places)
+        number_places(tree.root, file_name(tree) if len(models.trees) > 1 else "", places)
     lines = []
     for tree in sorted(models.trees, key=lambda tree: tree.path.name):
         lines += [f"== {tree.version}", *described(tree.root, "", places)]
     return lines
+
+
+def file_name(tree):
+    """The name of a file without what it gets when a sub-model of an ITEA version is written in a later one."""
+    name = tree.path.name
+    return name.removesuffix(".amxmi") if ".amxmi-" in name else name
 
 
 def number_places(node, path, places):

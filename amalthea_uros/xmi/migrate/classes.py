@@ -84,6 +84,11 @@ def may_be(node: Node, class_name: str) -> bool:
     return known is None or class_name in known
 
 
+def is_of(node: Node, class_name: str) -> bool:
+    """Whether a node is known to be of a class (without package)."""
+    return local_name(node.type) == class_name if node.type else class_name in _CLASSES.get(node.tag, ())
+
+
 def class_of(node: Node) -> str:
     """The class by which references name an object, in ITEA versions with its package where that is known."""
     if node.type:

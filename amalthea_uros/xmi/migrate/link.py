@@ -8,18 +8,26 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from pathlib import Path
 from urllib.parse import unquote, unquote_plus
 
-from amalthea_uros.metamodel.naming import TYPE_MARK
-from amalthea_uros.xmi.migrate.classes import local_name, may_be
+from amalthea_uros.metamodel.naming import NO_NAME, TYPE_MARK
+from amalthea_uros.xmi.migrate.classes import is_of, local_name, may_be
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Origins
 from amalthea_uros.xmi.migrate.node import Node, proxy
 from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.parse import Parsed
+from amalthea_uros.xmi.migrate.parse import Href, Parsed
+from amalthea_uros.xmi.migrate.versions import ITEA
 
 #: Attributes that are text in all classes of all versions, whatever they look like.
 _TEXT = frozenset({"name", "description", "displayName", "abbreviation", "xmlPrefix"})
+
+#: Attributes `value` that are text, by the class of their object: custom properties and, in ITEA versions, hardware attributes.
+_TEXT_VALUES = frozenset({"StringObject", "StrValue", "CharValue", "FeatureTypes"})
+
+#: What the suffixes of model files begin with: `.amxmi`, in ITEA versions also `.amxmi-sw` and the like.
+_SUFFIX = ".amxmi"
 
 #: What references by id or position start with.
 _STARTS = ("_", "/", "#")
@@ -54,10 +62,17 @@ class _Linker:
                 self.ids.setdefault(text, node)
         self.by_name: dict[str, list[Node]] = {}
         self.siblings: dict[tuple[Node, str], list[Node]] = {}
-        for one in parsed:
-            for node in one.tree.root.walk():
-                if "name" in node.attributes:
-                    self.by_name.setdefault(node.attributes["name"], []).append(node)
+        nameless: list[Node] = []
+        self.nodes = {one.tree.root: list(one.tree.root.walk()) for one in parsed}
+        for nodes in self.nodes.values():
+            for node in nodes:
+                name = node.attributes.get("name")
+                if name:
+                    self.by_name.setdefault(name, []).append(node)
+                else:
+                    nameless.append(node)
+        self.nameless = nameless
+        self.nameless_of: dict[str, list[Node]] = {}
         self.proxies: dict[str, Node] = {}
         self.found: dict[tuple[str, Node], Node] = {}
         #: Targets that were not found by their names, and which therefore may share them with others.
@@ -65,23 +80,47 @@ class _Linker:
 
     def link(self, one: Parsed) -> None:
         """Link the references of one file."""
-        root, ids = one.tree.root, one.ids
-        for node in root.walk():
+        # Ids are mostly UUIDs, which can be told by their first character.
+        other_ids = {text for text in one.ids if text[:1] not in _STARTS and TYPE_MARK not in text}
+        for node in self.nodes.pop(one.tree.root):
             attributes = node.attributes
             linked: list[str] | None = None
             for key, text in attributes.items():
-                if TYPE_MARK in text or text[:1] in _STARTS or (ids and text.partition(" ")[0] in ids):
+                if text[:1] in _STARTS or TYPE_MARK in text or (other_ids and text.partition(" ")[0] in other_ids):
                     targets = None if key in _TEXT or _is_text_value(node, key) else self.targets(one, text.split())
                     if targets:
                         node.references[key] = targets
                         linked = [*(linked or ()), key]
             for key in linked or ():
                 del attributes[key]
-        for holder, tag, text in one.hrefs:
-            file, _, fragment = text.rpartition("#")
-            elsewhere = self.by_path.get(_normal(one.tree.path.parent / unquote(file))) if file_of(text) else one
-            target = self.target(elsewhere, fragment) if elsewhere else None
-            holder.refer(tag, target or self.proxy(fragment))
+        for href in one.hrefs:
+            target = self.elsewhere(one, href.text) or self.outside(one, href)
+            href.holder.refer(href.tag, target)
+
+    def elsewhere(self, one: Parsed, href: str) -> Node | None:
+        """The object that an `href` names."""
+        fragment = href.rpartition("#")[2]
+        named = self.file_at(one, href) if file_of(href) else one
+        if named is not None:
+            return self.target(named, fragment)
+        # The file was renamed or is not here; such an id is unique wherever it is.
+        return self.ids.get(fragment) if _UUID(fragment) else None
+
+    def file_at(self, one: Parsed, href: str) -> Parsed | None:
+        """The file that an `href` names, if it belongs to the set."""
+        return self.by_path.get(_normal(one.tree.path.parent / file_of(href)))
+
+    def outside(self, one: Parsed, href: Href) -> Node:
+        """What stands for the target of an `href` that is in no file."""
+        file, _, fragment = href.text.rpartition("#")
+        is_outside = bool(file_of(href.text)) and self.file_at(one, href.text) is None
+        # Names and ids are unique whatever the file is; positions are not, and other models have rules of their own.
+        is_local = is_outside and (fragment.startswith("/") or _SUFFIX not in file.rpartition("/")[2])
+        made = self.proxy(href.text if is_local else fragment)
+        if href.type:
+            # Evidence for steps, no part of the reference.
+            made.attributes.setdefault("class", href.type)
+        return made
 
     def targets(self, one: Parsed, texts: list[str]) -> list[Node] | None:
         """The objects that the texts name; None if this is no reference."""
@@ -126,7 +165,7 @@ class _Linker:
         segments = [unquote_plus(segment) for segment in path.split("/")]
         # The converters to 0.9.0 encoded some names twice.
         for read in (segments, list(map(unquote_plus, segments))):
-            fitting = [n for n in self.by_name.get(read[-1], ()) if may_be(n, local_name(class_name))]
+            fitting = self.fitting(read[-1], local_name(class_name))
             if len(read) > 1:
                 fitting = [n for n in fitting if not _is_of_another(n, read[-2])]
             if len(fitting) > 1 and len(read) > 1:
@@ -135,13 +174,25 @@ class _Linker:
                 found = fitting[0] if len(fitting) == 1 else next((n for n in fitting if n.root is one.tree.root), fitting[0])
                 if not found.type:
                     found.target_class = class_name
+                if ":" not in class_name and one.tree.version in ITEA:
+                    self.models.stated[found] = text
                 return found
         return None
+
+    def fitting(self, name: str, class_name: str) -> list[Node]:
+        """The objects of a name that a reference to such a class can mean."""
+        found = [node for node in self.by_name.get(name, ()) if may_be(node, class_name)]
+        if found or name != NO_NAME:
+            return found
+        if class_name not in self.nameless_of:
+            self.nameless_of[class_name] = [node for node in self.nameless if is_of(node, class_name)]
+        return self.nameless_of[class_name]
 
     def at(self, root: Node, text: str) -> Node | None:
         """The object at a position such as `//@swModel/@tasks.0`."""
         node = root
-        for step in text.strip("/").split("/") if text.strip("/") else ():
+        # The first step is the root: nothing, or its number.
+        for step in filter(None, text.strip("/").removeprefix("0").split("/")):
             match = _STEP(step)
             if match is None:
                 return None
@@ -153,6 +204,7 @@ class _Linker:
                 return None
             node = siblings[place]
         self.by_identity[node] = None
+        self.models.stated[node] = text
         return node
 
     def proxy(self, text: str) -> Node:
@@ -166,14 +218,21 @@ class _Linker:
 
     def make_unique(self, notes: Notes) -> None:
         """Give names of their own to objects to which references were not by name, where the name does not tell them from others."""
+        alike: dict[tuple[str, str, str], list[Node]] = {}
+        for node in chain(chain.from_iterable(self.by_name.values()), self.nameless):
+            alike.setdefault((node.name, node.tag, node.type), []).append(node)
+        numbers: dict[str, int] = {}
         for node in self.by_identity:
-            same = [n for n in self.by_name.get(node.name, ()) if n.tag == node.tag and n.type == node.type]
+            same = alike.get((node.name, node.tag, node.type), ())
             if len(same) < 2 or same[0] is node or (node.parent is not None and _is_qualified(node)):
                 continue
-            number = 2
-            while f"{node.name}_{number}" in self.by_name:
+            old = node.name
+            base = old or NO_NAME
+            number = numbers.get(base, 2)
+            while f"{base}_{number}" in self.by_name:
                 number += 1
-            old, node.attributes["name"] = node.name, f"{node.name}_{number}"
+            numbers[base] = number + 1
+            node.attributes["name"] = f"{base}_{number}"
             self.by_name[node.name] = [node]
             notes.renamed(node, "made unique: references were by id, and are by name now", f"{old} -> {node.name}", "name")
 
@@ -189,7 +248,7 @@ def _is_of_another(node: Node, holder: str) -> bool:
 
 def _is_text_value(node: Node, key: str) -> bool:
     """Whether an attribute is the text of a custom property."""
-    return (key == "key" and node.tag == "customProperties") or (key == "value" and local_name(node.type) == "StringObject")
+    return (key == "key" and node.tag == "customProperties") or (key == "value" and local_name(node.type) in _TEXT_VALUES)
 
 
 def _normal(path: Path) -> Path:

@@ -85,6 +85,8 @@ class ModelSet:
     proxies : what stands for objects to which the files refer, but which no file contains
     set_aside : targets of references that the versions in between cannot express, by object and name; the step to the version that
         can do so again takes them back (`pop`), and what is left in the end is lost
+    stated : text of a reference to an object, where it was its position or, in ITEA versions, lacked the package of the class:
+        such references are what official converters lose
     """
 
     def __init__(self, trees: list[Tree], origins: Origins) -> None:
@@ -92,6 +94,7 @@ class ModelSet:
         self.origins = origins
         self.proxies: list[Node] = []
         self.set_aside: dict[tuple[Node, str], list[Node]] = {}
+        self.stated: dict[Node, str] = {}
         self._by_tag: dict[str, list[Node]] | None = None
         self._active: list[Tree] = trees
 

@@ -26,7 +26,7 @@ def reference_text(node: Node) -> str:
         path = node.attributes["path"]
     else:
         holder = node.parent.name if node.parent is not None and class_name in _QUALIFIED else ""
-        path = "/".join(encode(name) for name in (holder, node.name) if name or name is node.name)
+        path = f"{encode(holder)}/{encode(node.name)}" if holder else encode(node.name)
     if not class_name:
         return path
     # ITEA 1.3.0 qualifies the class by its package: `sw.Label`.

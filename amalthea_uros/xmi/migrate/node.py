@@ -78,7 +78,8 @@ class Node:
         while stack:
             node = stack.pop()
             yield node
-            stack.extend(reversed(node.children))
+            if node.children:
+                stack += node.children[::-1]
 
     def enclosing(self, *tags: str) -> Node | None:
         """The nearest container of one of these tags."""

@@ -19,11 +19,17 @@ _new = object.__new__
 
 
 class Href(NamedTuple):
-    """A reference as an element: `<task href="amlt:/#T?type=Task"/>`."""
+    """A reference as an element: `<task href="amlt:/#T?type=Task"/>`.
+
+    Attributes
+    ----------
+    type : class of the target that `xsi:type` states, "" if it states none
+    """
 
     holder: Node
     tag: str
     text: str
+    type: str
 
 
 @dataclass
@@ -66,8 +72,8 @@ class _Parser:
         self.hrefs: list[Href] = []
         self.ids: dict[str, Node] = {}
         self.packages: dict[str, str] = {}
+        self.types: dict[str, str] = {}
         self.xsi_type, self.xmi_id = "xsi:type", "xmi:id"
-        self.special: tuple[str, ...] = ()
         self.comments: list[str] = []
         self.prolog: list[str] = []
 
@@ -106,10 +112,9 @@ class _Parser:
         self.xsi_type = f"{by_namespace.get(XSI_NAMESPACE, 'xsi')}:type"
         xmi = by_namespace.get(XMI_NAMESPACE, "xmi")
         self.xmi_id = f"{xmi}:id"
-        self.special = (self.xsi_type, self.xmi_id)
         prefix, _, tag = name.rpartition(":")
         self.version = namespace_version(prefixes.get(prefix, ""))
-        self.packages = {prefix + ":": package + ":" for prefix, uri in prefixes.items() if (package := itea_package(uri))}
+        self.declare_packages(attributes)
         own = {key: text for key, text in attributes.items() if not key.startswith(("xmlns", f"{xmi}:version", f"{prefix}:"))}
         self.prolog, self.comments = self.comments, []
         self.expat.StartElementHandler = self.start
@@ -121,7 +126,7 @@ class _Parser:
             self.skip(tag, parent)
             return
         if "href" in attributes:
-            self.hrefs.append(Href(parent, tag, attributes["href"]))
+            self.hrefs.append(Href(parent, tag, attributes["href"], self.type_of(attributes.get(self.xsi_type, ""))))
             self.stack.append(None)
             return
         node = self.open(tag, attributes, parent)
@@ -142,25 +147,42 @@ class _Parser:
         origins.ends.append(0)
         origins.parents.append(-1 if parent is None else parent.origin)
         origins.labels.append((tag, attributes.get("name", "")))
-        for special in self.special:
-            if special in attributes:
-                self.take_special(node, special)
+        marked = [key for key in attributes if ":" in key]
+        if marked:
+            self.take_marked(node, marked)
         if self.comments:
             node.comments, self.comments = self.comments, []
         self.stack.append(node)
-        for key in [key for key in attributes if ":" in key]:
-            if not key.startswith("xmlns:"):
-                self.notes.lost(node, "attribute of another namespace", f"{key}={attributes[key]!r}", key)
-            del attributes[key]
         return node
 
-    def take_special(self, node: Node, special: str) -> None:
-        text = node.attributes.pop(special)
-        if special == self.xmi_id:
-            self.ids.setdefault(text, node)
-            return
-        prefix, mark, name = text.rpartition(":")
-        node.type = self.packages.get(prefix + mark, "") + name
+    def take_marked(self, node: Node, keys: list[str]) -> None:
+        """Take the attributes with a prefix away from a node; nothing of a model has one."""
+        attributes = node.attributes
+        declared = {key: attributes.pop(key) for key in keys if key.startswith("xmlns:")}
+        if declared:
+            self.declare_packages(declared)
+        for key in keys:
+            if key == self.xmi_id:
+                self.ids.setdefault(attributes.pop(key), node)
+            elif key == self.xsi_type:
+                node.type = self.type_of(attributes.pop(key))
+            elif key not in declared:
+                self.notes.lost(node, "attribute of another namespace", f"{key}={attributes.pop(key)!r}", key)
+
+    def declare_packages(self, attributes: dict[str, str]) -> None:
+        """Note the sub-models of ITEA versions that some of the attributes declare as namespaces."""
+        for key, uri in attributes.items():
+            if key.startswith("xmlns:") and (package := itea_package(uri)):
+                self.packages[key.partition(":")[2] + ":"] = package + ":"
+                self.types.clear()
+
+    def type_of(self, text: str) -> str:
+        """The class that an `xsi:type` states, in ITEA versions with its package."""
+        known = self.types.get(text)
+        if known is None:
+            prefix, mark, name = text.rpartition(":")
+            known = self.types[text] = self.packages.get(prefix + mark, "") + name
+        return known
 
     def skip(self, tag: str, parent: Node | None) -> None:
         """An element that is no part of a model: of another namespace, or inside a reference."""
@@ -178,8 +200,10 @@ class _Parser:
                 self.comments = []
 
     def characters(self, data: str) -> None:
+        if data.isspace():
+            return
         holder = next((node for node in reversed(self.stack) if node is not None), None)
-        if holder is not None and not data.isspace():
+        if holder is not None:
             self.notes.lost(holder, "text between the elements", repr(data.strip()[:30]))
 
     def refuse_doctype(self, *_declaration: Any) -> None:

@@ -1,14 +1,133 @@
-"""ITEA 1.1.0 -> ITEA 1.2.0."""
+"""ITEA 1.1.0 -> ITEA 1.2.0: operating systems, kinds of allocations, statistics of label accesses."""
 
 from __future__ import annotations
 
+from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr, sub_models
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA ITEA 1.1.0."""
+    for node in models.rename_classes({"os:DeadlineMonotinic": "os:DeadlineMonotonic"}):
+        notes.renamed(node, "class DeadlineMonotinic is DeadlineMonotonic")
+    for model in sub_models(models, "osModel"):
+        _move_schedulers(model, notes)
+    for access in models.nodes("runnableItems", "runnableItem"):
+        if access.children and local_name(access.type) == "LabelAccess":
+            _keep_fitting_statistics(access, notes, official)
+    _Allocations(notes, official).split(models)
 
 
-STEP = Step("ITEA 1.1.0", "ITEA 1.2.0", change)
+def _move_schedulers(model: Node, notes: Notes) -> None:
+    schedulers = model.all("scheduler")
+    if not schedulers:
+        return
+    system = model.add("operatingSystems", at=model.children.index(schedulers[0]), like=schedulers[0], name="OperatingSystem")
+    system.take(schedulers)
+    for scheduler in schedulers:
+        scheduler.tag, scheduler.type, scheduler.target_class = "taskSchedulers", "", "os:TaskScheduler"
+        notes.moved(scheduler, "scheduler of the OS model is a task scheduler of an operating system", scheduler.name)
+
+
+def _keep_fitting_statistics(access: Node, notes: Notes, official: bool) -> None:
+    """One value in the place of those of reading and writing: the one that fits the kind of access."""
+    kind = access.get("access", "read")
+    for statistic in access.all("statistic"):
+        found = {part.tag: part for part in statistic.children}
+        value = found.get(kind) if kind in ("read", "write") else None
+        misses = found.get("readCacheMisses")
+        if not official and kind == "write":
+            misses = found.get("writeCacheMisses", misses)
+        for part, tag in ((value, "value"), (misses, "cacheMisses")):
+            if part is not None:
+                notes.renamed(part, f"statistic {part.tag!r} of a label access is {tag!r}")
+                part.tag = tag
+        if official and value is None:
+            # The official converter removes the other value only where there is a fitting one; it leaves `writeCacheMisses`.
+            continue
+        unfit = ("read", "write") if official else ("read", "write", "readCacheMisses", "writeCacheMisses")
+        for part in statistic.all(*unfit):
+            notes.lost(part, f"statistic {part.tag!r}: the label access is of the other kind", _statistic_text(part))
+            part.remove()
+
+
+def _statistic_text(part: Node) -> str:
+    return ", ".join(f"{name}={text}" for name, text in part.attributes.items())
+
+
+class _Allocations:
+    """`executableAllocation` -> `processAllocation` of tasks and ISRs, `runnableAllocation`."""
+
+    def __init__(self, notes: Notes, official: bool) -> None:
+        self.notes, self.official = notes, official
+        #: The interrupt controller for the ISRs of an operating system that had none.
+        self.controllers: dict[Node, Node] = {}
+
+    def split(self, models: ModelSet) -> None:
+        """Convert all allocations."""
+        for allocation in models.nodes("executableAllocation"):
+            kind = local_name(allocation.type)
+            if kind == "RunnableAllocation" or (
+                not self.official and kind != "ProcessAllocation" and "entity" in allocation.references
+            ):
+                allocation.tag, allocation.type = "runnableAllocation", "mapping:RunnableAllocation"
+                self.notes.renamed(allocation, "allocation of a runnable has a feature of its own")
+            elif kind == "ProcessAllocation" or not self.official:
+                allocation.tag = "processAllocation"
+                self.split_process(allocation)
+
+    def split_process(self, allocation: Node) -> None:
+        """Make an allocation of a process one of a task or of an ISR."""
+        process, scheduler = allocation.target("process"), allocation.target("scheduler")
+        if self.official and _is_unresolved(process, scheduler):
+            return
+        if process is not None and is_isr(process):
+            allocation.type = "mapping:ISRAllocation"
+            self.notes.converted(allocation, "allocation of a process is one of an ISR", process.name)
+            if scheduler is not None:
+                self.give_controller(allocation, scheduler)
+            return
+        allocation.type = "mapping:TaskAllocation"
+        if process is not None and process.is_proxy and not process.get("class"):
+            self.notes.defaulted(
+                allocation, "allocation of a process that is in no file: taken as one of a task", process.get("path")
+            )
+        else:
+            self.notes.converted(allocation, "allocation of a process is one of a task", process.name if process else "")
+
+    def give_controller(self, allocation: Node, scheduler: Node) -> None:
+        """Let an interrupt controller take the place of the scheduler of an ISR; all ISRs of an operating system share one."""
+        if scheduler.tag == "interruptControllers" and not self.official:
+            return
+        system = scheduler.parent
+        if scheduler.is_proxy or system is None:
+            allocation.references.pop("scheduler", None)
+            message = "scheduler of an ISR: it is in no file, and ISRs have interrupt controllers now"
+            self.notes.lost(allocation, message, scheduler.get("path"), "scheduler")
+            return
+        controller = self.controllers.get(system)
+        if controller is None:
+            name = f"interruptController{len(self.controllers) + 1}_migration_generated"
+            controller = system.add("interruptControllers", at=system.children.index(scheduler), like=scheduler, name=name)
+            controller.add("schedulingAlgorithm", "os:PriorityBased")
+            controller.target_class = "os:InterruptController"
+            self.controllers[system] = controller
+        allocation.references["scheduler"] = [controller]
+        self.notes.lost(
+            allocation,
+            "scheduler of an ISR: ISRs have interrupt controllers now, and a new one takes its place",
+            f"{scheduler.name} -> {controller.name}",
+            "scheduler",
+        )
+
+
+def _is_unresolved(process: Node | None, scheduler: Node | None) -> bool:
+    """Whether the official converter leaves the class of an allocation: what it refers to is in no file, or it refers to nothing."""
+    return (process is None and scheduler is None) or any(node is not None and node.is_proxy for node in (process, scheduler))
+
+
+STEP = Step("ITEA 1.1.0", "ITEA 1.2.0", change, frozenset({"executableAllocation", "os:DeadlineMonotinic"}))

@@ -1,14 +1,163 @@
-"""ITEA 1.3.0 -> 0.7.0."""
+"""ITEA 1.3.0 -> 0.7.0: one namespace in the place of twelve, and names without the `is` of booleans."""
 
 from __future__ import annotations
 
+from amalthea_uros.metamodel.naming import TYPE_MARK
+from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.itea_hardware import convert_values
+from amalthea_uros.xmi.migrate.steps.itea_tools import add_property, is_isr, lose_positions
+
+#: Classes that did not only lose their package.
+_CLASSES = {
+    "hw:Component": "HwComponent",
+    "hw:MemType": "MemoryType",
+    "hw:Port": "HwPort",
+    "hw:System": "HwSystem",
+    "os:OSInstructions": "OsInstructions",
+    "sw:OSEvent": "OsEvent",
+    "sw:Periodic": "PeriodicActivation",
+    # Where a file of a development version states no package, only unambiguous names tell it.
+    "MemType": "MemoryType",
+    "OSEvent": "OsEvent",
+    "OSInstructions": "OsInstructions",
+}
+
+_ITEMS = {"isBuffered": "buffered"}
+
+#: Attributes by class.
+_BY_CLASS = {
+    "ComplexPort": {"isMaster": "master"},
+    "Group": {"isOrdered": "ordered"},
+    "LabelAccess": _ITEMS,
+    "SemaphoreAccess": {"accessEnum": "access"},
+    "SenderReceiverRead": _ITEMS,
+    "SenderReceiverWrite": _ITEMS,
+}
+
+#: Attributes of objects that state no class, by tag.
+_BY_TAG = {"entries": {"isDefault": "default"}, "labels": _ITEMS, "mapping": {"mem": "memory"}}
+
+_KINDS = {"PROVIDES": "provides", "REQUIRES": "requires"}
+
+_TASK_ALLOCATION = ("taskAllocation", {"process": "task"})
+_ISR_ALLOCATION = ("isrAllocation", {"process": "isr", "scheduler": "controller"})
+_ALLOCATIONS = {"TaskAllocation": _TASK_ALLOCATION, "ISRAllocation": _ISR_ALLOCATION}
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA ITEA 1.3.0."""
+    convert_values(models, notes, official)
+    for port in models.nodes("ports"):
+        if local_name(port.type) == "FInterfacePort":
+            _convert_interface(port, notes)
+    for allocation in models.nodes("processAllocation"):
+        _split_allocation(allocation, notes, official)
+    for definition in models.nodes("memTypeDefinitions"):
+        definition.tag = "memoryTypeDefinitions"
+        notes.renamed(definition, "memTypeDefinitions is memoryTypeDefinitions", definition.name)
+    if official:
+        lose_positions(models, "/@memTypeDefinitions")
+        _mistreat_texts(models, notes)
+    _rename(models, notes)
 
 
-STEP = Step("ITEA 1.3.0", "0.7.0", change)
+def _rename(models: ModelSet, notes: Notes) -> None:
+    """The names of classes and attributes, in one go."""
+    for root in models.roots:
+        if root.tag == "AMALTHEA":
+            root.tag = "Amalthea"
+    by_class: dict[str, str] = {"": ""}
+    for node in models.walk():
+        renamed = _BY_TAG.get(node.tag)
+        if node.type:
+            type_name = local_name(node.type)
+            renamed = _BY_CLASS.get(type_name, renamed)
+            if node.type not in by_class:
+                by_class[node.type] = _CLASSES.get(node.type, type_name)
+            new = by_class[node.type]
+            if new != type_name:
+                notes.renamed(node, f"class {type_name} is {new}", node.name)
+            node.type = new
+        if node.target_class:
+            node.target_class = _CLASSES.get(node.target_class, local_name(node.target_class))
+        for old, name in renamed.items() if renamed else ():
+            if node.rename(old, name):
+                notes.renamed(node, f"{old} is {name}", attribute=old)
+        if node.tag == "activations" and node.type == "Periodic":
+            node.type = "PeriodicActivation"
+    for node in models.proxies:
+        node.target_class = _CLASSES.get(node.target_class, local_name(node.target_class))
+
+
+def _convert_interface(port: Node, notes: Notes) -> None:
+    kind = port.get("kind")
+    if kind in _KINDS:
+        port.attributes["kind"] = _KINDS[kind]
+        notes.renamed(port, f"kind {kind} is {_KINDS[kind]}", port.name, "kind")
+    for interface in port.references.pop("interface", ()):
+        text = interface.get("path") if interface.is_proxy else interface.name
+        add_property(port, "Franca interface", "common:StringObject", text)
+        notes.kept(port, "reference to a Franca interface: custom property 'Franca interface'", text)
+
+
+def _split_allocation(allocation: Node, notes: Notes, official: bool) -> None:
+    """`processAllocation` -> one of a task, or of an ISR."""
+    known = _ALLOCATIONS.get(local_name(allocation.type))
+    if known is None:
+        if official:
+            return
+        process = allocation.target("process")
+        known = _ISR_ALLOCATION if process is not None and is_isr(process) else _TASK_ALLOCATION
+    allocation.tag, renamed = known
+    allocation.type = ""
+    for old, name in renamed.items():
+        allocation.rename(old, name)
+    notes.renamed(allocation, f"processAllocation is {allocation.tag}")
+    _keep_references(allocation, notes, official)
+
+
+def _keep_references(allocation: Node, notes: Notes, official: bool) -> None:
+    """Leave away what conversions leave away: custom properties; the official one all but the two references."""
+    lost = list(allocation.children) if official else allocation.all("customProperties")
+    for part in lost:
+        notes.lost(part, f"{part.tag} of an allocation", part.get("key"))
+    remove_all(lost)
+    if not official:
+        return
+    for name, text in allocation.attributes.items():
+        notes.lost(allocation, "attribute of an allocation", f"{name}={text}", name)
+    allocation.attributes.clear()
+    kept = ("task", "isr", "scheduler", "controller")
+    allocation.references = {name: nodes for name, nodes in allocation.references.items() if name in kept}
+
+
+def _mistreat_texts(models: ModelSet, notes: Notes) -> None:
+    """Do as the official converter, which takes each text with `?type=` for references, and drops those without package."""
+    bare = {node for node, text in models.stated.items() if TYPE_MARK in text}
+    for node in models.walk():
+        for name, text in node.attributes.items():
+            if TYPE_MARK in text:
+                node.attributes[name] = " ".join(filter(None, map(_without_package, text.split())))
+        for name, targets in list(node.references.items()) if bare else ():
+            kept = [target for target in targets if target not in bare]
+            if len(kept) < len(targets):
+                notes.lost(node, "reference of which the class has no package", name, name)
+                node.references[name] = kept
+                if not kept:
+                    del node.references[name]
+                    node.attributes[name] = ""
+
+
+def _without_package(text: str) -> str:
+    path, _, class_name = text.partition("=")
+    if class_name.replace(".", ":") in _CLASSES:
+        return f"{path}={_CLASSES[class_name.replace('.', ':')]}"
+    _, mark, local = class_name.partition(".")
+    return f"{path}={local}" if mark else ""
+
+
+STEP = Step("ITEA 1.3.0", "0.7.0", change, frozenset({"processAllocation", "memTypeDefinitions", "OSEvent", "MemType"}))

@@ -1,0 +1,72 @@
+"""Attributes and features of hardware nodes -> custom properties (ITEA 1.3.0 -> 0.7.0)."""
+
+from __future__ import annotations
+
+from amalthea_uros.xmi.migrate.classes import local_name
+from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node, remove_all
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.itea_tools import add_property
+
+#: Classes of values -> those of custom properties.
+_VALUES = {
+    "BoolValue": "BooleanObject",
+    "CharValue": "StringObject",
+    "DoubleValue": "DoubleObject",
+    "FeatureTypes": "StringObject",
+    "IntValue": "IntegerObject",
+    "LongValue": "LongObject",
+    "StrValue": "StringObject",
+}
+
+#: Tags -> what the keys of their custom properties begin with.
+_PREFIXES = {"attribute": "attribute#", "features": "feature#"}
+
+_MODELS = ("hwModel", "HWModel")
+
+
+def convert_values(models: ModelSet, notes: Notes, official: bool) -> None:
+    """Make the attributes and features of all hardware nodes custom properties."""
+    converted = []
+    for tag, prefix in _PREFIXES.items():
+        for value in models.nodes(tag):
+            holder = value.parent
+            if holder is None or _is_overlooked(value, official):
+                continue
+            key, text = _key(value, prefix, official), value.attributes.get("value")
+            if local_name(value.type) == "CharValue" and text is not None:
+                text = _character(text, value, notes)
+            value_class = _VALUES.get(local_name(value.type), "StringObject")
+            made = add_property(holder, key, f"common:{value_class}", text, like=value)
+            made.comments = value.comments
+            notes.kept(value, f"{tag} of a hardware node: custom property", f"{key}={text}")
+            converted.append(value)
+    remove_all(converted)
+
+
+def _is_overlooked(value: Node, official: bool) -> bool:
+    """Whether this is nothing of that kind, or the official converter does not look there."""
+    is_known = local_name(value.type) in _VALUES
+    if official:
+        return not is_known or value.enclosing(*_MODELS) is None
+    # Hardware types of property constraints have attributes, too.
+    return not is_known and (value.tag != "attribute" or bool(value.children))
+
+
+def _key(value: Node, prefix: str, official: bool) -> str:
+    if local_name(value.type) == "FeatureTypes":
+        prefix += "FeatureTypes#"
+    name = value.attributes.get("name")
+    if name is None:
+        return f"{prefix}null" if official else prefix.removesuffix("#")
+    return prefix + name
+
+
+def _character(text: str, value: Node, notes: Notes) -> str:
+    """The character that a code point stands for; the number itself if XML cannot hold it."""
+    try:
+        character = chr(int(text))
+    except (ValueError, OverflowError):
+        notes.kept(value, "character that is no code point: its text is kept", text, "value")
+        return text
+    return character if character.isprintable() or character in "\t\n\r" else text

@@ -1,0 +1,89 @@
+"""What the steps of the ITEA versions have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from amalthea_uros.xmi.migrate.classes import local_name
+from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
+from amalthea_uros.xmi.migrate.node import Node, proxy
+
+#: Sub-models by the class that is the root of a file which holds nothing else.
+SUB_MODELS = {
+    "CommonElements": "commonElements",
+    "ComponentsModel": "componentsModel",
+    "ConfigModel": "configModel",
+    "ConstraintsModel": "constraintsModel",
+    "EventModel": "eventModel",
+    "HWModel": "hwModel",
+    "MappingModel": "mappingModel",
+    "OSModel": "osModel",
+    "PropertyConstraintsModel": "propertyConstraintsModel",
+    "StimuliModel": "stimuliModel",
+    "SWModel": "swModel",
+}
+
+
+def sub_models(models: ModelSet, tag: str) -> list[Node]:
+    """The sub-models of a tag, whether they are parts of a model or roots of files."""
+    classes = [root_class for root_class, known in SUB_MODELS.items() if known == tag]
+    return [node for root in models.roots for node in ([root] if root.tag in classes else root.all(tag))]
+
+
+def sub_model_or_new(tree: Tree, tag: str) -> Node:
+    """The sub-model of that tag in a file, made if there is none; a file of another sub-model becomes a whole model for it."""
+    root = tree.root
+    if SUB_MODELS.get(root.tag) == tag:
+        return root
+    if root.tag in SUB_MODELS:
+        tree.root = Node("AMALTHEA", origin=root.origin)
+        tree.root.comments, root.comments = root.comments, None
+        root.tag = SUB_MODELS[root.tag]
+        tree.root.insert(root)
+    return tree.root.child_or_new(tag)
+
+
+def is_isr(process: Node) -> bool:
+    """Whether a process is an ISR, as far as that is known of one that is in no file."""
+    return process.tag == "isrs" or local_name(process.type or process.get("class")) == "ISR"
+
+
+def add_property(holder: Node, key: str, value_class: str, value: str | None, like: Node | None = None) -> Node:
+    """A new custom property of an object, after those that it has; without value if that is None."""
+    last = max((at for at, child in enumerate(holder.children) if child.tag == "customProperties"), default=-1)
+    made = holder.add("customProperties", at=last + 1, like=like, key=key)
+    content = made.add("value", value_class)
+    if value is not None:
+        content.attributes["value"] = value
+    return made
+
+
+def lose_positions(models: ModelSet, part: str) -> None:
+    """Do as the official converters, which leave positions in references as they are where a feature of the path is renamed.
+
+    Parameters
+    ----------
+    part : what a position contains if it is no longer right, such as "/@elements"
+    """
+    stale = {node: text for node, text in models.stated.items() if part in text}
+    if not stale:
+        return
+    made = {text: proxy(text, "") for text in stale.values()}
+    models.proxies += made.values()
+    for node in models.walk():
+        for name, targets in node.references.items():
+            if not stale.keys().isdisjoint(targets):
+                node.references[name] = [made[stale[target]] if target in stale else target for target in targets]
+
+
+def trees_of(models: ModelSet) -> dict[Node, Tree]:
+    """The files that the present step is about, by their roots."""
+    return {tree.root: tree for tree in models.active}
+
+
+def by_root(nodes: Iterable[Node]) -> dict[Node, list[Node]]:
+    """Nodes by the roots of their files, in order."""
+    found: dict[Node, list[Node]] = {}
+    for node in nodes:
+        found.setdefault(node.root, []).append(node)
+    return found

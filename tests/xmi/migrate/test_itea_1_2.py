@@ -1,0 +1,152 @@
+"""ITEA 1.1.0 -> ITEA 1.2.0."""
+
+import pytest
+from itea import all_of, messages, model, only, twice, write
+from migration import migrated
+
+from amalthea_uros.xmi.migrate.steps.itea_1_2 import STEP
+
+TARGET = "ITEA 1.2.0"
+
+
+def step(folder, official=False, **files):
+    return migrated(write(folder, "1.1.0", **files), TARGET, official)
+
+
+def test_schedulers_move_into_one_operating_system_where_the_first_was(tmp_path):
+    models, notes = step(
+        tmp_path,
+        m__amxmi='<osModel><semaphores name="s"/><!-- the first --><scheduler name="a"/><scheduler name="b"/></osModel>',
+    )
+    os_model = only(models, "osModel")
+    assert [child.tag for child in os_model.children] == ["semaphores", "operatingSystems"]
+    assert [child.name for child in only(models, "osModel", "operatingSystems").all("taskSchedulers")] == ["a", "b"]
+    assert only(models, "osModel", "operatingSystems").children[0].comments == ["<!-- the first -->"]
+    assert len(messages(notes, "moved")) == 2
+
+
+def test_an_os_model_without_schedulers_gets_no_operating_system(tmp_path):
+    models, _ = step(tmp_path, m__amxmi="<osModel/>")
+    assert only(models, "osModel").children == []
+
+
+def test_schedulers_of_a_file_with_the_os_model_alone(tmp_path):
+    models, _ = step(tmp_path, os__amxmi_os=model("1.1.0", '<scheduler name="a"/>', "os:OSModel"))
+    assert only(models, "operatingSystems", "taskSchedulers").name == "a"
+
+
+STATISTICS = '<read value="1"/><write value="2"/><readCacheMisses value="3"/><writeCacheMisses value="4"/>'
+
+
+def accesses(kind, content, tag="runnableItems"):
+    access = f'<{tag} xsi:type="sw:LabelAccess" {kind}><statistic>{content}</statistic></{tag}>'
+    inside = access if tag == "runnableItems" else f'<runnableItems xsi:type="sw:Group"><items>{access}</items></runnableItems>'
+    return f'<swModel><runnables name="R">{inside}</runnables></swModel>'
+
+
+@pytest.mark.parametrize("tag", ["runnableItems", "runnableItem"])
+@pytest.mark.parametrize(
+    ("kind", "value", "misses"), [("", "1", "3"), ('access="read"', "1", "3"), ('access="write"', "2", "4")]
+)
+def test_the_statistic_that_fits_the_access_is_kept(tmp_path, kind, value, misses, tag):
+    models, notes = step(tmp_path, m__amxmi=accesses(kind, STATISTICS, tag))
+    [statistic] = all_of(models, "statistic")
+    assert [(part.tag, part.get("value")) for part in statistic.children] == [("value", value), ("cacheMisses", misses)]
+    assert len(messages(notes, "lost")) == 2
+
+
+def test_officially_the_misses_of_writing_stay_and_those_of_reading_are_taken(tmp_path):
+    models, _ = step(tmp_path, official=True, m__amxmi=accesses('access="write"', STATISTICS))
+    [statistic] = all_of(models, "statistic")
+    assert {part.tag: part.get("value") for part in statistic.children} == {
+        "value": "2",
+        "cacheMisses": "3",
+        "writeCacheMisses": "4",
+    }
+
+
+def test_a_statistic_of_the_other_kind_alone_is_lost(tmp_path):
+    models, notes = step(tmp_path, m__amxmi=accesses("", '<write value="2"/>'))
+    assert all_of(models, "statistic")[0].children == []
+    assert len(messages(notes, "lost")) == 1
+
+
+def test_officially_a_statistic_of_the_other_kind_alone_stays(tmp_path):
+    models, _ = step(tmp_path, official=True, m__amxmi=accesses("", '<write value="2"/>'))
+    assert [part.tag for part in all_of(models, "statistic")[0].children] == ["write"]
+
+
+SOFTWARE = '<swModel><isrs xmi:id="_i1" name="I 1"/><isrs xmi:id="_i2" name="I2"/><tasks xmi:id="_t" name="T"/></swModel>'
+SCHEDULERS = '<osModel><scheduler xmi:id="_s" name="S"/></osModel>'
+
+
+def allocation(references, kind="ProcessAllocation"):
+    return f'<executableAllocation xsi:type="mapping:{kind}" {references}/>'
+
+
+def test_all_isrs_of_an_operating_system_share_a_new_controller(tmp_path):
+    allocations = allocation('process="_i1" scheduler="_s"') + allocation('process="_i2" scheduler="_s"')
+    models, notes = step(tmp_path, m__amxmi=f"{SOFTWARE}{SCHEDULERS}<mappingModel>{allocations}</mappingModel>")
+    [controller] = all_of(models, "interruptControllers")
+    first, second = all_of(models, "processAllocation")
+    assert first.type == second.type == "mapping:ISRAllocation"
+    assert first.target("scheduler") is second.target("scheduler") is controller
+    assert len(messages(notes, "lost")) == 2
+
+
+def test_files_refer_to_each_other_by_position(tmp_path):
+    models, _ = step(
+        tmp_path,
+        map__amxmi="""<mappingModel><executableAllocation xsi:type="mapping:ProcessAllocation">
+            <scheduler href="os.amxmi-os#//@scheduler.0"/><process xsi:type="sw:ISR" href="sw.amxmi#//@swModel/@isrs.0"/>
+            </executableAllocation></mappingModel>""",
+        os__amxmi_os=model("1.1.0", '<scheduler name="S"/>', "os:OSModel"),
+        sw__amxmi='<swModel><isrs name="I"/></swModel>',
+    )
+    [made] = all_of(models, "processAllocation")
+    assert made.type == "mapping:ISRAllocation"
+    assert made.target("scheduler").root.tag == "OSModel"
+    assert made.target("process").name == "I"
+
+
+def test_the_class_of_a_process_in_a_missing_file_is_that_of_the_reference(tmp_path):
+    models, notes = step(
+        tmp_path,
+        m__amxmi=SCHEDULERS
+        + """<mappingModel>
+        <executableAllocation xsi:type="mapping:ProcessAllocation" scheduler="_s"><process xsi:type="sw:ISR" href="sw.amxmi#_x"/>
+        </executableAllocation>
+        <executableAllocation xsi:type="mapping:ProcessAllocation" scheduler="_s"><process href="sw.amxmi#_y"/>
+        </executableAllocation></mappingModel>""",
+    )
+    assert [node.type for node in all_of(models, "processAllocation")] == ["mapping:ISRAllocation", "mapping:TaskAllocation"]
+    assert messages(notes, "defaulted") == ["allocation of a process that is in no file: taken as one of a task"]
+
+
+def test_officially_the_allocation_of_a_process_in_a_missing_file_keeps_its_class(tmp_path):
+    content = f"""{SCHEDULERS}<mappingModel><executableAllocation xsi:type="mapping:ProcessAllocation" scheduler="_s">
+        <process xsi:type="sw:ISR" href="sw.amxmi#_x"/></executableAllocation></mappingModel>"""
+    models, _ = step(tmp_path, official=True, m__amxmi=content)
+    assert [node.type for node in all_of(models, "processAllocation")] == ["mapping:ProcessAllocation"]
+
+
+@pytest.mark.parametrize(
+    ("references", "kind"),
+    [
+        ('process="_i1"', "ISRAllocation"),
+        ('process="_t"', "TaskAllocation"),
+        ('scheduler="_s"', "TaskAllocation"),
+        ("", "TaskAllocation"),
+    ],
+)
+def test_incomplete_allocations(tmp_path, references, kind):
+    content = f"{SOFTWARE}{SCHEDULERS}<mappingModel>{allocation(references)}</mappingModel>"
+    models, _ = step(tmp_path, m__amxmi=content)
+    assert [node.type for node in all_of(models, "processAllocation")] == [f"mapping:{kind}"]
+
+
+def test_the_step_leaves_what_is_already_converted(tmp_path):
+    taken = allocation('process="_i1" scheduler="_s"')
+    models, _ = step(tmp_path, m__amxmi=f"{SOFTWARE}{SCHEDULERS}<mappingModel>{taken}</mappingModel>")
+    before, after = twice(models, STEP)
+    assert after == before

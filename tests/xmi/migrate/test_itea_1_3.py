@@ -1,0 +1,390 @@
+"""ITEA 1.2.0 -> ITEA 1.3.0."""
+
+import pytest
+from itea import all_of, messages, model, only, twice, write
+from migration import migrated
+
+from amalthea_uros.xmi.migrate.steps.itea_1_3 import STEP
+
+TARGET = "ITEA 1.3.0"
+
+
+def step(folder, official=False, **files):
+    return migrated(write(folder, "1.2.0", **files), TARGET, official)
+
+
+#: What is written: content of the model, path of tags, attributes that are added.
+DEFAULTS = [
+    ("<hwModel><system><quartzes/></system></hwModel>", "quartzes", {"type": "DYNAMIC"}),
+    ("<hwModel><memoryTypes/></hwModel>", "memoryTypes", {"type": "RAM"}),
+    ("<propertyConstraintsModel><memTypeDefinitions/></propertyConstraintsModel>", "memTypeDefinitions", {"type": "RAM"}),
+    ("<hwModel><networkTypes/></hwModel>", "networkTypes", {"schedPolicy": "RROBIN"}),
+    (
+        '<hwModel><networkTypes xsi:type="hw:Bus"/></hwModel>',
+        "networkTypes",
+        {"busType": "CAN", "schedPolicy": "RROBIN"},
+    ),
+    ('<hwModel><system><ports xsi:type="hw:ComplexPort"/></system></hwModel>', "ports", {"direction": "R"}),
+    ("<hwModel><system><ports/></system></hwModel>", "ports", {}),
+    (
+        '<hwModel><system><ports><pins xsi:type="hw:ComplexPin"/></ports></system></hwModel>',
+        "pins",
+        {"direction": "R", "type": "ANALOG"},
+    ),
+    (
+        '<hwModel><system><features xsi:type="hw:FeatureTypes"/></system></hwModel>',
+        "features",
+        {"value": "floatingPointUnit"},
+    ),
+    ("<mappingModel/>", "mappingModel", {"addressMappingType": "none"}),
+    (
+        "<constraintsModel><runnableSequencingConstraints/></constraintsModel>",
+        "runnableSequencingConstraints",
+        {"orderType": "successor"},
+    ),
+    (
+        "<constraintsModel><runnableSequencingConstraints><runnableGroups/></runnableSequencingConstraints></constraintsModel>",
+        "runnableGroups",
+        {"groupingType": "allOfThem"},
+    ),
+    ("<swModel><processPrototypes/></swModel>", "processPrototypes", {"preemption": "cooperative"}),
+    (
+        "<swModel><processPrototypes><accessPrecedenceSpec/></processPrototypes></swModel>",
+        "accessPrecedenceSpec",
+        {"orderType": "ignoreWR"},
+    ),
+    (
+        "<swModel><processPrototypes><orderPrecedenceSpec/></processPrototypes></swModel>",
+        "orderPrecedenceSpec",
+        {"orderType": "order"},
+    ),
+    (
+        '<swModel><runnables><runnableItems xsi:type="sw:SemaphoreAccess"/></runnables></swModel>',
+        "runnableItems",
+        {"accessEnum": "request"},
+    ),
+    (
+        '<swModel><isrs><callGraph><graphEntries xsi:type="sw:CallSequence"><calls xsi:type="sw:WaitEvent"/></graphEntries>'
+        "</callGraph></isrs></swModel>",
+        "calls",
+        {"maskType": "AND"},
+    ),
+    (
+        '<propertyConstraintsModel><allocationConstraints><hwConstraint xsi:type="propertyconstraints:HwCoreProperty"/>'
+        "</allocationConstraints></propertyConstraintsModel>",
+        "hwConstraint",
+        {"comparator": "equal"},
+    ),
+    (
+        '<propertyConstraintsModel><mappingConstraints><hwConstraint xsi:type="propertyconstraints:HwMemoryConjunction"/>'
+        "</mappingConstraints></propertyConstraintsModel>",
+        "hwConstraint",
+        {"conjunction": "and"},
+    ),
+]
+
+
+@pytest.mark.parametrize("official", [False, True])
+@pytest.mark.parametrize(("content", "tag", "written"), DEFAULTS)
+def test_what_was_the_default_is_written(tmp_path, content, tag, written, official):
+    models, notes = step(tmp_path, official, m__amxmi=content)
+    [node] = all_of(models, tag)
+    assert node.attributes == written
+    about = {note.attribute for note in notes if note.kind == "defaulted" and note.origin == node.origin}
+    assert about == set(written)
+
+
+def test_what_is_stated_stays(tmp_path):
+    models, notes = step(tmp_path, m__amxmi='<swModel><tasks name="T" preemption="unknown"/></swModel>')
+    assert only(models, "swModel", "tasks").get("preemption") == "unknown"
+    assert notes == []
+
+
+TIMES = [
+    ("stimuli", '<stimuliModel><stimuli xsi:type="stimuli:Periodic"><offset value="1"/></stimuli></stimuliModel>', "offset"),
+    ("single", '<stimuliModel><stimuli xsi:type="stimuli:Single"><activation/></stimuli></stimuliModel>', "activation"),
+    ("runnable", "<swModel><runnables><deadline/></runnables></swModel>", "deadline"),
+    ("activations", '<swModel><activations xsi:type="sw:SingleActivation"><max/></activations></swModel>', "max"),
+    ("clocks", '<stimuliModel><clocks xsi:type="stimuli:ClockSinusFunction"><shift/></clocks></stimuliModel>', "shift"),
+    (
+        "entry",
+        '<stimuliModel><clocks xsi:type="stimuli:ClockMultiplierList"><entries><time/></entries></clocks></stimuliModel>',
+        "time",
+    ),
+    (
+        "chain",
+        '<constraintsModel><timingConstraints xsi:type="constraints:DelayConstraint"><upper/></timingConstraints>'
+        "</constraintsModel>",
+        "upper",
+    ),
+    (
+        "age",
+        '<constraintsModel><dataAgeConstraints><dataAge xsi:type="constraints:DataAgeTime"><minimumTime/></dataAge>'
+        "</dataAgeConstraints></constraintsModel>",
+        "minimumTime",
+    ),
+]
+
+
+@pytest.mark.parametrize("official", [False, True])
+@pytest.mark.parametrize(("content", "tag"), [case[1:] for case in TIMES], ids=[case[0] for case in TIMES])
+def test_times_without_unit_are_picoseconds(tmp_path, content, tag, official):
+    models, _ = step(tmp_path, official, m__amxmi=content)
+    assert all_of(models, tag)[0].get("unit") == "ps"
+
+
+LIMIT = (
+    '<constraintsModel><requirements xsi:type="constraints:ProcessRequirement">'
+    '<limit xsi:type="constraints:TimeRequirementLimit"><limitValue value="5"/></limit></requirements></constraintsModel>'
+)
+
+
+@pytest.mark.parametrize(("official", "unit"), [(False, "ps"), (True, "")])
+def test_officially_the_unit_of_a_limit_is_forgotten(tmp_path, official, unit):
+    models, _ = step(tmp_path, official, m__amxmi=LIMIT)
+    assert all_of(models, "limitValue")[0].get("unit") == unit
+
+
+@pytest.mark.parametrize(("official", "order"), [(False, "successor"), (True, "")])
+def test_officially_constraints_in_a_file_of_their_own_are_forgotten(tmp_path, official, order):
+    text = model("1.2.0", "<runnableSequencingConstraints/>", "constraints:ConstraintsModel")
+    models, _ = step(tmp_path, official, c__amxmi_constraints=text)
+    assert only(models, "runnableSequencingConstraints").get("orderType") == order
+
+
+@pytest.mark.parametrize(
+    ("root", "written"),
+    [
+        ("hw:ComplexPin", {"direction": "R", "type": "ANALOG"}),
+        ("hw:Bus", {"busType": "CAN"}),
+        ("hw:MemType", {"type": "RAM"}),
+        ("mapping:MappingModel", {"addressMappingType": "none"}),
+    ],
+)
+def test_files_of_a_single_object(tmp_path, root, written):
+    models, _ = step(tmp_path, x__amxmi_hw=model("1.2.0", "", root))
+    assert models.trees[0].root.attributes == written
+
+
+def test_a_time_of_a_custom_property_gets_its_unit(tmp_path):
+    content = """<swModel><customProperties key="k"><value xsi:type="common:TimeObject" value="3"/></customProperties>
+        <customProperties key="l"><value xsi:type="common:LongObject" value="3"/></customProperties></swModel>"""
+    models, _ = step(tmp_path, m__amxmi=content)
+    assert [value.get("unit") for value in all_of(models, "value")] == ["ps", ""]
+
+
+def test_unspecified_waiting_is_removed(tmp_path):
+    content = """<swModel><runnables><runnableItems xsi:type="sw:SynchronousServerCall" waitingBehaviour="unspecified"/>
+        <runnableItems xsi:type="sw:SynchronousServerCall" waitingBehaviour="active"/></runnables></swModel>"""
+    models, _ = step(tmp_path, m__amxmi=content)
+    assert [node.get("waitingBehaviour") for node in all_of(models, "runnableItems")] == ["", "active"]
+
+
+def test_attributes_that_were_misspelt(tmp_path):
+    content = """<constraintsModel><dataAgeConstraints><dataAge xsi:type="constraints:DataAgeCycle" maximumCyle="4"/>
+        </dataAgeConstraints></constraintsModel>"""
+    models, notes = step(tmp_path, m__amxmi=content)
+    assert all_of(models, "dataAge")[0].attributes == {"maximumCycle": "4"}
+    assert messages(notes, "renamed") == ["maximumCyle is maximumCycle"]
+
+
+@pytest.mark.parametrize(("official", "name"), [(False, "h w"), (True, "")])
+def test_officially_tags_of_the_hardware_keep_their_attribute(tmp_path, official, name):
+    content = '<swModel><tags tagName="s"/></swModel><hwModel><tags tagName="h w"/></hwModel>'
+    models, _ = step(tmp_path, official, m__amxmi=content)
+    assert [tag.name for tag in all_of(models, "tags")] == ["s", name]
+
+
+def test_the_scheduling_unit_is_of_the_operating_system(tmp_path):
+    content = """<osModel><operatingSystems><taskSchedulers><schedulingUnit xsi:type="sw:SchedulingSWUnit"/></taskSchedulers>
+        </operatingSystems></osModel>"""
+    models, _ = step(tmp_path, m__amxmi=content)
+    assert all_of(models, "schedulingUnit")[0].type == "os:SchedulingSWUnit"
+
+
+# Components
+
+COMPONENTS = """<componentsModel>
+    <elements xsi:type="components:Component" name="A"><ports xsi:type="components:FInterfacePort" name="p" kind="REQUIRES"/></elements>
+    <elements xsi:type="components:System" name="S"><elements xsi:type="components:ComponentInstance" name="i"
+        type="//@componentsModel/@elements.0"/><elements xsi:type="components:Connector" name="c"><sourcePort
+        instance="//@componentsModel/@elements.1/@elements.0" port="//@componentsModel/@elements.0/@ports.0"/></elements></elements>
+    </componentsModel>"""
+
+
+def test_parts_of_components_are_told_apart_and_references_follow(tmp_path):
+    models, _ = step(tmp_path, m__amxmi=COMPONENTS)
+    component = only(models, "componentsModel", "components")
+    instance = only(models, "componentsModel", "systems", "componentInstances")
+    source = only(models, "componentsModel", "systems", "connectors", "sourcePort")
+    assert instance.target("type") is component
+    assert source.target("instance") is instance
+    assert source.target("port") is component.child("ports")
+    assert component.type == instance.type == ""
+    assert component.get("kind") == ""
+
+
+def test_officially_positions_of_components_stay_as_they_were(tmp_path):
+    models, _ = step(tmp_path, official=True, m__amxmi=COMPONENTS)
+    instance = only(models, "componentsModel", "systems", "componentInstances")
+    assert instance.target("type").get("path") == "//@componentsModel/@elements.0"
+
+
+# Modes
+
+SWITCH = """<callGraph><graphEntries xsi:type="sw:LabelSwitch" label="_l"><entries value="2"/><entries/><entries value="2"/>
+    </graphEntries></callGraph>"""
+
+
+@pytest.mark.parametrize("process", ["tasks", "isrs"])
+def test_a_label_switch_is_a_mode_switch(tmp_path, process):
+    content = f'<swModel><{process} name="P">{SWITCH}</{process}><labels xmi:id="_l" name="L 1"/></swModel>'
+    models, notes = step(tmp_path, m__amxmi=content)
+    [switch], [mode_label], [mode] = all_of(models, "graphEntries"), all_of(models, "modeLabels"), all_of(models, "modes")
+    assert switch.type == "sw:ModeSwitch"
+    assert switch.target("valueProvider") is mode_label
+    assert mode_label.name == "L 1"
+    assert mode.name == "mode_sw_0_migration_generated"
+    assert [literal.name for literal in mode.children] == ["2", "0"]
+    assert [entry.target("value").name for entry in switch.children] == ["2", "0", "2"]
+    assert [label.name for label in all_of(models, "labels")] == ["L 1"]
+    assert "lost" not in {note.kind for note in notes}
+
+
+def test_switches_in_several_files_share_the_mode_label_of_a_label(tmp_path):
+    other = """<swModel><tasks name="P"><callGraph><graphEntries xsi:type="sw:LabelSwitch"><label href="a.amxmi#_l"/>
+        <entries value="9"/></graphEntries></callGraph></tasks></swModel>"""
+    own = f'<swModel><tasks name="O">{SWITCH}</tasks><labels xmi:id="_l" name="L"/></swModel>'
+    models, _ = step(tmp_path, a__amxmi=own, b__amxmi=other)
+    assert len(all_of(models, "modeLabels")) == 1
+    assert [mode.name for mode in all_of(models, "modes")] == [f"mode_sw_{n}_migration_generated" for n in (0, 1)]
+    official, _ = step(tmp_path, official=True, a__amxmi=own, b__amxmi=other)
+    assert len(all_of(official, "modeLabels")) == 2
+
+
+@pytest.mark.parametrize(("official", "kind"), [(False, "sw:ModeSwitch"), (True, "sw:LabelSwitch")])
+def test_a_switch_without_label(tmp_path, official, kind):
+    content = """<swModel><tasks><callGraph><graphEntries xsi:type="sw:LabelSwitch"><entries value="1"/></graphEntries></callGraph>
+        </tasks></swModel>"""
+    models, _ = step(tmp_path, official, m__amxmi=content)
+    assert all_of(models, "graphEntries")[0].type == kind
+
+
+def test_a_label_in_a_missing_file(tmp_path):
+    content = """<swModel><tasks><callGraph><graphEntries xsi:type="sw:LabelSwitch"><label href="gone.amxmi#_l"/></graphEntries>
+        </callGraph></tasks></swModel>"""
+    models, notes = step(tmp_path, m__amxmi=content)
+    assert all_of(models, "graphEntries")[0].target("valueProvider").is_proxy
+    assert messages(notes, "lost") == ["mode label of a label that is in no file"]
+
+
+STIMULUS = """<stimuli xsi:type="stimuli:Single" name="s"><setLabelsList><entries {0} value="3"/></setLabelsList>
+    <enablingLabelsList><entries {0}/></enablingLabelsList><disablingLabelsList><entries {0} value="3"/></disablingLabelsList>
+    </stimuli>"""
+
+
+def test_stimuli_set_mode_labels(tmp_path):
+    stimulus = STIMULUS.format('valueProvider="_l"')
+    content = f'<swModel><labels xmi:id="_l" name="L"/></swModel><stimuliModel>{stimulus}</stimuliModel>'
+    models, _ = step(tmp_path, m__amxmi=content)
+    lists = only(models, "stimuliModel", "stimuli").children
+    assert [part.tag for part in lists] == ["setModeValueList", "enablingModeValueList", "disablingModeValueList"]
+    assert [part.children[0].target("value").name for part in lists] == ["3", "0", "3"]
+    assert {part.children[0].target("valueProvider") for part in lists} == set(all_of(models, "modeLabels"))
+    assert [mode.name for mode in all_of(models, "modes")] == ["mode_stimuli_1_migration_generated"]
+
+
+def test_a_switch_uses_the_mode_label_that_a_stimulus_needs(tmp_path):
+    stimulus = STIMULUS.format('valueProvider="_l"')
+    content = f"""<swModel><tasks>{SWITCH}</tasks><labels xmi:id="_l" name="L"/></swModel>
+        <stimuliModel>{stimulus}</stimuliModel>"""
+    for official in (False, True):
+        models, _ = step(tmp_path, official, m__amxmi=content)
+        [mode_label] = all_of(models, "modeLabels")
+        assert all_of(models, "graphEntries")[0].target("valueProvider") is mode_label
+
+
+def split_stimuli(folder, official):
+    stimulus = STIMULUS.format("").replace("<entries ", '<entries><valueProvider href="sw.amxmi-sw#_l"/></entries><entries ', 1)
+    return step(
+        folder,
+        official,
+        sw__amxmi_sw=model("1.2.0", '<labels xmi:id="_l" name="L"/>', "sw:SWModel"),
+        st__amxmi_stimuli=model("1.2.0", stimulus, "stimuli:StimuliModel"),
+    )
+
+
+def test_a_stimuli_file_puts_its_mode_where_the_labels_are(tmp_path):
+    models, _ = split_stimuli(tmp_path, official=False)
+    [mode] = all_of(models, "modes")
+    assert mode.parent.tag == "SWModel"
+    assert all(entry.target("value").parent is mode for entry in all_of(models, "entries"))
+
+
+def test_a_model_without_software_gets_a_software_model_for_its_mode(tmp_path):
+    models, _ = step(
+        tmp_path,
+        a__amxmi=f"<stimuliModel>{STIMULUS.format('')}</stimuliModel>",
+        b__amxmi='<swModel><labels xmi:id="_l" name="L"/></swModel>',
+    )
+    assert [mode.root for mode in all_of(models, "modes")] == [models.trees[0].root]
+
+
+def test_officially_a_stimuli_file_without_software_model_keeps_the_values(tmp_path):
+    models, _ = split_stimuli(tmp_path, official=True)
+    assert all_of(models, "modes") == []
+    assert [entry.get("value") for entry in all_of(models, "entries")] == ["", "3", "", "3"]
+
+
+def test_a_stimuli_file_alone_becomes_a_model_that_can_hold_the_mode(tmp_path):
+    text = model("1.2.0", STIMULUS.format(""), "stimuli:StimuliModel")
+    models, _ = step(tmp_path, st__amxmi_stimuli=text)
+    root = models.trees[0].root
+    assert (root.tag, sorted(child.tag for child in root.children)) == ("AMALTHEA", ["stimuliModel", "swModel"])
+    assert only(models, "swModel", "modes").child("literals").name == "3"
+
+
+def test_the_step_leaves_what_is_already_converted(tmp_path):
+    stimulus = STIMULUS.format('valueProvider="_l"')
+    content = f"""<swModel><tasks><deadline value="1"/>{SWITCH}</tasks><labels xmi:id="_l" name="L"/></swModel>
+        <stimuliModel>{stimulus}</stimuliModel>{COMPONENTS}"""
+    before, after = twice(step(tmp_path, m__amxmi=content)[0], STEP)
+    assert after == before
+
+
+# Deadlines
+
+PROCESSES = """<isrs name="I"><deadline value="1" unit="us"/></isrs><processPrototypes name="P p"><deadline value="2"/>
+    </processPrototypes><tasks><!-- why --><deadline value="3" unit="ms"/></tasks>"""
+
+
+def test_deadlines_are_requirements_in_the_constraints_that_are_there(tmp_path):
+    content = f'<constraintsModel><requirements name="old"/></constraintsModel><swModel>{PROCESSES}</swModel>'
+    models, notes = step(tmp_path, m__amxmi=content)
+    requirements = only(models, "constraintsModel").all("requirements")
+    assert [requirement.name for requirement in requirements] == ["old", "I", "P p", ""]
+    values = [limit.attributes for limit in all_of(models, "limitValue")]
+    assert values == [{"value": "1", "unit": "us"}, {"value": "2", "unit": "ps"}, {"value": "3", "unit": "ms"}]
+    assert requirements[3].comments == ["<!-- why -->"]
+    assert all_of(models, "deadline") == []
+    assert len(messages(notes, "converted")) == 3
+
+
+def test_deadlines_in_a_file_of_the_software_model(tmp_path):
+    text = model("1.2.0", PROCESSES, "sw:SWModel")
+    models, _ = step(tmp_path, sw__amxmi_sw=text)
+    assert len(only(models, "constraintsModel").children) == 3
+    assert len(only(models, "swModel").children) == 3
+    official, _ = step(tmp_path, official=True, sw__amxmi_sw=text)
+    assert len(all_of(official, "deadline")) == 3
+    assert official.trees[0].root.tag == "SWModel"
+
+
+def test_deadlines_of_runnables_stay(tmp_path):
+    models, _ = step(tmp_path, m__amxmi='<swModel><runnables><deadline value="1" unit="ms"/></runnables></swModel>')
+    assert len(all_of(models, "deadline")) == 1
+
+
+def test_the_initial_value_of_a_label_is_reported(tmp_path):
+    _, notes = step(tmp_path, m__amxmi='<swModel><labels name="L" initialValue="7"/></swModel>')
+    assert [(note.kind, note.detail, note.attribute) for note in notes] == [("lost", "L: 7", "initialValue")]

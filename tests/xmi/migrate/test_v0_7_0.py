@@ -1,0 +1,240 @@
+"""ITEA 1.3.0 -> 0.7.0."""
+
+import pytest
+from itea import all_of, messages, model, only, twice, write
+from migration import migrated
+
+from amalthea_uros.xmi.migrate.steps.v0_7_0 import STEP
+from amalthea_uros.xmi.migrate.write import tree_text
+
+TARGET = "0.7.0"
+
+
+def step(folder, official=False, **files):
+    return migrated(write(folder, "1.3.0", **files), TARGET, official)
+
+
+#: Content of the model, tag, class afterwards.
+CLASSES = [
+    ('<swModel><activations xsi:type="sw:Periodic" name="x"/></swModel>', "activations", "PeriodicActivation"),
+    ('<stimuliModel><stimuli xsi:type="stimuli:Periodic"/></stimuliModel>', "stimuli", "Periodic"),
+    ('<componentsModel><components xsi:type="components:Composite"/></componentsModel>', "components", "Composite"),
+    ('<hwModel><networkTypes xsi:type="hw:Bus"/></hwModel>', "networkTypes", "Bus"),
+]
+
+
+@pytest.mark.parametrize(("content", "tag", "class_name"), CLASSES)
+def test_classes_lose_their_package(tmp_path, content, tag, class_name):
+    models, _ = step(tmp_path, m__amxmi=content)
+    assert all_of(models, tag)[0].type == class_name
+
+
+#: Content, reference to it, text of the reference afterwards.
+REFERENCES = [
+    ('<swModel><events name="e v"/></swModel>', "e+v?type=sw.OSEvent", "e+v?type=OsEvent"),
+    ('<swModel><activations xsi:type="sw:Periodic" name="a"/></swModel>', "a?type=sw.Periodic", "a?type=PeriodicActivation"),
+    ('<hwModel><memoryTypes name="m"/></hwModel>', "m?type=hw.MemType", "m?type=MemoryType"),
+    ('<hwModel><system name="s"/></hwModel>', "s?type=hw.System", "s?type=HwSystem"),
+    ('<hwModel><system><components name="c"/></system></hwModel>', "c?type=hw.Component", "c?type=HwComponent"),
+    ('<hwModel><system><ports name="p"/></system></hwModel>', "p?type=hw.Port", "p?type=HwPort"),
+    ('<osModel><osOverheads name="o"/></osModel>', "o?type=os.OSInstructions", "o?type=OsInstructions"),
+    ("", "gone?type=hw.MemType", "gone?type=MemoryType"),
+    ("", "gone?type=sw.Label", "gone?type=Label"),
+]
+
+
+@pytest.mark.parametrize("official", [False, True])
+@pytest.mark.parametrize(("content", "text", "after"), REFERENCES)
+def test_references_name_the_new_class(tmp_path, content, text, after, official):
+    holder = f"""<configModel><customProperties key="k"><value xsi:type="common:ReferenceObject" value="{text}"/>
+        </customProperties></configModel>"""
+    models, _ = step(tmp_path, official, m__amxmi=content + holder)
+    assert after in tree_text(models.trees[0])
+
+
+#: Content, tag, attribute before and after.
+ATTRIBUTES = [
+    ('<hwModel><system><ports xsi:type="hw:ComplexPort" isMaster="true"/></system></hwModel>', "ports", "master"),
+    ('<swModel><labels isBuffered="buffered"/></swModel>', "labels", "buffered"),
+    (
+        '<swModel><runnables><runnableItems xsi:type="sw:SenderReceiverRead" isBuffered="true"/></runnables></swModel>',
+        "runnableItems",
+        "buffered",
+    ),
+    (
+        '<swModel><runnables><runnableItems xsi:type="sw:Group"><items><runnableItem xsi:type="sw:SemaphoreAccess" '
+        'accessEnum="release"/></items></runnableItems></runnables></swModel>',
+        "runnableItem",
+        "access",
+    ),
+    (
+        '<swModel><isrs><callGraph><graphEntries xsi:type="sw:ModeSwitch"><entries isDefault="true"/></graphEntries></callGraph>'
+        "</isrs></swModel>",
+        "entries",
+        "default",
+    ),
+]
+
+
+@pytest.mark.parametrize("official", [False, True])
+@pytest.mark.parametrize(("content", "tag", "attribute"), ATTRIBUTES)
+def test_attributes_are_renamed(tmp_path, content, tag, attribute, official):
+    models, notes = step(tmp_path, official, m__amxmi=content)
+    assert list(all_of(models, tag)[0].attributes) == [attribute]
+    assert len(messages(notes, "renamed")) == 1
+
+
+def test_memory_types_of_property_constraints(tmp_path):
+    text = model("1.3.0", '<memTypeDefinitions name="m"/>', "propertyconstraints:PropertyConstraintsModel")
+    models, _ = step(tmp_path, p__amxmi=text)
+    assert [child.tag for child in models.trees[0].root.children] == ["memoryTypeDefinitions"]
+    assert models.trees[0].root.tag == "PropertyConstraintsModel"
+
+
+# Interfaces
+
+
+@pytest.mark.parametrize(("kind", "after"), [("PROVIDES", "provides"), ("REQUIRES", "requires"), ("other", "other")])
+def test_kinds_of_interfaces(tmp_path, kind, after):
+    content = f"""<componentsModel><components><ports xsi:type="components:FInterfacePort" kind="{kind}"/></components>
+        </componentsModel>"""
+    models, _ = step(tmp_path, m__amxmi=content)
+    assert all_of(models, "ports")[0].get("kind") == after
+
+
+def test_a_franca_interface_is_kept_with_its_file(tmp_path):
+    content = """<componentsModel><components><ports xsi:type="components:FInterfacePort"><interface xsi:type="franca:FInterface"
+        href="HVAC%20x.fidl#//@interfaces.6"/></ports></components></componentsModel>"""
+    models, notes = step(tmp_path, m__amxmi=content)
+    [made] = all_of(models, "ports")[0].children
+    assert made.get("key") == "Franca interface"
+    assert made.child("value").type == "StringObject"
+    assert made.child("value").get("value") == "HVAC%20x.fidl#//@interfaces.6"
+    assert len(messages(notes, "kept as custom property")) == 1
+    assert messages(notes, "lost") == []
+
+
+# Allocations
+
+MAPPING = """<swModel><isrs name="I"/><tasks name="T"/></swModel><osModel><operatingSystems><taskSchedulers name="S"/>
+    <interruptControllers name="C"/></operatingSystems></osModel><mappingModel>{}</mappingModel>"""
+ALLOCATION = """<processAllocation {} process="{}" scheduler="S?type=os.TaskScheduler" priority="3"><customProperties key="k"/>
+    </processAllocation>"""
+
+
+@pytest.mark.parametrize(("official", "kept"), [(False, {"priority": "3"}), (True, {})])
+def test_officially_an_allocation_keeps_its_references_only(tmp_path, official, kept):
+    content = MAPPING.format(ALLOCATION.format('xsi:type="mapping:TaskAllocation"', "T?type=sw.Task"))
+    models, notes = step(tmp_path, official, m__amxmi=content)
+    allocation = only(models, "mappingModel", "taskAllocation")
+    assert allocation.target("task").name == "T"
+    assert allocation.target("scheduler").name == "S"
+    assert allocation.attributes == kept
+    assert "customProperties of an allocation" in messages(notes, "lost")
+
+
+def test_an_allocation_without_class_is_that_of_its_process(tmp_path):
+    content = MAPPING.format(ALLOCATION.format("", "I?type=sw.ISR") + ALLOCATION.format("", "T?type=sw.Task"))
+    models, _ = step(tmp_path, m__amxmi=content)
+    assert only(models, "mappingModel", "isrAllocation").target("isr").name == "I"
+    assert only(models, "mappingModel", "isrAllocation").target("controller").name == "S"
+    assert only(models, "mappingModel", "taskAllocation").type == ""
+    official, _ = step(tmp_path, official=True, m__amxmi=content)
+    assert len(all_of(official, "processAllocation")) == 2
+
+
+# Hardware
+
+
+def hardware(value, tag="attribute", holder="ecuTypes"):
+    return f'<hwModel><{holder} name="h"><customProperties key="old"/>{value}<ports/></{holder}></hwModel>'.replace("TAG", tag)
+
+
+@pytest.mark.parametrize(
+    ("value", "key", "class_name", "text"),
+    [
+        ('<TAG xsi:type="hw:BoolValue" name="a b" value="true"/>', "#a b", "BooleanObject", "true"),
+        ('<TAG xsi:type="hw:CharValue" name="c" value="8364"/>', "#c", "StringObject", "€"),
+        ('<TAG xsi:type="hw:CharValue" name="c" value="x"/>', "#c", "StringObject", "x"),
+        ('<TAG xsi:type="hw:CharValue" name="c" value="0"/>', "#c", "StringObject", "0"),
+        ('<TAG xsi:type="hw:CharValue" name="c" value="99999999999"/>', "#c", "StringObject", "99999999999"),
+        ('<TAG xsi:type="hw:CharValue" name="c"/>', "#c", "StringObject", None),
+        ('<TAG xsi:type="hw:DoubleValue" name="d" value="1.5"/>', "#d", "DoubleObject", "1.5"),
+        ('<TAG xsi:type="hw:IntValue" name="i" value="2"/>', "#i", "IntegerObject", "2"),
+        ('<TAG xsi:type="hw:LongValue" name="l" value="3"/>', "#l", "LongObject", "3"),
+        (
+            '<TAG xsi:type="hw:StrValue" name="s" value="_AAAAAAAAAAAAAAAAAAAAAA"/>',
+            "#s",
+            "StringObject",
+            "_AAAAAAAAAAAAAAAAAAAAAA",
+        ),
+        ('<TAG xsi:type="hw:FeatureTypes" name="f" value="SIMD"/>', "#FeatureTypes#f", "StringObject", "SIMD"),
+    ],
+)
+@pytest.mark.parametrize(("tag", "prefix"), [("attribute", "attribute"), ("features", "feature")])
+def test_values_of_hardware_are_custom_properties(tmp_path, value, key, class_name, text, tag, prefix):
+    models, notes = step(tmp_path, m__amxmi=hardware(value, tag))
+    old, made, port = only(models, "hwModel", "ecuTypes").children
+    assert (old.get("key"), port.tag) == ("old", "ports")
+    assert (made.tag, made.get("key")) == ("customProperties", prefix + key)
+    assert (made.child("value").type, made.child("value").attributes.get("value")) == (class_name, text)
+    assert "kept as custom property" in {note.kind for note in notes}
+
+
+@pytest.mark.parametrize(("official", "key"), [(False, "attribute"), (True, "attribute#null")])
+def test_a_value_without_name(tmp_path, official, key):
+    models, _ = step(tmp_path, official, m__amxmi=hardware('<attribute xsi:type="hw:IntValue" value="1"/>'))
+    assert all_of(models, "customProperties")[1].get("key") == key
+
+
+def test_attributes_come_before_features(tmp_path):
+    values = '<features xsi:type="hw:IntValue" name="f"/><attribute xsi:type="hw:IntValue" name="a"/>'
+    models, _ = step(tmp_path, m__amxmi=hardware(values))
+    assert [made.get("key") for made in all_of(models, "customProperties")] == ["old", "attribute#a", "feature#f"]
+
+
+@pytest.mark.parametrize(("official", "left"), [(False, 0), (True, 1)])
+def test_officially_hardware_types_of_property_constraints_are_forgotten(tmp_path, official, left):
+    content = """<propertyConstraintsModel><coreTypeDefinitions><attribute xsi:type="hw:IntValue" name="a"/></coreTypeDefinitions>
+        </propertyConstraintsModel>"""
+    models, _ = step(tmp_path, official, m__amxmi=content)
+    assert len(all_of(models, "attribute")) == left
+
+
+# Mixed and early files
+
+
+def test_a_reference_without_package_is_lost_officially(tmp_path):
+    content = """<swModel><labels name="L"/><runnables><runnableItems xsi:type="sw:LabelAccess" data="L?type=Label"/></runnables>
+        </swModel>"""
+    models, _ = step(tmp_path, m__amxmi=content)
+    assert all_of(models, "runnableItems")[0].target("data").name == "L"
+    official, notes = step(tmp_path, official=True, m__amxmi=content)
+    assert all_of(official, "runnableItems")[0].references == {}
+    assert messages(notes, "lost") == ["reference of which the class has no package"]
+
+
+@pytest.mark.parametrize(("official", "after"), [(False, "a=b.c  L?type=sw.Label"), (True, "a=c L?type=Label")])
+def test_officially_texts_are_taken_for_references(tmp_path, official, after):
+    content = """<swModel><customProperties key="k"><value xsi:type="common:StringObject" value="a=b.c  L?type=sw.Label"/>
+        </customProperties></swModel>"""
+    models, _ = step(tmp_path, official, m__amxmi=content)
+    assert all_of(models, "value")[0].get("value") == after
+
+
+def test_the_step_leaves_what_is_already_converted(tmp_path):
+    content = MAPPING.format(ALLOCATION.format('xsi:type="mapping:TaskAllocation"', "T?type=sw.Task"))
+    models, _ = step(tmp_path, m__amxmi=content + hardware('<attribute xsi:type="hw:StrValue" name="a" value="b"/>'))
+    before, after = twice(models, STEP)
+    assert after == before
+
+
+def test_an_early_file_of_070_takes_the_step(tmp_path):
+    path = tmp_path / "early.amxmi"
+    path.write_text(
+        """<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/0.7.0" xmlns:xmi="http://www.omg.org/XMI"
+        xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"><swModel><tasks name="T"/></swModel><mappingModel>
+        <processAllocation xsi:type="am:TaskAllocation" process="T?type=Task"/></mappingModel></am:Amalthea>"""
+    )
+    models, _ = migrated([path], "0.7.0")
+    assert only(models, "mappingModel", "taskAllocation").target("task").name == "T"
