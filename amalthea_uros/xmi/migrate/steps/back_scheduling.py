@@ -1,0 +1,186 @@
+"""2.0.0 -> 1.2.0, scheduling: definitions become algorithm classes, and parameters the attributes of these and of the allocations.
+
+What the classes cannot hold becomes custom properties, which `restored` turns back: the content of the definitions at the OS model,
+the name of a definition that is no class at the scheduler, other parameters at the allocation or scheduler.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+
+from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node, remove_all
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.definition_maps import PARAMETER_LISTS, as_map
+from amalthea_uros.xmi.migrate.steps.kept import keep, string, strings
+from amalthea_uros.xmi.migrate.steps.restored import (
+    DEFINITION,
+    DEFINITIONS,
+    EXTENDED,
+    OF_ASSOCIATION,
+    OWN,
+    USER_SPECIFIC,
+    ParameterKeys,
+)
+
+_QUANTIZED = {"PfairPD2", "PartlyPFairPD2", "EarlyReleaseFairPD2", "PartlyEarlyReleaseFairPD2"}
+
+#: The algorithms that 1.2.0 has, by the tag of the scheduler.
+_ALGORITHMS = {
+    "taskSchedulers": {
+        *("FixedPriorityPreemptive", "FixedPriorityPreemptiveWithBudgetEnforcement", "OSEK", "DeadlineMonotonic"),
+        *("RateMonotonic", "LeastLocalRemainingExecutionTimeFirst", "EarliestDeadlineFirst", "PriorityBasedRoundRobin"),
+        *("DeferrableServer", "PollingPeriodicServer", "SporadicServer", "ConstantBandwidthServer"),
+        *("ConstantBandwidthServerWithCASH", "Grouping", *_QUANTIZED),
+    },
+    "interruptControllers": {"PriorityBased"},
+}
+
+#: Parameters that 1.2.0 has as parts of SchedulingParameters.
+_TIMES = ("minBudget", "maxBudget", "replenishment")
+
+_NANOSECONDS = {"ns": 1, "us": 1_000, "ms": 1_000_000, "s": 1_000_000_000}
+
+_INTEGER = re.compile(r"[+-]?\d+").fullmatch
+
+#: Puts a parameter (holder, name, value) where 1.2.0 has a place for it; whether there is one.
+Place = Callable[[Node, str, Node], bool]
+
+
+def change_scheduling(models: ModelSet, notes: Notes) -> None:
+    """Turn definitions and parameters into what 1.2.0 has."""
+    definitions, parameters = models.nodes("schedulerDefinitions"), models.nodes("schedulingParameterDefinitions")
+    for same_kind in (definitions, parameters):
+        _refuse_ambiguous(same_kind, notes)
+    for node in models.nodes("taskAllocation"):
+        _change_parameters(node, node, OWN, _place_in_allocation, notes)
+    for node in models.nodes("taskSchedulers", "interruptControllers"):
+        _change_scheduler(node, notes)
+        for association in node.all("parentAssociation"):
+            _change_parameters(association, node, OF_ASSOCIATION, _place_in_allocation, notes)
+    for node in (*definitions, *parameters):
+        _keep_definition(node, notes)
+    remove_all((*definitions, *parameters))
+
+
+def _refuse_ambiguous(definitions: Iterable[Node], notes: Notes) -> None:
+    """Definitions are kept by name, so each needs its own."""
+    names: set[str] = set()
+    for node in definitions:
+        if not node.name or node.name in names:
+            notes.lost(node, "definition without a unique name: in AMALTHEA 1.2.0, the name tells it", repr(node.name), "name")
+        names.add(node.name)
+
+
+def _change_scheduler(scheduler: Node, notes: Notes) -> None:
+    definition = scheduler.target("definition")
+    algorithm = None
+    if definition is not None:
+        del scheduler.references["definition"]
+        algorithm = _add_algorithm(scheduler, definition, notes)
+
+    def place(_holder: Node, name: str, value: Node) -> bool:
+        return algorithm is not None and _place_in_algorithm(algorithm, name, value)
+
+    _change_parameters(scheduler, scheduler, OWN, place, notes)
+
+
+def _add_algorithm(scheduler: Node, definition: Node, notes: Notes) -> Node | None:
+    if definition.is_proxy:
+        notes.lost(scheduler, "the definition of the scheduler is in none of the files", definition.get("path"), "definition")
+        return None
+    if definition.name in _ALGORITHMS[scheduler.tag]:
+        made = scheduler.add("schedulingAlgorithm", definition.name)
+    else:
+        made = scheduler.add("schedulingAlgorithm", USER_SPECIFIC)
+        keep(scheduler, DEFINITION, string(definition.name, scheduler))
+    notes.converted(scheduler, "scheduler definition -> algorithm class", f"{definition.name} -> {made.type}", "definition")
+    return made
+
+
+def _change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: Place, notes: Notes) -> None:
+    """Put the parameters of an allocation, scheduler or association where 1.2.0 has a place for them, else into custom properties."""
+    placed: list[str] = []
+    others: list[str] = []
+    seen: set[str] = set()
+    nodes = holder.all("schedulingParameters")
+    # The former parts and the new one of 1.2.0 have the same tag.
+    remove_all(nodes)
+    for node in nodes:
+        key, value = node.target("key"), node.child("value")
+        if key is None or value is None or key.is_proxy or not key.name or key.name in seen:
+            notes.lost(
+                keeper, "scheduling parameter without value, without definition in the files, or stated twice", _name(key)
+            )
+            continue
+        name = key.name
+        seen.add(name)
+        if place(holder, name, value):
+            placed.append(name)
+            notes.converted(keeper, "scheduling parameter", f"{name} = {_shown(value)}")
+            if node.comments:
+                holder.comments = [*(holder.comments or ()), *node.comments]
+        else:
+            others.append(name)
+            shown = _shown(value)
+            keep(keeper, keys.parameter + name, value).comments = node.comments
+            notes.kept(keeper, "scheduling parameter", f"{name} = {shown}")
+    order = [name for name in ("priority", *_TIMES) if name in placed]
+    order += [name for name in placed if name not in order] + others
+    stated = [key.name for node in nodes if (key := node.target("key")) is not None]
+    if order != stated:
+        keep(keeper, keys.order, strings(stated, keeper))
+
+
+def _name(key: Node | None) -> str:
+    return "" if key is None else key.name or key.get("path")
+
+
+def _shown(value: Node) -> str:
+    return " ".join(text for name in ("value", "unit") if (text := value.get(name))) or value.type
+
+
+def _place_in_allocation(holder: Node, name: str, value: Node) -> bool:
+    if name == "priority" and value.type == "IntegerObject":
+        holder.child_or_new("schedulingParameters").attributes["priority"] = value.get("value", "0")
+        return True
+    if name in _TIMES and value.type == "Time":
+        value.tag, value.type = name, ""
+        holder.child_or_new("schedulingParameters").insert(value)
+        return True
+    return _place_as_extension(holder, name, value)
+
+
+def _place_in_algorithm(algorithm: Node, name: str, value: Node) -> bool:
+    if algorithm.type == USER_SPECIFIC:
+        return _place_as_extension(algorithm, name, value)
+    text = value.get("value")
+    factor = _NANOSECONDS.get(value.get("unit"))
+    if name != "quantSize" or algorithm.type not in _QUANTIZED or value.type != "Time" or not factor or not _INTEGER(text):
+        return False
+    algorithm.attributes["quantSizeNs"] = str(int(text) * factor)
+    return True
+
+
+def _place_as_extension(holder: Node, name: str, value: Node) -> bool:
+    if not name.startswith(EXTENDED) or value.type != "StringObject" or "value" not in value.attributes:
+        return False
+    holder.add("parameterExtensions", like=value, key=name.removeprefix(EXTENDED), value=value.get("value"))
+    return True
+
+
+def _keep_definition(node: Node, notes: Notes) -> None:
+    holder = node.parent
+    if holder is None:
+        return
+    for name in PARAMETER_LISTS:
+        for target in node.references.get(name, ()):
+            if target.is_proxy:
+                notes.lost(node, "a parameter of the scheduler definition is in none of the files", target.get("path"), name)
+
+    def report(part: Node) -> None:
+        notes.lost(part, "unknown part of a definition")
+
+    keep(holder, DEFINITIONS[node.tag] + node.name, as_map(node, report)).comments = node.comments
+    notes.kept(node, "definition", node.name)
