@@ -19,7 +19,15 @@ from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.parse import Parsed
 
 #: Attributes that are text in all classes of all versions, whatever they look like.
-_TEXT = frozenset({"name", "description", "displayName", "abbreviation", "xmlPrefix"})
+_TEXT = frozenset(
+    {
+        *("name", "description", "displayName", "abbreviation", "xmlPrefix", "algorithm", "alias", "interfaceName", "osName"),
+        *("platformName", "platformType", "structureType", "tagType", "typeName", "vendor", "version"),
+    }
+)
+
+#: Tags of entries of which the key is text.
+_TEXT_KEYS = frozenset({"customProperties", "entries", "needs", "parameterExtensions"})
 
 #: What references by id or position start with.
 _STARTS = ("_", "/", "#")
@@ -181,8 +189,10 @@ def _is_qualified(node: Node) -> bool:
 
 
 def _is_text_value(node: Node, key: str) -> bool:
-    """Whether an attribute is the text of a custom property."""
-    return (key == "key" and node.tag == "customProperties") or (key == "value" and local_name(node.type) == "StringObject")
+    """Whether an attribute is the text of a custom property or parameter extension."""
+    if key == "value":
+        return node.tag == "parameterExtensions" or local_name(node.type) == "StringObject"
+    return key == "key" and node.tag in _TEXT_KEYS
 
 
 def _normal(path: Path) -> Path:
