@@ -20,6 +20,7 @@ from amalthea_uros.xmi.migrate.steps.restored import (
     EXTENDED,
     OF_ASSOCIATION,
     OWN,
+    PROPERTY,
     USER_SPECIFIC,
     ParameterKeys,
 )
@@ -44,6 +45,9 @@ _NANOSECONDS = {"ns": 1, "us": 1_000, "ms": 1_000_000, "s": 1_000_000_000}
 
 _INTEGER = re.compile(r"[+-]?\d+").fullmatch
 
+#: Custom properties of processes.
+_TAKEN_FOR_PARAMETERS = {"priority", "osekTaskGroup"}
+
 #: Puts a parameter (holder, name, value) where 1.2.0 has a place for it; whether there is one.
 Place = Callable[[Node, str, Node], bool]
 
@@ -53,15 +57,30 @@ def change_scheduling(models: ModelSet, notes: Notes) -> None:
     definitions, parameters = models.nodes("schedulerDefinitions"), models.nodes("schedulingParameterDefinitions")
     for same_kind in (definitions, parameters):
         _refuse_ambiguous(same_kind, notes)
+    _rename_properties(models.nodes("tasks", "isrs"), notes)
     for node in models.nodes("taskAllocation"):
+        _write_defaults(node, node, OWN, node.target("scheduler"), "processParameters", notes)
         _change_parameters(node, node, OWN, _place_in_allocation, notes)
-    for node in models.nodes("taskSchedulers", "interruptControllers"):
-        _change_scheduler(node, notes)
+    schedulers = models.nodes("taskSchedulers", "interruptControllers")
+    for node in schedulers:
         for association in node.all("parentAssociation"):
+            _write_defaults(association, node, OF_ASSOCIATION, association.target("parent"), "processParameters", notes)
             _change_parameters(association, node, OF_ASSOCIATION, _place_in_allocation, notes)
+    for node in schedulers:
+        _change_scheduler(node, notes)
     for node in (*definitions, *parameters):
         _keep_definition(node, notes)
     remove_all((*definitions, *parameters))
+
+
+def _rename_properties(processes: Iterable[Node], notes: Notes) -> None:
+    """Rename custom properties that mean nothing since 2.0.0, and of which the step up would make parameters."""
+    for process in processes:
+        for node in process.all("customProperties"):
+            key = node.get("key")
+            if key in _TAKEN_FOR_PARAMETERS:
+                node.attributes["key"] = PROPERTY + key
+                notes.renamed(process, "custom property that is a scheduling parameter in older versions", key)
 
 
 def _refuse_ambiguous(definitions: Iterable[Node], notes: Notes) -> None:
@@ -76,6 +95,7 @@ def _refuse_ambiguous(definitions: Iterable[Node], notes: Notes) -> None:
 def _change_scheduler(scheduler: Node, notes: Notes) -> None:
     definition = scheduler.target("definition")
     algorithm = None
+    _write_defaults(scheduler, scheduler, OWN, scheduler, "algorithmParameters", notes)
     if definition is not None:
         del scheduler.references["definition"]
         algorithm = _add_algorithm(scheduler, definition, notes)
@@ -97,6 +117,36 @@ def _add_algorithm(scheduler: Node, definition: Node, notes: Notes) -> Node | No
         keep(scheduler, DEFINITION, string(definition.name, scheduler))
     notes.converted(scheduler, "scheduler definition -> algorithm class", f"{definition.name} -> {made.type}", "definition")
     return made
+
+
+def _write_defaults(holder: Node, keeper: Node, keys: ParameterKeys, scheduler: Node | None, kind: str, notes: Notes) -> None:
+    """State what the defaults of the definitions say, which 1.2.0 does not have; of what can be stated there at all."""
+    definition = None if scheduler is None else scheduler.target("definition")
+    if definition is None:
+        return
+    stated = {key.name for node in holder.all("schedulingParameters") if (key := node.target("key")) is not None}
+    written = []
+    for parameter in definition.references.get(kind, ()):
+        default = parameter.child("defaultValue")
+        if default is None or parameter.name in stated or not _has_place(parameter.name, default, kind, definition, scheduler):
+            continue
+        added = holder.add("schedulingParameters")
+        added.refer("key", parameter)
+        added.add("value", default.type).attributes = dict(default.attributes)
+        stated.add(parameter.name)
+        written.append(parameter.name)
+        notes.defaulted(keeper, "scheduling parameter", f"{parameter.name} = {_shown(default)}")
+    if written:
+        keep(keeper, keys.defaults, strings(written, keeper))
+
+
+def _has_place(name: str, value: Node, kind: str, definition: Node, scheduler: Node | None) -> bool:
+    """Whether 1.2.0 has a place for a parameter: found by putting a copy there."""
+    copy = Node("value", value.type, dict(value.attributes))
+    if kind == "processParameters":
+        return _place_in_allocation(Node("taskAllocation"), name, copy)
+    is_known = scheduler is not None and definition.name in _ALGORITHMS.get(scheduler.tag, ())
+    return _place_in_algorithm(Node("schedulingAlgorithm", definition.name if is_known else USER_SPECIFIC), name, copy)
 
 
 def _change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: Place, notes: Notes) -> None:

@@ -18,10 +18,12 @@ class ParameterKeys(NamedTuple):
     ----------
     parameter : a parameter; its name follows
     order : names of parameters, if their order was not that of 1.2.0
+    defaults : names of parameters that were not stated, and for which the default of the definition was written
     """
 
     parameter: str
     order: str
+    defaults: str
 
 
 OWNERSHIP = prefix("3.0.0") + "ownership"
@@ -32,12 +34,18 @@ TAGS = _START + "tags"
 DEFINITION = _START + "definition"
 #: The definitions of an OS model, by tag; the name of the definition follows.
 DEFINITIONS = {tag: f"{_START}{tag}/" for tag in ("schedulerDefinitions", "schedulingParameterDefinitions")}
+
+
+def _parameter_keys(start: str) -> ParameterKeys:
+    return ParameterKeys(*(start + what for what in ("schedulingParameters/", "order of schedulingParameters", "defaults")))
+
+
 #: Parameters of a scheduler or allocation.
-OWN = ParameterKeys(_START + "schedulingParameters/", _START + "order of schedulingParameters")
+OWN = _parameter_keys(_START)
 #: Parameters of the association of a scheduler with its parent, which has no custom properties itself.
-OF_ASSOCIATION = ParameterKeys(
-    _START + "parentAssociation/schedulingParameters/", _START + "parentAssociation/order of schedulingParameters"
-)
+OF_ASSOCIATION = _parameter_keys(_START + "parentAssociation/")
+#: Custom properties of processes that the step up would take for parameters; their keys follow.
+PROPERTY = _START + "customProperties/"
 
 #: The algorithm class of 1.2.0 for all that have none of their own.
 USER_SPECIFIC = "UserSpecificSchedulingAlgorithm"
@@ -71,6 +79,10 @@ def restore_2_0_0(models: ModelSet, notes: Notes) -> None:
             node.refer("tags", *targets_of(found.child("value")))
             _finish(node, found, notes)
     _Scheduling(by_tag, notes).restore()
+    for node in (*by_tag.get("tasks", ()), *by_tag.get("isrs", ())):
+        for key, found in kept(node, PROPERTY).items():
+            found.attributes["key"] = key
+            notes.renamed(node, _RESTORED, key)
 
 
 def node_property(node: Node, key: str) -> Node | None:
@@ -167,6 +179,8 @@ class _Scheduling:
     def restore_parameters(self, holder: Node, keeper: Node, keys: ParameterKeys, scheduler: Node | None) -> None:
         """Restore the parameters of an allocation, scheduler or association."""
         restored = kept(keeper, keys.parameter)
+        defaults = node_property(keeper, keys.defaults)
+        defaulted = set() if defaults is None else set(texts_of(defaults.child("value")))
         definition = None if scheduler is None else scheduler.target("definition")
         dropped = []
         for node in holder.all("schedulingParameters"):
@@ -174,7 +188,8 @@ class _Scheduling:
             if key is None:
                 continue
             is_filled_in = key.name in _FILLED_IN and _is_zero(node) and definition in self.known
-            if key.name in restored or is_filled_in:
+            is_default = key.name in defaulted and _is_default(node, self.parameters.get(key.name))
+            if key.name in restored or is_filled_in or is_default:
                 dropped.append(node)
             node.references["key"] = [self.parameters.get(key.name, key)]
         remove_all(dropped)
@@ -187,6 +202,8 @@ class _Scheduling:
             node.insert(value)
             node.comments = found.comments
             _finish(keeper, found, self.notes)
+        if defaults is not None:
+            _finish(keeper, defaults, self.notes)
         order = node_property(keeper, keys.order)
         if order is not None:
             _sort(holder, texts_of(order.child("value")))
@@ -213,6 +230,12 @@ class _Scheduling:
 def _is_zero(parameter: Node) -> bool:
     value = parameter.child("value")
     return value is not None and value.get("value", "0") == "0"
+
+
+def _is_default(parameter: Node, definition: Node | None) -> bool:
+    """Whether a parameter states what it would be, anyway."""
+    value, default = parameter.child("value"), definition and definition.child("defaultValue")
+    return value is not None and default is not None and value.type == default.type and value.attributes == default.attributes
 
 
 def _sort(holder: Node, names: list[str]) -> None:
