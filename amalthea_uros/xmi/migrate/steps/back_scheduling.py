@@ -159,10 +159,9 @@ def _change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: P
     remove_all(nodes)
     for node in nodes:
         key, value = node.target("key"), node.child("value")
-        if key is None or value is None or key.is_proxy or not key.name or key.name in seen:
-            notes.lost(
-                keeper, "scheduling parameter without value, without definition in the files, or stated twice", _name(key)
-            )
+        problem = _problem(key, value, seen)
+        if problem or key is None or value is None:
+            notes.lost(keeper, problem, _name(key))
             continue
         name = key.name
         seen.add(name)
@@ -181,6 +180,17 @@ def _change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: P
     stated = [key.name for node in nodes if (key := node.target("key")) is not None]
     if order != stated:
         keep(keeper, keys.order, strings(stated, keeper))
+
+
+def _problem(key: Node | None, value: Node | None, seen: set[str]) -> str:
+    """Why a parameter cannot be kept, "" if it can."""
+    if key is None or not (key.name or key.is_proxy):
+        return "scheduling parameter without a definition that has a name"
+    if key.is_proxy:
+        return "scheduling parameter of which the definition is in none of the files"
+    if value is None:
+        return "scheduling parameter without a value"
+    return "scheduling parameter that is stated twice" if key.name in seen else ""
 
 
 def _name(key: Node | None) -> str:
