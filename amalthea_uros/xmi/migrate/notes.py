@@ -17,6 +17,7 @@ class Kind(StrEnum):
     DEFAULTED = "defaulted"
     KEPT = "kept as custom property"
     LOST = "lost"
+    TO_CHECK = "to be checked"
 
 
 class Note(NamedTuple):
@@ -73,3 +74,7 @@ class Notes:
     def lost(self, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
         """It is not in the result."""
         self.add(Kind.LOST, node, message, detail, attribute)
+
+    def to_check(self, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
+        """It is unchanged, but the newer version does not allow it, or reads it in another way."""
+        self.add(Kind.TO_CHECK, node, message, detail, attribute)

@@ -1,14 +1,55 @@
-"""0.9.9 -> 1.0.0."""
+"""0.9.9 -> 1.0.0: no measurements any more."""
 
 from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.properties import move_properties
+
+#: References from a measurement to what was measured.
+_MEASURED = ("runnable", "task", "eventChain")
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.9.9."""
+    for model in models.nodes("measurementModel"):
+        _remove_measurements(model, notes, official)
+    for event in models.nodes("events"):
+        if event.type == "ProcessEvent" and event.get("eventType") == "deadline":
+            del event.attributes["eventType"]
+            notes.lost(
+                event, "event type 'deadline' does not exist any more: the event now means all event types", "", "eventType"
+            )
 
 
-STEP = Step("0.9.9", "1.0.0", change)
+def _remove_measurements(model: Node, notes: Notes, official: bool) -> None:
+    for measurement in model.all("measurements"):
+        measured = next((target for name in _MEASURED for target in measurement.references.get(name, ())), None)
+        if not official and measured is not None and not measured.is_proxy:
+            _move_properties(measurement, measured, notes)
+        name = repr(measured.name) if measured is not None else "unknown"
+        notes.lost(measurement, "measurement, for which there is no place any more", f"of {name}: {_described(measurement)}")
+    if not official and model.parent is not None:
+        _move_properties(model, model.parent, notes)
+    model.remove()
+
+
+def _move_properties(source: Node, target: Node, notes: Notes) -> None:
+    """Keep what the user noted about a measurement with what was measured."""
+    for each in move_properties(source, target):
+        notes.moved(each, "custom property of a measurement is now one of what was measured", each.get("key"))
+
+
+def _described(measurement: Node) -> str:
+    times = [f"{time.get('value', '0')} {time.get('unit')}".strip() for time in measurement.all("runtimes")]
+    deviation = measurement.child("runtimeDeviation")
+    if deviation is not None:
+        bounds = [f"{part.tag} {part.get('value', '0')} {part.get('unit')}".strip() for part in deviation.children]
+        times.append(" ".join([deviation.type, *bounds]))
+    properties = [f"custom property {each.get('key')!r}" for each in measurement.all("customProperties")]
+    return ", ".join([*times, *properties]) or "no runtimes"
+
+
+STEP = Step("0.9.9", "1.0.0", change, frozenset({"measurementModel"}))

@@ -1,14 +1,41 @@
-"""1.2.0 -> 2.0.0."""
+"""1.2.0 -> 2.0.0: scheduling algorithms and their parameters are data, and conditions are more than those about modes."""
 
 from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.scheduling_definitions import Definitions
+from amalthea_uros.xmi.migrate.steps.scheduling_parameters import convert_algorithms, convert_parameters
+from amalthea_uros.xmi.migrate.steps.scheduling_properties import convert_properties
+from amalthea_uros.xmi.migrate.steps.v0_9_6 import conditions_below
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 1.2.0."""
+    definitions = Definitions(models)
+    convert_algorithms(models, definitions, notes)
+    convert_parameters(models, definitions, notes, official)
+    if not official:
+        convert_properties(models, definitions, notes)
+    definitions.insert(notes)
+    _convert_conditions(models, notes)
 
 
-STEP = Step("1.2.0", "2.0.0", change)
+def _convert_conditions(models: ModelSet, notes: Notes) -> None:
+    loops = [condition for loop in models.nodes("items") if loop.type == "WhileLoop" for condition in loop.all("condition")]
+    # The conditions of mode switches keep their classes until 3.0.0.
+    for holder in (*models.nodes("executionCondition"), *loops):
+        _rename(holder, "ModeConditionDisjunction", "ConditionDisjunction", notes)
+        for condition in conditions_below(holder):
+            _rename(condition, "ModeConditionConjunction", "ConditionConjunction", notes)
+
+
+def _rename(node: Node, old: str, new: str, notes: Notes) -> None:
+    if node.type == old:
+        node.type = new
+        notes.renamed(node, f"class is now {new}")
+
+
+STEP = Step("1.2.0", "2.0.0", change, frozenset({"schedulingAlgorithm", "parameterExtensions"}))

@@ -1,14 +1,36 @@
-"""2.2.0 -> 3.0.0."""
+"""2.2.0 -> 3.0.0: one kind of switches, and data types by reference."""
 
 from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.data_types import convert_data_types
+
+#: Classes of conditions and switches; most of them are written only where the class differs from that of the feature.
+_RENAMED = {
+    "ModeSwitch": "Switch",
+    "ModeSwitchEntry": "SwitchEntry",
+    "ModeSwitchDefault": "SwitchDefault",
+    "ModeConditionConjunction": "ConditionConjunction",
+    "ModeConditionDisjunction": "ConditionDisjunction",
+}
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 2.2.0."""
+    for node in models.rename_classes(_RENAMED):
+        notes.renamed(node, f"class is now {node.type}")
+    convert_data_types(models, notes)
+    for interface in models.nodes("interfaces", "subInterfaces"):
+        if interface.rename("datatype", "dataType"):
+            notes.renamed(interface, "datatype of the interface is now its dataType", "", "datatype")
+    if not official:
+        # The official converter writes nothing, so that the new default holds: only the owner may release it.
+        for semaphore in models.nodes("semaphores"):
+            if semaphore.get("semaphoreType") == "CountingSemaphore" and "ownership" not in semaphore.attributes:
+                semaphore.attributes["ownership"] = "false"
+                notes.defaulted(semaphore, "counting semaphore: it has no owner, so ownership is false", "", "ownership")
 
 
-STEP = Step("2.2.0", "3.0.0", change)
+STEP = Step("2.2.0", "3.0.0", change, frozenset(_RENAMED))

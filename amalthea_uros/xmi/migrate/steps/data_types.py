@@ -1,0 +1,94 @@
+"""Data types that labels and channels contained until 2.2.0, and to which they refer since 3.0.0."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import count
+from typing import TypeAlias
+
+from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.properties import move_properties
+
+#: Everything that a type states.
+_Content: TypeAlias = tuple[object, ...]
+
+#: Where types are contained until 2.2.0, and are references since 3.0.0.
+_FEATURES = {"labels": "dataType", "channels": "elementType"}
+
+
+def convert_data_types(models: ModelSet, notes: Notes) -> None:
+    """Let labels and channels refer to definitions; what they contained becomes a definition of its own."""
+    _drop_empty(models, notes)
+    definitions = _Definitions(models)
+    for tag, feature in _FEATURES.items():
+        for owner in models.nodes(tag):
+            for part in owner.all(feature):
+                _convert(owner, feature, part, definitions, notes)
+
+
+def _drop_empty(models: ModelSet, notes: Notes) -> None:
+    """Remove references without a target, which are mandatory now."""
+    for node in models.nodes("dataType", "elementType"):
+        if node.type == "TypeRef" and not (node.references.get("typeDef") or node.get("typeDef")) and node.parent is not None:
+            move_properties(node, node.parent)
+            notes.lost(node.parent, "data type that refers to nothing")
+            node.remove()
+
+
+def _convert(owner: Node, feature: str, part: Node, definitions: _Definitions, notes: Notes) -> None:
+    part.remove()
+    if part.type == "TypeRef":
+        move_properties(part, owner)
+        if not part.references.get("typeDef"):
+            owner.attributes[feature] = part.get("typeDef")
+        elif feature not in owner.references:
+            owner.refer(feature, part.references["typeDef"][0])
+        notes.converted(owner, "data type is now a reference to the type definition", "", feature)
+    elif feature in owner.references:
+        notes.lost(owner, "second data type", part.type)
+    else:
+        definition = definitions.of(owner, part)
+        owner.refer(feature, definition)
+        notes.converted(owner, "data type is now a type definition of its own", definition.name, feature)
+
+
+class _Definitions:
+    """The definitions made of contained types; equal types of one file share one."""
+
+    def __init__(self, models: ModelSet) -> None:
+        self.made: dict[_Content, Node] = {}
+        self.numbers: dict[str, Iterator[int]] = {}
+        self.names = {definition.name for tree in models.trees for definition in tree.root.find("swModel", "typeDefinitions")}
+
+    def of(self, owner: Node, part: Node) -> Node:
+        """The definition of a type that has left its owner."""
+        root = owner.root
+        key = (root, *_content(part))
+        found = self.made.get(key)
+        if found is None:
+            model = root.child_or_new("swModel", like=owner)
+            found = model.add(
+                "typeDefinitions", "DataTypeDefinition", like=part, name=self.new_name(f"{owner.name or owner.tag}_type")
+            )
+            part.tag = "dataType"
+            found.insert(part)
+            self.made[key] = found
+        return found
+
+    def new_name(self, base: str) -> str:
+        """A name that no definition has."""
+        name = base
+        for number in self.numbers.setdefault(base, count(2)) if base in self.names else ():
+            name = f"{base}_{number}"
+            if name not in self.names:
+                break
+        self.names.add(name)
+        return name
+
+
+def _content(node: Node) -> _Content:
+    references = sorted((name, tuple(targets)) for name, targets in node.references.items())
+    inner = tuple((child.tag, *_content(child)) for child in node.children)
+    return (node.type, tuple(sorted(node.attributes.items())), tuple(references), inner)

@@ -1,0 +1,85 @@
+"""Event chains and conditions about modes."""
+
+import pytest
+from inline_migration import InlineModels
+
+from amalthea_uros.xmi.migrate.notes import Kind
+
+EVENTS = '<eventModel><events xsi:type="am:ProcessEvent" name="a"/><events xsi:type="am:ProcessEvent" name="b"/></eventModel>'
+ENDS = 'stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"'
+
+
+@pytest.fixture
+def models(tmp_path):
+    return InlineModels(tmp_path)
+
+
+def chains(content):
+    return f"{EVENTS}<constraintsModel>{content}</constraintsModel>"
+
+
+def test_segments_and_strands_of_one_chain_become_a_sequence_that_ends_with_the_strands(models):
+    before = f"""<eventChains name="c" {ENDS}>
+        <strands xsi:type="am:EventChainReference" eventChain="x?type=EventChain"/>
+        <segments xsi:type="am:EventChainReference" eventChain="y?type=EventChain"/>
+      </eventChains><eventChains name="x" {ENDS}/><eventChains name="y" {ENDS}/>"""
+    after = f"""<eventChains name="c" {ENDS} itemType="sequence">
+        <items xsi:type="am:EventChainReference" eventChain="y?type=EventChain"/>
+        <items xsi:type="am:EventChainContainer"><eventChain {ENDS} itemType="parallel">
+          <items xsi:type="am:EventChainReference" eventChain="x?type=EventChain"/>
+        </eventChain></items>
+      </eventChains><eventChains name="x" {ENDS}/><eventChains name="y" {ENDS}/>"""
+    assert models.migrate("0.9.5", "0.9.6", chains(before)) == models.read("0.9.6", chains(after))
+    assert any("segments and strands" in message for message in models.messages(Kind.CONVERTED))
+
+
+def test_parallel_chains_with_a_latency_constraint_are_to_be_checked(models):
+    constraint = '<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="l" scope="c?type=EventChain"/>'
+    strands = '<strands xsi:type="am:EventChainReference" eventChain="x?type=EventChain"/>'
+    chain = f'<eventChains name="c" {ENDS}>{strands}</eventChains><eventChains name="x" {ENDS}/>'
+    models.migrate("0.9.5", "0.9.7", chains(chain + constraint))
+    assert ["latency constraint" in message for message in models.messages(Kind.TO_CHECK)] == [True]
+    models.migrate("0.9.5", "0.9.7", chains(chain))
+    assert models.messages(Kind.TO_CHECK) == []
+
+
+def test_chains_without_ends_are_to_be_checked_once(models):
+    models.migrate("0.9.5", "0.9.7", chains('<eventChains name="c"/>'))
+    assert len(models.messages(Kind.TO_CHECK)) == 2
+
+
+def test_a_file_of_0_9_6_may_have_chains_and_conditions_of_0_9_5(models):
+    before = f"""<eventChains name="c" {ENDS}>
+        <segments xsi:type="am:EventChainReference" eventChain="c?type=EventChain"/></eventChains>"""
+    after = f"""<eventChains name="c" {ENDS} itemType="sequence">
+        <items xsi:type="am:EventChainReference" eventChain="c?type=EventChain"/></eventChains>"""
+    assert models.migrate("0.9.6", "0.9.7", chains(before)) == models.read("0.9.7", chains(after))
+    condition = """<swModel><runnables name="R"><executionCondition>
+      <entries xsi:type="am:ModeConditionConjunction"><entries{} value="on" relation="EQUAL"/></entries>
+      </executionCondition></runnables></swModel>"""
+    typed = condition.format(' xsi:type="am:ModeValueCondition"')
+    assert models.migrate("0.9.6", "0.9.7", condition.format("")) == models.read("0.9.7", typed)
+
+
+@pytest.mark.parametrize("version", ["0.9.5", "0.9.6", "0.9.7"])
+def test_what_is_in_the_new_form_stays(models, version):
+    content = f"""<eventChains name="c" {ENDS} itemType="parallel" minItemsCompleted="2">
+        <items xsi:type="am:EventChainReference" eventChain="c?type=EventChain"/></eventChains>"""
+    assert models.migrate(version, "0.9.8", chains(content)) == models.read("0.9.8", chains(content))
+
+
+def test_conditions_of_isrs_and_stimuli_are_converted_and_entries_of_switches_are_not(models):
+    text = """<swModel><isrs name="I"><{graph}><items xsi:type="am:ModeSwitch"><entries name="e">
+        <condition><entries {kind} value="on"/></condition></entries></items></{graph}></isrs></swModel>
+      <stimuliModel><stimuli xsi:type="am:InterProcessStimulus" name="S">
+        <executionCondition><entries {kind} value="on"/></executionCondition></stimuli></stimuliModel>"""
+    before = text.format(graph="callGraph", kind='xsi:type="am:ModeCondition"')
+    after = text.format(graph="activityGraph", kind='xsi:type="am:ModeValueCondition"')
+    assert models.migrate("0.9.5", "0.9.7", before) == models.read("0.9.7", after)
+
+
+def test_a_snapshot_of_0_9_7_takes_the_step_again(models):
+    text = '<swModel><runnables name="R"><executionCondition><entries xsi:type="am:{}"/></executionCondition></runnables></swModel>'
+    assert models.migrate("0.9.7", "0.9.8", text.format("ModeCondition")) == models.read(
+        "0.9.8", text.format("ModeValueCondition")
+    )

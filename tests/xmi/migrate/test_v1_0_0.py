@@ -1,0 +1,77 @@
+"""Measurements, and limits of numbers that became tighter in 1.2.0 and 2.1.0."""
+
+import pytest
+from inline_migration import InlineModels
+
+from amalthea_uros.xmi.migrate.notes import Kind
+
+PROPERTY = '<customProperties key="{}"><value xsi:type="am:StringObject" value="{}"/></customProperties>'
+
+
+@pytest.fixture
+def models(tmp_path):
+    return InlineModels(tmp_path)
+
+
+def measured(properties, measurements):
+    return f'<swModel><tasks name="T 1">{properties}</tasks></swModel>{measurements}'
+
+
+MEASUREMENT = f"""<measurementModel><measurements xsi:type="am:TaskMeasurement" task="T+1?type=Task">{PROPERTY.format("tool", "X")}
+    <runtimes value="5" unit="us"/><runtimes value="7" unit="us"/>
+    <runtimeDeviation xsi:type="am:TimeBoundaries"><lowerBound value="1" unit="us"/><upperBound value="9" unit="us"/></runtimeDeviation>
+  </measurements></measurementModel>"""
+
+
+def test_custom_properties_of_a_measurement_stay_with_what_was_measured(models):
+    own = PROPERTY.format("tool", "own")
+    found = models.migrate("0.9.9", "1.0.0", measured(own, MEASUREMENT))
+    assert found == models.read("1.0.0", measured(own + PROPERTY.format("tool 2", "X"), ""))
+    [lost] = [note for note in models.notes if note.kind == Kind.LOST]
+    assert lost.detail == "of 'T 1': 5 us, 7 us, TimeBoundaries lowerBound 1 us upperBound 9 us"
+
+
+def test_the_official_converter_removes_them(models):
+    assert models.migrate("0.9.9", "1.0.0", measured("", MEASUREMENT), official=True) == models.read("1.0.0", measured("", ""))
+    [lost] = [note for note in models.notes if note.kind == Kind.LOST]
+    assert "custom property 'tool'" in lost.detail
+
+
+def test_measurements_of_nothing_are_lost_with_a_note(models):
+    content = """<measurementModel><measurements xsi:type="am:TaskMeasurement"/>
+      <measurements xsi:type="am:RunnableMeasurement" runnable="X?type=Runnable"/></measurementModel>"""
+    assert models.migrate("1.0.0", "1.1.0", measured("", content)) == models.read("1.1.0", measured("", ""))
+    assert len(models.messages(Kind.LOST)) == 2
+
+
+def test_only_events_of_processes_lose_the_deadline(models):
+    text = '<eventModel><events xsi:type="am:ProcessEvent" name="e"{}/><events xsi:type="am:ProcessEvent" name="f"{}/></eventModel>'
+    before = text.format(' eventType="deadline"', ' eventType="start"')
+    assert models.migrate("0.9.9", "1.0.0", before) == models.read("1.0.0", text.format("", ' eventType="start"'))
+    assert len(models.messages(Kind.LOST)) == 1
+
+
+def test_no_occurrences_become_one(models):
+    text = """<stimuliModel><stimuli xsi:type="am:PeriodicBurstStimulus" name="B" {0}/>
+      <stimuli xsi:type="am:PeriodicBurstStimulus" name="D"/>
+      <stimuli xsi:type="am:ArrivalCurveStimulus" name="A"><entries {1}/><entries numberOfOccurrences="3"/></stimuli></stimuliModel>"""
+    before = text.format('occurrenceCount="0"', 'numberOfOccurrences="0"')
+    after = text.format('occurrenceCount="1"', 'numberOfOccurrences="1"')
+    assert models.migrate("1.1.0", "1.2.0", before) == models.read("1.2.0", after)
+    assert len(models.messages(Kind.CONVERTED)) == 2
+
+
+@pytest.mark.parametrize("text", ["-1", "many", "", "1", "99"])
+def test_other_numbers_stay(models, text):
+    content = f'<stimuliModel><stimuli xsi:type="am:PeriodicBurstStimulus" name="B" occurrenceCount="{text}"/></stimuliModel>'
+    assert models.migrate("1.1.0", "1.2.0", content) == models.read("1.2.0", content)
+    assert len(models.messages(Kind.TO_CHECK)) == (text == "-1")
+
+
+def test_what_2_1_0_does_not_allow_is_to_be_checked(models):
+    content = """<swModel><runnables name="R"><executionCondition>
+        <entries xsi:type="am:ChannelFillCondition" fillLevel="3"/></executionCondition></runnables></swModel>
+      <osModel><semaphores name="S" initialValue="-1" maxValue="-1"/></osModel>
+      <mappingModel><memoryMapping/></mappingModel>"""
+    assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
+    assert len(models.messages(Kind.TO_CHECK)) == 4

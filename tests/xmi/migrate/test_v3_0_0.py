@@ -1,0 +1,104 @@
+"""Switches, data types, interfaces and semaphores of 3.0.0."""
+
+import pytest
+from inline_migration import InlineModels
+
+from amalthea_uros.xmi.migrate.notes import Kind
+
+
+@pytest.fixture
+def models(tmp_path):
+    return InlineModels(tmp_path)
+
+
+def software(content):
+    return f'<swModel>{content}<typeDefinitions xsi:type="am:BaseTypeDefinition" name="u 8"/></swModel>'
+
+
+ARRAY = """<{0} xsi:type="am:Array" numberElements="{1}">
+  <dataType xsi:type="am:TypeRef" typeDef="u+8?type=BaseTypeDefinition"/></{0}>"""
+
+
+def test_equal_types_share_a_definition_whose_name_is_new(models):
+    taken = '<typeDefinitions xsi:type="am:BaseTypeDefinition" name="L 1_type"/>'
+    before = f"""{taken}<labels name="L 1">{ARRAY.format("dataType", 4)}</labels>
+      <labels name="L 2">{ARRAY.format("dataType", 4)}</labels>
+      <channels name="C">{ARRAY.format("elementType", 4)}</channels>
+      <channels name="D">{ARRAY.format("elementType", 5)}</channels>"""
+    after = f"""{taken}<labels name="L 1" dataType="L+1_type_2?type=DataTypeDefinition"/>
+      <labels name="L 2" dataType="L+1_type_2?type=DataTypeDefinition"/>
+      <channels name="C" elementType="L+1_type_2?type=DataTypeDefinition"/>
+      <channels name="D" elementType="D_type?type=DataTypeDefinition"/>
+      <typeDefinitions xsi:type="am:BaseTypeDefinition" name="u 8"/>
+      <typeDefinitions xsi:type="am:DataTypeDefinition" name="L 1_type_2">{ARRAY.format("dataType", 4)}</typeDefinitions>
+      <typeDefinitions xsi:type="am:DataTypeDefinition" name="D_type">{ARRAY.format("dataType", 5)}</typeDefinitions>"""
+    assert models.migrate("2.2.0", "3.0.0", software(before)) == models.read("3.0.0", f"<swModel>{after}</swModel>")
+
+
+def test_a_type_of_another_file_is_a_reference_between_files(models):
+    before = """<swModel><labels name="L"><dataType xsi:type="am:TypeRef">
+      <typeDef href="amlt:/#u+8?type=BaseTypeDefinition"/></dataType></labels></swModel>"""
+    after = '<swModel><labels name="L"><dataType href="amlt:/#u+8?type=BaseTypeDefinition"/></labels></swModel>'
+    assert models.migrate("2.2.0", "3.0.0", before, software("")) == models.read("3.0.0", after, software(""))
+
+
+def test_references_to_nothing_are_dropped_also_inside_of_types(models):
+    before = """<labels name="L"><dataType xsi:type="am:TypeRef"/></labels>
+      <labels name="P"><dataType xsi:type="am:Pointer"><dataType xsi:type="am:TypeRef"/></dataType></labels>"""
+    after = """<labels name="L"/><labels name="P" dataType="P_type?type=DataTypeDefinition"/>"""
+    definition = (
+        '<typeDefinitions xsi:type="am:DataTypeDefinition" name="P_type"><dataType xsi:type="am:Pointer"/></typeDefinitions>'
+    )
+    expected = software(after).replace("</swModel>", definition + "</swModel>")
+    assert models.migrate("2.2.0", "3.0.0", software(before)) == models.read("3.0.0", expected)
+    assert len(models.messages(Kind.LOST)) == 2
+
+
+def test_custom_properties_of_a_type_reference_stay_with_the_label(models):
+    note = '<customProperties key="k"><value xsi:type="am:StringObject" value="v"/></customProperties>'
+    before = (
+        f"""<labels name="L"><dataType xsi:type="am:TypeRef" typeDef="u+8?type=BaseTypeDefinition">{note}</dataType></labels>"""
+    )
+    after = f'<labels name="L" dataType="u+8?type=BaseTypeDefinition">{note}</labels>'
+    assert models.migrate("2.2.0", "3.0.0", software(before)) == models.read("3.0.0", software(after))
+
+
+def test_a_second_type_and_an_unreadable_reference_do_not_raise(models):
+    before = f"""<labels name="L"><dataType xsi:type="am:TypeRef" typeDef="what?"/></labels>
+      <labels name="M">{ARRAY.format("dataType", 1) * 2}</labels><labels>{ARRAY.format("dataType", 2)}</labels>"""
+    text = "\n".join(models.migrate("2.2.0", "3.0.0", software(before)))
+    assert "labels  dataType='what?' name='L'" in text
+    assert "name='labels_type'" in text
+    assert models.messages(Kind.LOST) == ["second data type"]
+
+
+def test_what_is_already_a_reference_stays(models):
+    content = software('<labels name="L" dataType="u+8?type=BaseTypeDefinition"/>')
+    assert models.migrate("2.2.0", "3.1.0", content) == models.read("3.1.0", content)
+
+
+@pytest.mark.parametrize("version", ["2.2.0", "3.0.0", "3.1.0"])
+def test_switches_of_isrs_and_runnables_also_in_snapshots(models, version):
+    text = """<swModel><isrs name="I"><activityGraph><items xsi:type="am:{0}"><entries name="e"><condition>
+        <entries xsi:type="am:{1}"/></condition><items xsi:type="am:{0}"/></entries></items></activityGraph></isrs>
+      <runnables name="R"><activityGraph><items xsi:type="am:{0}"/></activityGraph></runnables></swModel>"""
+    before = text.format("ModeSwitch", "ModeConditionConjunction")
+    assert models.migrate(version, "3.2.0", before) == models.read("3.2.0", text.format("Switch", "ConditionConjunction"))
+
+
+def test_the_data_type_of_an_interface_is_written_with_a_capital(models):
+    text = """<componentsModel><interfaces name="I" {0}="u+8?type=BaseTypeDefinition">
+      <subInterfaces name="S" {0}="u+8?type=BaseTypeDefinition"/></interfaces></componentsModel>"""
+    before, after = (software("") + text.format(name) for name in ("datatype", "dataType"))
+    assert models.migrate("2.2.0", "3.0.0", before) == models.read("3.0.0", after)
+
+
+@pytest.mark.parametrize("kind", ["Resource", "Spinlock"])
+def test_other_semaphores_have_an_owner_by_default(models, kind):
+    content = f'<osModel><semaphores name="s" semaphoreType="{kind}"/><semaphores name="t"/></osModel>'
+    assert models.migrate("2.2.0", "3.0.0", content) == models.read("3.0.0", content)
+
+
+def test_a_stated_ownership_stays(models):
+    content = '<osModel><semaphores name="s" semaphoreType="CountingSemaphore" ownership="true"/></osModel>'
+    assert models.migrate("2.2.0", "3.0.0", content) == models.read("3.0.0", content)
