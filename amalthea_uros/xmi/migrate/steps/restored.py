@@ -9,6 +9,7 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.definition_maps import PARAMETER_LISTS, from_map
 from amalthea_uros.xmi.migrate.steps.kept import kept, prefix, targets_of, text_of, texts_of
+from amalthea_uros.xmi.migrate.steps.properties import property_of
 
 
 class ParameterKeys(NamedTuple):
@@ -61,7 +62,7 @@ _RESTORED = "restored from a custom property"
 def restore_3_0_0(models: ModelSet, notes: Notes) -> None:
     """Restore what the step from 3.0.0 to 2.2.0 kept; call it at the end of the step from 2.2.0 to 3.0.0."""
     for node in models.nodes("semaphores"):
-        found = node_property(node, OWNERSHIP)
+        found = property_of(node, OWNERSHIP)
         if found is not None:
             node.attributes["ownership"] = text_of(found.child("value"))
             _finish(node, found, notes)
@@ -74,7 +75,7 @@ def restore_2_0_0(models: ModelSet, notes: Notes) -> None:
     for node in models.walk():
         by_tag.setdefault(node.tag, []).append(node)
     for node in by_tag.get("osOverheads", ()):
-        found = node_property(node, TAGS)
+        found = property_of(node, TAGS)
         if found is not None:
             node.refer("tags", *targets_of(found.child("value")))
             _finish(node, found, notes)
@@ -83,11 +84,6 @@ def restore_2_0_0(models: ModelSet, notes: Notes) -> None:
         for key, found in kept(node, PROPERTY).items():
             found.attributes["key"] = key
             notes.renamed(node, _RESTORED, key)
-
-
-def node_property(node: Node, key: str) -> Node | None:
-    """The custom property of that key."""
-    return next((p for p in node.children if p.tag == "customProperties" and p.get("key") == key), None)
 
 
 def _finish(node: Node, found: Node, notes: Notes) -> None:
@@ -168,7 +164,7 @@ class _Scheduling:
         if made is None:
             return
         name = made.name
-        found = node_property(scheduler, DEFINITION)
+        found = property_of(scheduler, DEFINITION)
         if found is not None and name.startswith(USER_SPECIFIC):
             name = text_of(found.child("value"))
         if name in self.definitions:
@@ -179,7 +175,7 @@ class _Scheduling:
     def restore_parameters(self, holder: Node, keeper: Node, keys: ParameterKeys, scheduler: Node | None) -> None:
         """Restore the parameters of an allocation, scheduler or association."""
         restored = kept(keeper, keys.parameter)
-        defaults = node_property(keeper, keys.defaults)
+        defaults = property_of(keeper, keys.defaults)
         defaulted = set() if defaults is None else set(texts_of(defaults.child("value")))
         definition = None if scheduler is None else scheduler.target("definition")
         dropped = []
@@ -204,7 +200,7 @@ class _Scheduling:
             _finish(keeper, found, self.notes)
         if defaults is not None:
             _finish(keeper, defaults, self.notes)
-        order = node_property(keeper, keys.order)
+        order = property_of(keeper, keys.order)
         if order is not None:
             _sort(holder, texts_of(order.child("value")))
             _finish(keeper, order, self.notes)
