@@ -277,6 +277,10 @@ FILL = '<entries xsi:type="am:ChannelFillCondition" fillLevel="1"/>'
             "definition without a unique name: in AMALTHEA 1.2.0, the name tells it",
         ),
         (os_model(scheduler("missing"), ""), "the definition of the scheduler is in none of the files"),
+        (
+            os_model(scheduler("X").replace("SchedulerDefinition", "Task"), "") + '<swModel><tasks name="X"/></swModel>',
+            "the definition of the scheduler is in none of the files",
+        ),
         (os_model("", OSEK), "a parameter of the scheduler definition is in none of the files"),
         (
             os_model(scheduler("OSEK", "<schedulingParameters/>"), OSEK + PRIORITY),

@@ -14,16 +14,10 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.definition_maps import PARAMETER_LISTS, as_map
 from amalthea_uros.xmi.migrate.steps.kept import keep, string, strings
-from amalthea_uros.xmi.migrate.steps.restored import (
-    DEFINITION,
-    DEFINITIONS,
-    EXTENDED,
-    OF_ASSOCIATION,
-    OWN,
-    PROPERTY,
-    USER_SPECIFIC,
-    ParameterKeys,
-)
+from amalthea_uros.xmi.migrate.steps.restored import DEFINITION, DEFINITIONS, OF_ASSOCIATION, OWN, PROPERTY, ParameterKeys
+from amalthea_uros.xmi.migrate.steps.scheduling_definitions import EXTENDED, PRIORITY, QUANTUM, USER_SPECIFIC
+
+_SCHEDULER, _PARAMETER = DEFINITIONS
 
 _QUANTIZED = {"PfairPD2", "PartlyPFairPD2", "EarlyReleaseFairPD2", "PartlyEarlyReleaseFairPD2"}
 
@@ -46,7 +40,7 @@ _NANOSECONDS = {"ns": 1, "us": 1_000, "ms": 1_000_000, "s": 1_000_000_000}
 _INTEGER = re.compile(r"[+-]?\d+").fullmatch
 
 #: Custom properties of processes.
-_TAKEN_FOR_PARAMETERS = {"priority", "osekTaskGroup"}
+_TAKEN_FOR_PARAMETERS = {PRIORITY, "osekTaskGroup"}
 
 #: Puts a parameter (holder, name, value) where 1.2.0 has a place for it; whether there is one.
 Place = Callable[[Node, str, Node], bool]
@@ -54,7 +48,7 @@ Place = Callable[[Node, str, Node], bool]
 
 def change_scheduling(models: ModelSet, notes: Notes) -> None:
     """Turn definitions and parameters into what 1.2.0 has."""
-    definitions, parameters = models.nodes("schedulerDefinitions"), models.nodes("schedulingParameterDefinitions")
+    definitions, parameters = models.nodes(_SCHEDULER), models.nodes(_PARAMETER)
     for same_kind in (definitions, parameters):
         _refuse_ambiguous(same_kind, notes)
     _rename_properties(models.nodes("tasks", "isrs"), notes)
@@ -107,8 +101,8 @@ def _change_scheduler(scheduler: Node, notes: Notes) -> None:
 
 
 def _add_algorithm(scheduler: Node, definition: Node, notes: Notes) -> Node | None:
-    if definition.is_proxy:
-        notes.lost(scheduler, "the definition of the scheduler is in none of the files", definition.get("path"), "definition")
+    if definition.tag != _SCHEDULER:
+        notes.lost(scheduler, "the definition of the scheduler is in none of the files", _name(definition), "definition")
         return None
     if definition.name in _ALGORITHMS[scheduler.tag]:
         made = scheduler.add("schedulingAlgorithm", definition.name)
@@ -135,7 +129,11 @@ def _write_defaults(holder: Node, keeper: Node, keys: ParameterKeys, scheduler: 
         added.add("value", default.type).attributes = dict(default.attributes)
         stated.add(parameter.name)
         written.append(parameter.name)
-        notes.defaulted(keeper, "scheduling parameter", f"{parameter.name} = {_shown(default)}")
+        notes.defaulted(
+            keeper,
+            "default of a scheduling parameter: AMALTHEA 1.2.0 does not have it",
+            f"{parameter.name} = {_shown(default)}",
+        )
     if written:
         keep(keeper, keys.defaults, strings(written, keeper))
 
@@ -167,7 +165,7 @@ def _change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: P
         seen.add(name)
         if place(holder, name, value):
             placed.append(name)
-            notes.converted(keeper, "scheduling parameter", f"{name} = {_shown(value)}")
+            notes.converted(keeper, "scheduling parameter is stated as in AMALTHEA 1.2.0", f"{name} = {_shown(value)}")
             if node.comments:
                 holder.comments = [*(holder.comments or ()), *node.comments]
         else:
@@ -175,7 +173,7 @@ def _change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: P
             shown = _shown(value)
             keep(keeper, keys.parameter + name, value).comments = node.comments
             notes.kept(keeper, "scheduling parameter", f"{name} = {shown}")
-    order = [name for name in ("priority", *_TIMES) if name in placed]
+    order = [name for name in (PRIORITY, *_TIMES) if name in placed]
     order += [name for name in placed if name not in order] + others
     stated = [key.name for node in nodes if (key := node.target("key")) is not None]
     if order != stated:
@@ -184,10 +182,10 @@ def _change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: P
 
 def _problem(key: Node | None, value: Node | None, seen: set[str]) -> str:
     """Why a parameter cannot be kept, "" if it can."""
-    if key is None or not (key.name or key.is_proxy):
-        return "scheduling parameter without a definition that has a name"
-    if key.is_proxy:
+    if key is not None and key.tag != _PARAMETER:
         return "scheduling parameter of which the definition is in none of the files"
+    if key is None or not key.name:
+        return "scheduling parameter without a definition that has a name"
     if value is None:
         return "scheduling parameter without a value"
     return "scheduling parameter that is stated twice" if key.name in seen else ""
@@ -202,7 +200,7 @@ def _shown(value: Node) -> str:
 
 
 def _place_in_allocation(holder: Node, name: str, value: Node) -> bool:
-    if name == "priority" and value.type == "IntegerObject":
+    if name == PRIORITY and value.type == "IntegerObject":
         holder.child_or_new("schedulingParameters").attributes["priority"] = value.get("value", "0")
         return True
     if name in _TIMES and value.type == "Time":
@@ -217,7 +215,7 @@ def _place_in_algorithm(algorithm: Node, name: str, value: Node) -> bool:
         return _place_as_extension(algorithm, name, value)
     text = value.get("value")
     factor = _NANOSECONDS.get(value.get("unit"))
-    if name != "quantSize" or algorithm.type not in _QUANTIZED or value.type != "Time" or not factor or not _INTEGER(text):
+    if name != QUANTUM or algorithm.type not in _QUANTIZED or value.type != "Time" or not factor or not _INTEGER(text):
         return False
     algorithm.attributes["quantSizeNs"] = str(int(text) * factor)
     return True
@@ -236,11 +234,11 @@ def _keep_definition(node: Node, notes: Notes) -> None:
         return
     for name in PARAMETER_LISTS:
         for target in node.references.get(name, ()):
-            if target.is_proxy:
-                notes.lost(node, "a parameter of the scheduler definition is in none of the files", target.get("path"), name)
+            if target.tag != _PARAMETER:
+                notes.lost(node, "a parameter of the scheduler definition is in none of the files", _name(target), name)
 
     def report(part: Node) -> None:
         notes.lost(part, "unknown part of a definition")
 
     keep(holder, DEFINITIONS[node.tag] + node.name, as_map(node, report)).comments = node.comments
-    notes.kept(node, "definition", node.name)
+    notes.kept(node, "definition of a scheduler or scheduling parameter", node.name)

@@ -10,6 +10,7 @@ from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.definition_maps import PARAMETER_LISTS, from_map
 from amalthea_uros.xmi.migrate.steps.kept import kept, prefix, targets_of, text_of, texts_of
 from amalthea_uros.xmi.migrate.steps.properties import property_of
+from amalthea_uros.xmi.migrate.steps.scheduling_definitions import QUANTUM, TASK_GROUP, USER_SPECIFIC
 
 
 class ParameterKeys(NamedTuple):
@@ -48,13 +49,11 @@ OF_ASSOCIATION = _parameter_keys(_START + "parentAssociation/")
 #: Custom properties of processes that the step up would take for parameters; their keys follow.
 PROPERTY = _START + "customProperties/"
 
-#: The algorithm class of 1.2.0 for all that have none of their own.
-USER_SPECIFIC = "UserSpecificSchedulingAlgorithm"
-#: What the names of parameters start with that were parameter extensions.
-EXTENDED = "extended: "
-
 #: Parameters that the step up makes of defaults where 1.2.0 stated nothing.
-_FILLED_IN = {"taskGroup", "quantSize"}
+_FILLED_IN = {TASK_GROUP, QUANTUM}
+
+#: Of all objects that are looked at.
+_TAGS = {*("osModel", "osOverheads", "taskSchedulers", "interruptControllers", "taskAllocation", "tasks", "isrs"), *DEFINITIONS}
 
 _RESTORED = "restored from a custom property"
 
@@ -71,9 +70,14 @@ def restore_3_0_0(models: ModelSet, notes: Notes) -> None:
 def restore_2_0_0(models: ModelSet, notes: Notes) -> None:
     """Restore what the step from 2.0.0 to 1.2.0 kept; call it at the end of the step from 1.2.0 to 2.0.0."""
     by_tag: dict[str, list[Node]] = {}
+    is_kept = False
     # Not by `models.nodes`: the step up made new ones.
     for node in models.walk():
-        by_tag.setdefault(node.tag, []).append(node)
+        if node.tag in _TAGS:
+            by_tag.setdefault(node.tag, []).append(node)
+        is_kept = is_kept or (node.tag == "customProperties" and node.get("key").startswith(_START))
+    if not is_kept:
+        return
     for node in by_tag.get("osOverheads", ()):
         found = property_of(node, TAGS)
         if found is not None:

@@ -22,7 +22,8 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
         convert_properties(models, definitions, notes)
     definitions.insert(notes)
     _convert_conditions(models, notes)
-    restore_2_0_0(models, notes)
+    if not official:
+        restore_2_0_0(models, notes)
 
 
 def _convert_conditions(models: ModelSet, notes: Notes) -> None:

@@ -32,7 +32,7 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
             if semaphore.get("semaphoreType") == "CountingSemaphore" and "ownership" not in semaphore.attributes:
                 semaphore.attributes["ownership"] = "false"
                 notes.defaulted(semaphore, "counting semaphore: it has no owner, so ownership is false", "", "ownership")
-    restore_3_0_0(models, notes)
+        restore_3_0_0(models, notes)
 
 
 STEP = Step("2.2.0", "3.0.0", change, frozenset(_RENAMED))
