@@ -13,9 +13,10 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.definition_maps import PARAMETER_LISTS, as_map
-from amalthea_uros.xmi.migrate.steps.kept import keep, string, strings
+from amalthea_uros.xmi.migrate.steps.kept import keep, kept, prefix, string, strings
 from amalthea_uros.xmi.migrate.steps.restored import DEFINITION, DEFINITIONS, OF_ASSOCIATION, OWN, PROPERTY, ParameterKeys
 from amalthea_uros.xmi.migrate.steps.scheduling_definitions import EXTENDED, PRIORITY, QUANTUM, USER_SPECIFIC
+from amalthea_uros.xmi.migrate.steps.standard_definitions import are_standard
 
 _SCHEDULER, _PARAMETER = DEFINITIONS
 
@@ -51,6 +52,7 @@ def change_scheduling(models: ModelSet, notes: Notes) -> None:
     definitions, parameters = models.nodes(_SCHEDULER), models.nodes(_PARAMETER)
     for same_kind in (definitions, parameters):
         _refuse_ambiguous(same_kind, notes)
+    is_standard = _is_standard(models)
     _rename_properties(models.nodes("tasks", "isrs"), notes)
     for node in models.nodes("taskAllocation"):
         _write_defaults(node, node, OWN, node.target("scheduler"), "processParameters", notes)
@@ -62,9 +64,31 @@ def change_scheduling(models: ModelSet, notes: Notes) -> None:
             _change_parameters(association, node, OF_ASSOCIATION, _place_in_allocation, notes)
     for node in schedulers:
         _change_scheduler(node, notes)
-    for node in (*definitions, *parameters):
-        _keep_definition(node, notes)
+    if not (is_standard and _are_complete(schedulers, models.nodes("taskAllocation"))):
+        for node in (*definitions, *parameters):
+            _keep_definition(node, notes)
     remove_all((*definitions, *parameters))
+
+
+def _is_standard(models: ModelSet) -> bool:
+    """Whether the step up makes the same definitions, if nothing but the classes and attributes of 1.2.0 is there."""
+    algorithms = []
+    for scheduler in models.nodes("taskSchedulers", "interruptControllers"):
+        definition = scheduler.target("definition")
+        if definition is not None:
+            if definition.name not in _ALGORITHMS[scheduler.tag]:
+                return False
+            algorithms.append(definition.name)
+    keys = [node.target("key") for node in models.nodes("schedulingParameters")]
+    return are_standard(models, algorithms, [key.name for key in keys if key is not None])
+
+
+def _are_complete(schedulers: list[Node], allocations: list[Node]) -> bool:
+    """Whether the classes and attributes of 1.2.0 say everything, and nothing was kept."""
+    algorithms = [algorithm for scheduler in schedulers for algorithm in scheduler.all("schedulingAlgorithm")]
+    if any(algorithm.type in _QUANTIZED and "quantSizeNs" not in algorithm.attributes for algorithm in algorithms):
+        return False  # the default of 1.2.0 would come back
+    return not any(kept(node, prefix("2.0.0")) for node in (*schedulers, *allocations))
 
 
 def _rename_properties(processes: Iterable[Node], notes: Notes) -> None:
