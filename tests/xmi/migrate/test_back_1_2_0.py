@@ -122,6 +122,17 @@ def test_definitions_are_kept_with_all_they_say(models):
     ]
 
 
+def test_definitions_that_the_step_up_makes_anyway_are_not_kept(models):
+    options = 'requiresParentScheduler="false" passesParametersUpwards="false" hasExactlyOneChild="false"'
+    standard = f"""<schedulerDefinitions name="FixedPriorityPreemptive" {options}
+    processParameters="priority?type=SchedulingParameterDefinition"/>{PRIORITY}"""
+    content = os_model(scheduler("FixedPriorityPreemptive"), standard) + allocated(integer("priority", 1))
+    assert keys(found(taken_back(models, content), "osModel")[0]) == []
+    # Also one more word makes a difference.
+    described = content.replace('Preemptive" req', 'Preemptive" description="d" req')
+    assert len(keys(found(taken_back(models, described), "osModel")[0])) == 2
+
+
 @pytest.mark.parametrize("name", ["My own", "PriorityBased", "UserSpecificSchedulingAlgorithm3"])
 def test_a_definition_that_is_no_class_is_user_specific(models, name):
     schedulers = scheduler(name.replace(" ", "+"), string("extended%3A+min", "5 ms")) + scheduler("OSEK", name="Q")
@@ -181,7 +192,9 @@ def test_other_parameters_are_kept_and_extended_ones_are_extensions(models):
     assert keys(node)[:-1] == [f"AMALTHEA 2.0.0: schedulingParameters/{n}" for n in names if n != "extended: slice"]
 
 
-@pytest.mark.parametrize(("unit", "expected"), [("ns", {"quantSizeNs": "7"}), ("us", {"quantSizeNs": "7000"}), ("ps", {})])
+@pytest.mark.parametrize(
+    ("unit", "expected"), [("ns", {"quantSizeNs": "7"}), ("us", {"quantSizeNs": "7000"}), ("ps", {}), ("s", {})]
+)
 def test_a_quantum_is_a_number_of_nanoseconds(models, unit, expected):
     definitions = definition("PfairPD2") + parameter_definition("quantSize", "Time")
     content = os_model(scheduler("PfairPD2", time("quantSize", 7, unit)), definitions)
@@ -299,6 +312,10 @@ FILL = '<entries xsi:type="am:ChannelFillCondition" fillLevel="1"/>'
         (
             os_model(scheduler("OSEK", integer("priority", 1) * 2), OSEK + PRIORITY),
             "scheduling parameter that is stated twice",
+        ),
+        (
+            os_model(scheduler("OSEK", integer("priority", 1).replace("</sch", "<unknown/></sch")), OSEK + PRIORITY),
+            "scheduling parameter with unknown content",
         ),
         (
             os_model("", definition("X", "<unknown/>")),

@@ -6,45 +6,30 @@ the name of a definition that is no class at the scheduler, other parameters at 
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.back_parameters import (
+    ALGORITHMS,
+    QUANTIZED,
+    change_parameters,
+    name_of,
+    place_in_algorithm,
+    place_in_allocation,
+    write_defaults,
+)
 from amalthea_uros.xmi.migrate.steps.definition_maps import PARAMETER_LISTS, as_map
-from amalthea_uros.xmi.migrate.steps.kept import keep, kept, prefix, string, strings
-from amalthea_uros.xmi.migrate.steps.restored import DEFINITION, DEFINITIONS, OF_ASSOCIATION, OWN, PROPERTY, ParameterKeys
-from amalthea_uros.xmi.migrate.steps.scheduling_definitions import EXTENDED, PRIORITY, QUANTUM, USER_SPECIFIC
+from amalthea_uros.xmi.migrate.steps.kept import keep, kept, prefix, string
+from amalthea_uros.xmi.migrate.steps.restored import DEFINITION, DEFINITIONS, OF_ASSOCIATION, OWN, PROPERTY
+from amalthea_uros.xmi.migrate.steps.scheduling_definitions import PRIORITY, USER_SPECIFIC
 from amalthea_uros.xmi.migrate.steps.standard_definitions import are_standard
 
 _SCHEDULER, _PARAMETER = DEFINITIONS
 
-_QUANTIZED = {"PfairPD2", "PartlyPFairPD2", "EarlyReleaseFairPD2", "PartlyEarlyReleaseFairPD2"}
-
-#: The algorithms that 1.2.0 has, by the tag of the scheduler.
-_ALGORITHMS = {
-    "taskSchedulers": {
-        *("FixedPriorityPreemptive", "FixedPriorityPreemptiveWithBudgetEnforcement", "OSEK", "DeadlineMonotonic"),
-        *("RateMonotonic", "LeastLocalRemainingExecutionTimeFirst", "EarliestDeadlineFirst", "PriorityBasedRoundRobin"),
-        *("DeferrableServer", "PollingPeriodicServer", "SporadicServer", "ConstantBandwidthServer"),
-        *("ConstantBandwidthServerWithCASH", "Grouping", *_QUANTIZED),
-    },
-    "interruptControllers": {"PriorityBased"},
-}
-
-#: Parameters that 1.2.0 has as parts of SchedulingParameters.
-_TIMES = ("minBudget", "maxBudget", "replenishment")
-
-_NANOSECONDS = {"ns": 1, "us": 1_000, "ms": 1_000_000, "s": 1_000_000_000}
-
-_INTEGER = re.compile(r"[+-]?\d+").fullmatch
-
 #: Custom properties of processes.
 _TAKEN_FOR_PARAMETERS = {PRIORITY, "osekTaskGroup"}
-
-#: Puts a parameter (holder, name, value) where 1.2.0 has a place for it; whether there is one.
-Place = Callable[[Node, str, Node], bool]
 
 
 def change_scheduling(models: ModelSet, notes: Notes) -> None:
@@ -55,13 +40,13 @@ def change_scheduling(models: ModelSet, notes: Notes) -> None:
     is_standard = _is_standard(models)
     _rename_properties(models.nodes("tasks", "isrs"), notes)
     for node in models.nodes("taskAllocation"):
-        _write_defaults(node, node, OWN, node.target("scheduler"), "processParameters", notes)
-        _change_parameters(node, node, OWN, _place_in_allocation, notes)
+        write_defaults(node, node, OWN, node.target("scheduler"), "processParameters", notes)
+        change_parameters(node, node, OWN, place_in_allocation, notes)
     schedulers = models.nodes("taskSchedulers", "interruptControllers")
     for node in schedulers:
         for association in node.all("parentAssociation"):
-            _write_defaults(association, node, OF_ASSOCIATION, association.target("parent"), "processParameters", notes)
-            _change_parameters(association, node, OF_ASSOCIATION, _place_in_allocation, notes)
+            write_defaults(association, node, OF_ASSOCIATION, association.target("parent"), "processParameters", notes)
+            change_parameters(association, node, OF_ASSOCIATION, place_in_allocation, notes)
     for node in schedulers:
         _change_scheduler(node, notes)
     if not (is_standard and _are_complete(schedulers, models.nodes("taskAllocation"))):
@@ -76,7 +61,7 @@ def _is_standard(models: ModelSet) -> bool:
     for scheduler in models.nodes("taskSchedulers", "interruptControllers"):
         definition = scheduler.target("definition")
         if definition is not None:
-            if definition.name not in _ALGORITHMS[scheduler.tag]:
+            if definition.name not in ALGORITHMS[scheduler.tag]:
                 return False
             algorithms.append(definition.name)
     keys = [node.target("key") for node in models.nodes("schedulingParameters")]
@@ -86,7 +71,7 @@ def _is_standard(models: ModelSet) -> bool:
 def _are_complete(schedulers: list[Node], allocations: list[Node]) -> bool:
     """Whether the classes and attributes of 1.2.0 say everything, and nothing was kept."""
     algorithms = [algorithm for scheduler in schedulers for algorithm in scheduler.all("schedulingAlgorithm")]
-    if any(algorithm.type in _QUANTIZED and "quantSizeNs" not in algorithm.attributes for algorithm in algorithms):
+    if any(algorithm.type in QUANTIZED and "quantSizeNs" not in algorithm.attributes for algorithm in algorithms):
         return False  # the default of 1.2.0 would come back
     return not any(kept(node, prefix("2.0.0")) for node in (*schedulers, *allocations))
 
@@ -113,143 +98,28 @@ def _refuse_ambiguous(definitions: Iterable[Node], notes: Notes) -> None:
 def _change_scheduler(scheduler: Node, notes: Notes) -> None:
     definition = scheduler.target("definition")
     algorithm = None
-    _write_defaults(scheduler, scheduler, OWN, scheduler, "algorithmParameters", notes)
+    write_defaults(scheduler, scheduler, OWN, scheduler, "algorithmParameters", notes)
     if definition is not None:
         del scheduler.references["definition"]
         algorithm = _add_algorithm(scheduler, definition, notes)
 
     def place(_holder: Node, name: str, value: Node) -> bool:
-        return algorithm is not None and _place_in_algorithm(algorithm, name, value)
+        return algorithm is not None and place_in_algorithm(algorithm, name, value)
 
-    _change_parameters(scheduler, scheduler, OWN, place, notes)
+    change_parameters(scheduler, scheduler, OWN, place, notes)
 
 
 def _add_algorithm(scheduler: Node, definition: Node, notes: Notes) -> Node | None:
     if definition.tag != _SCHEDULER:
-        notes.lost(scheduler, "the definition of the scheduler is in none of the files", _name(definition), "definition")
+        notes.lost(scheduler, "the definition of the scheduler is in none of the files", name_of(definition), "definition")
         return None
-    if definition.name in _ALGORITHMS[scheduler.tag]:
+    if definition.name in ALGORITHMS[scheduler.tag]:
         made = scheduler.add("schedulingAlgorithm", definition.name)
     else:
         made = scheduler.add("schedulingAlgorithm", USER_SPECIFIC)
         keep(scheduler, DEFINITION, string(definition.name, scheduler))
     notes.converted(scheduler, "scheduler definition -> algorithm class", f"{definition.name} -> {made.type}", "definition")
     return made
-
-
-def _write_defaults(holder: Node, keeper: Node, keys: ParameterKeys, scheduler: Node | None, kind: str, notes: Notes) -> None:
-    """State what the defaults of the definitions say, which 1.2.0 does not have; of what can be stated there at all."""
-    definition = None if scheduler is None else scheduler.target("definition")
-    if definition is None:
-        return
-    stated = {key.name for node in holder.all("schedulingParameters") if (key := node.target("key")) is not None}
-    written = []
-    for parameter in definition.references.get(kind, ()):
-        default = parameter.child("defaultValue")
-        if default is None or parameter.name in stated or not _has_place(parameter.name, default, kind, definition, scheduler):
-            continue
-        added = holder.add("schedulingParameters")
-        added.refer("key", parameter)
-        added.add("value", default.type).attributes = dict(default.attributes)
-        stated.add(parameter.name)
-        written.append(parameter.name)
-        notes.defaulted(
-            keeper,
-            "default of a scheduling parameter: AMALTHEA 1.2.0 does not have it",
-            f"{parameter.name} = {_shown(default)}",
-        )
-    if written:
-        keep(keeper, keys.defaults, strings(written, keeper))
-
-
-def _has_place(name: str, value: Node, kind: str, definition: Node, scheduler: Node | None) -> bool:
-    """Whether 1.2.0 has a place for a parameter: found by putting a copy there."""
-    copy = Node("value", value.type, dict(value.attributes))
-    if kind == "processParameters":
-        return _place_in_allocation(Node("taskAllocation"), name, copy)
-    is_known = scheduler is not None and definition.name in _ALGORITHMS.get(scheduler.tag, ())
-    return _place_in_algorithm(Node("schedulingAlgorithm", definition.name if is_known else USER_SPECIFIC), name, copy)
-
-
-def _change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: Place, notes: Notes) -> None:
-    """Put the parameters of an allocation, scheduler or association where 1.2.0 has a place for them, else into custom properties."""
-    placed: list[str] = []
-    others: list[str] = []
-    seen: set[str] = set()
-    nodes = holder.all("schedulingParameters")
-    # The former parts and the new one of 1.2.0 have the same tag.
-    remove_all(nodes)
-    for node in nodes:
-        key, value = node.target("key"), node.child("value")
-        problem = _problem(key, value, seen)
-        if problem or key is None or value is None:
-            notes.lost(keeper, problem, _name(key))
-            continue
-        name = key.name
-        seen.add(name)
-        if place(holder, name, value):
-            placed.append(name)
-            notes.converted(keeper, "scheduling parameter is stated as in AMALTHEA 1.2.0", f"{name} = {_shown(value)}")
-            if node.comments:
-                holder.comments = [*(holder.comments or ()), *node.comments]
-        else:
-            others.append(name)
-            shown = _shown(value)
-            keep(keeper, keys.parameter + name, value).comments = node.comments
-            notes.kept(keeper, "scheduling parameter", f"{name} = {shown}")
-    order = [name for name in (PRIORITY, *_TIMES) if name in placed]
-    order += [name for name in placed if name not in order] + others
-    stated = [key.name for node in nodes if (key := node.target("key")) is not None]
-    if order != stated:
-        keep(keeper, keys.order, strings(stated, keeper))
-
-
-def _problem(key: Node | None, value: Node | None, seen: set[str]) -> str:
-    """Why a parameter cannot be kept, "" if it can."""
-    if key is not None and key.tag != _PARAMETER:
-        return "scheduling parameter of which the definition is in none of the files"
-    if key is None or not key.name:
-        return "scheduling parameter without a definition that has a name"
-    if value is None:
-        return "scheduling parameter without a value"
-    return "scheduling parameter that is stated twice" if key.name in seen else ""
-
-
-def _name(key: Node | None) -> str:
-    return "" if key is None else key.name or key.get("path")
-
-
-def _shown(value: Node) -> str:
-    return " ".join(text for name in ("value", "unit") if (text := value.get(name))) or value.type
-
-
-def _place_in_allocation(holder: Node, name: str, value: Node) -> bool:
-    if name == PRIORITY and value.type == "IntegerObject":
-        holder.child_or_new("schedulingParameters").attributes["priority"] = value.get("value", "0")
-        return True
-    if name in _TIMES and value.type == "Time":
-        value.tag, value.type = name, ""
-        holder.child_or_new("schedulingParameters").insert(value)
-        return True
-    return _place_as_extension(holder, name, value)
-
-
-def _place_in_algorithm(algorithm: Node, name: str, value: Node) -> bool:
-    if algorithm.type == USER_SPECIFIC:
-        return _place_as_extension(algorithm, name, value)
-    text = value.get("value")
-    factor = _NANOSECONDS.get(value.get("unit"))
-    if name != QUANTUM or algorithm.type not in _QUANTIZED or value.type != "Time" or not factor or not _INTEGER(text):
-        return False
-    algorithm.attributes["quantSizeNs"] = str(int(text) * factor)
-    return True
-
-
-def _place_as_extension(holder: Node, name: str, value: Node) -> bool:
-    if not name.startswith(EXTENDED) or value.type != "StringObject" or "value" not in value.attributes:
-        return False
-    holder.add("parameterExtensions", like=value, key=name.removeprefix(EXTENDED), value=value.get("value"))
-    return True
 
 
 def _keep_definition(node: Node, notes: Notes) -> None:
@@ -259,7 +129,7 @@ def _keep_definition(node: Node, notes: Notes) -> None:
     for name in PARAMETER_LISTS:
         for target in node.references.get(name, ()):
             if target.tag != _PARAMETER:
-                notes.lost(node, "a parameter of the scheduler definition is in none of the files", _name(target), name)
+                notes.lost(node, "a parameter of the scheduler definition is in none of the files", name_of(target), name)
 
     def report(part: Node) -> None:
         notes.lost(part, "unknown part of a definition")
