@@ -21,7 +21,15 @@ from amalthea_uros.xmi.migrate.parse import Href, Parsed
 from amalthea_uros.xmi.migrate.versions import ITEA
 
 #: Attributes that are text in all classes of all versions, whatever they look like.
-_TEXT = frozenset({"name", "description", "displayName", "abbreviation", "xmlPrefix"})
+_TEXT = frozenset(
+    {
+        *("name", "description", "displayName", "abbreviation", "xmlPrefix", "algorithm", "alias", "interfaceName", "osName"),
+        *("platformName", "platformType", "structureType", "tagType", "typeName", "vendor", "version"),
+    }
+)
+
+#: Tags of entries of which the key is text.
+_TEXT_KEYS = frozenset({"customProperties", "entries", "needs", "parameterExtensions"})
 
 #: Attributes `value` that are text, by the class of their object: custom properties and, in ITEA versions, hardware attributes.
 _TEXT_VALUES = frozenset({"StringObject", "StrValue", "CharValue", "FeatureTypes"})
@@ -247,8 +255,10 @@ def _is_of_another(node: Node, holder: str) -> bool:
 
 
 def _is_text_value(node: Node, key: str) -> bool:
-    """Whether an attribute is the text of a custom property."""
-    return (key == "key" and node.tag == "customProperties") or (key == "value" and local_name(node.type) in _TEXT_VALUES)
+    """Whether an attribute is the text of a custom property or parameter extension."""
+    if key == "value":
+        return node.tag == "parameterExtensions" or local_name(node.type) in _TEXT_VALUES
+    return key == "key" and node.tag in _TEXT_KEYS
 
 
 def _normal(path: Path) -> Path:

@@ -6,6 +6,7 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.restored import restore_2_0_0
 from amalthea_uros.xmi.migrate.steps.scheduling_definitions import Definitions
 from amalthea_uros.xmi.migrate.steps.scheduling_parameters import convert_algorithms, convert_parameters
 from amalthea_uros.xmi.migrate.steps.scheduling_properties import convert_properties
@@ -21,6 +22,8 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
         convert_properties(models, definitions, notes)
     definitions.insert(notes)
     _convert_conditions(models, notes)
+    if not official:
+        restore_2_0_0(models, notes)
 
 
 def _convert_conditions(models: ModelSet, notes: Notes) -> None:

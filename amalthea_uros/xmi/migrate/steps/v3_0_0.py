@@ -6,6 +6,7 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.data_types import convert_data_types
+from amalthea_uros.xmi.migrate.steps.restored import restore_3_0_0
 
 #: Classes of conditions and switches; most of them are written only where the class differs from that of the feature.
 _RENAMED = {
@@ -31,6 +32,7 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
             if semaphore.get("semaphoreType") == "CountingSemaphore" and "ownership" not in semaphore.attributes:
                 semaphore.attributes["ownership"] = "false"
                 notes.defaulted(semaphore, "counting semaphore: it has no owner, so ownership is false", "", "ownership")
+        restore_3_0_0(models, notes)
 
 
 STEP = Step("2.2.0", "3.0.0", change, frozenset(_RENAMED))

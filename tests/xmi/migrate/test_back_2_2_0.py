@@ -1,0 +1,85 @@
+"""3.0.0 -> 2.2.0."""
+
+import pytest
+from inline_migration import InlineModels
+
+from amalthea_uros.xmi.migrate.notes import Kind
+
+TYPE = '<typeDefinitions xsi:type="am:BaseTypeDefinition" name="unsigned 8"/>'
+TYPE_REF = 'xsi:type="am:TypeRef" typeDef="unsigned+8?type=BaseTypeDefinition"'
+
+
+@pytest.fixture
+def models(tmp_path):
+    return InlineModels(tmp_path)
+
+
+def semaphore(attributes, kept=""):
+    value = f'<value xsi:type="am:BooleanObject" value="{kept}"/>'
+    content = f'<customProperties key="AMALTHEA 3.0.0: ownership">{value}</customProperties>' if kept else ""
+    return f'<osModel><semaphores name="S" maxValue="1" {attributes}>{content}</semaphores></osModel>'
+
+
+def test_types_of_labels_and_channels_are_parts_again(models):
+    before = f"""<swModel>
+    <labels name="L" dataType="unsigned+8?type=BaseTypeDefinition"/>
+    <labels name="without type"/>
+    <channels name="C" elementType="unsigned+8?type=BaseTypeDefinition"/>
+    {TYPE}</swModel>"""
+    after = f"""<swModel>
+    <labels name="L"><dataType {TYPE_REF}/></labels>
+    <labels name="without type"/>
+    <channels name="C"><elementType {TYPE_REF}/></channels>
+    {TYPE}</swModel>"""
+    assert models.migrate("3.0.0", "2.2.0", before) == models.read("2.2.0", after)
+    assert models.migrate("2.2.0", "3.0.0", after) == models.read("3.0.0", before)
+
+
+def test_a_type_may_be_in_another_file_or_in_none(models):
+    before = """<swModel>
+    <labels name="L"><dataType href="amlt:/#unsigned+8?type=BaseTypeDefinition"/></labels>
+    <labels name="M"><dataType href="amlt:/#missing?type=BaseTypeDefinition"/></labels></swModel>"""
+    after = """<swModel>
+    <labels name="L"><dataType xsi:type="am:TypeRef"><typeDef href="amlt:/#unsigned+8?type=BaseTypeDefinition"/></dataType></labels>
+    <labels name="M"><dataType xsi:type="am:TypeRef"><typeDef href="amlt:/#missing?type=BaseTypeDefinition"/></dataType></labels>
+    </swModel>"""
+    other = f"<swModel>{TYPE}</swModel>"
+    assert models.migrate("3.0.0", "2.2.0", before, other) == models.read("2.2.0", after, other)
+
+
+def test_interfaces_have_a_datatype(models):
+    parts = f"""<componentsModel><interfaces name="I" {{0}}="unsigned+8?type=BaseTypeDefinition">
+    <subInterfaces name="J" {{0}}="unsigned+8?type=BaseTypeDefinition"/></interfaces></componentsModel>
+    <swModel>{TYPE}</swModel>"""
+    assert models.migrate("3.0.0", "2.2.0", parts.format("dataType")) == models.read("2.2.0", parts.format("datatype"))
+
+
+@pytest.mark.parametrize(
+    ("kind", "stated", "kept"),
+    [
+        ("CountingSemaphore", "false", ""),
+        ("CountingSemaphore", "true", "true"),
+        ("CountingSemaphore", None, "true"),
+        ("Resource", "true", ""),
+        ("Resource", None, ""),
+        ("Spinlock", "false", "false"),
+    ],
+)
+def test_ownership_is_kept_where_the_type_does_not_say_it(models, kind, stated, kept):
+    attributes = f'semaphoreType="{kind}"'
+    before = semaphore(attributes + (f' ownership="{stated}"' if stated else ""))
+    assert models.migrate("3.0.0", "2.2.0", before) == models.read("2.2.0", semaphore(attributes, kept))
+    assert len(models.messages(Kind.KEPT)) == bool(kept)
+    restored = models.read("3.0.0", semaphore(attributes + (f' ownership="{kept}"' if kept else "")))
+    if kept:
+        assert models.migrate("2.2.0", "3.0.0", semaphore(attributes, kept)) == restored
+
+
+def test_a_mutex_is_an_error(models):
+    models.migrate("3.0.0", "2.2.0", semaphore('semaphoreType="Mutex"'))
+    assert models.messages(Kind.LOST) == ["semaphore type Mutex: only AMALTHEA 3.0.0 and later have it"]
+
+
+def test_a_property_that_was_never_restored_is_an_error(models):
+    models.migrate("3.0.0", "2.2.0", semaphore('semaphoreType="Resource"', "false"))
+    assert models.messages(Kind.LOST) == ["custom property of an earlier migration back that was never restored"]
