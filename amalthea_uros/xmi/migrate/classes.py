@@ -77,11 +77,13 @@ _CLASSES: dict[str, tuple[str, ...]] = {
 
 
 def may_be(node: Node, class_name: str) -> bool:
-    """Whether a reference that names that class (without package) can mean the node."""
+    """Whether a reference that names that class, with or without package, can mean the node."""
     if node.type:
-        return local_name(node.type) == class_name
+        # ITEA versions have two classes `Periodic`: of stimuli and of activations.
+        both = ":" in node.type and ":" in class_name
+        return node.type == class_name if both else local_name(node.type) == local_name(class_name)
     known = _CLASSES.get(node.tag)
-    return known is None or class_name in known
+    return known is None or local_name(class_name) in known
 
 
 def is_of(node: Node, class_name: str) -> bool:

@@ -173,7 +173,7 @@ class _Linker:
         segments = [unquote_plus(segment) for segment in path.split("/")]
         # The converters to 0.9.0 encoded some names twice.
         for read in (segments, list(map(unquote_plus, segments))):
-            fitting = self.fitting(read[-1], local_name(class_name))
+            fitting = self.fitting(read[-1], class_name)
             if len(read) > 1:
                 fitting = [n for n in fitting if not _is_of_another(n, read[-2])]
             if len(fitting) > 1 and len(read) > 1:
@@ -193,7 +193,7 @@ class _Linker:
         if found or name != NO_NAME:
             return found
         if class_name not in self.nameless_of:
-            self.nameless_of[class_name] = [node for node in self.nameless if is_of(node, class_name)]
+            self.nameless_of[class_name] = [node for node in self.nameless if is_of(node, local_name(class_name))]
         return self.nameless_of[class_name]
 
     def at(self, root: Node, text: str) -> Node | None:
