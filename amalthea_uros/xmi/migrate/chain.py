@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
+from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree, all_below
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
@@ -55,13 +55,11 @@ def _take(models: ModelSet, step: Step, notes: Notes, official: bool) -> str:
 
 def _version_of_content(tree: Tree, target: str) -> str:
     """The version to begin with: the declared one, or one shortly before if the content is still that of it."""
-    names: set[str] = set()
     found, version = tree.version, tree.version
     if position(target) < position(version):
         return version
-    for node in tree.root.walk():
-        names.add(node.tag)
-        names.add(node.type)
+    nodes = all_below([tree.root])
+    names = {node.tag for node in nodes} | {node.type for node in nodes}
     for _ in range(_BEHIND):
         before = next((step for step in _UP.values() if step.target == version), None)
         if before is None:
@@ -76,8 +74,8 @@ def drop_dangling(models: ModelSet, notes: Notes) -> None:
     """Remove references to objects that a step removed."""
     roots = {tree.root for tree in models.trees}
     attached: dict[Node, bool] = {}
-    for root in roots:
-        for node in root.walk():
+    for node in all_below(list(roots)):
+        if node.references:
             for name, targets in list(node.references.items()):
                 for target in targets:
                     if target not in attached:

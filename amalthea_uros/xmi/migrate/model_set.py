@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -95,13 +96,13 @@ class ModelSet:
         self.proxies: list[Node] = []
         self.set_aside: dict[tuple[Node, str], list[Node]] = {}
         self.stated: dict[Node, str] = {}
-        self._by_tag: dict[str, list[Node]] | None = None
+        self._index: _Index | None = None
         self._active: list[Tree] = trees
 
     def begin_step(self, version: str) -> None:
         """From now on only the files of that version are meant; nodes are indexed anew."""
         self._active = [tree for tree in self.trees if tree.version == version]
-        self._by_tag = None
+        self._index = None
 
     @property
     def active(self) -> list[Tree]:
@@ -114,15 +115,25 @@ class ModelSet:
         return [tree.root for tree in self._active]
 
     def walk(self) -> Iterator[Node]:
-        """Every node of the files that the present step is about."""
-        for root in self.roots:
-            yield from root.walk()
+        """Every node of the files that the present step is about, as of now."""
+        return iter(all_below(self.roots))
+
+    @property
+    def index(self) -> _Index:
+        """The nodes by tag and by type, as of the first use within the step."""
+        if self._index is None:
+            self._index = _Index(self.roots)
+        return self._index
 
     def nodes(self, *tags: str) -> list[Node]:
-        """Every node of these tags, in order for one tag; as of the first call within the step."""
-        if self._by_tag is None:
-            self._by_tag = _by_tag(self.roots)
-        return [node for tag in tags for node in self._by_tag.get(tag, ())]
+        """Every node of these tags, in order for one tag; as of the first use of the index within the step."""
+        by_tag = self.index.by_tag
+        return [node for tag in tags for node in by_tag.get(tag, ())]
+
+    def of_type(self, *types: str) -> list[Node]:
+        """Every node that states one of these types, in order for one type; as of the first use of the index within the step."""
+        by_type = self.index.by_type
+        return [node for name in types for node in by_type.get(name, ()) if node.type == name]
 
     def parts(self, *path: str) -> list[Node]:
         """Everything below the roots that a path of tags leads to."""
@@ -131,10 +142,11 @@ class ModelSet:
     def rename_classes(self, renamed: dict[str, str]) -> list[Node]:
         """Rename classes, in `xsi:type` and where references name them; the objects (not the proxies) whose class was renamed."""
         found = []
-        for node in self.walk():
-            if node.type in renamed:
-                node.type = renamed[node.type]
+        for old, new in renamed.items():
+            for node in self.of_type(old):
+                node.type = new
                 found.append(node)
+        for node in self.walk():
             if node.target_class in renamed:
                 node.target_class = renamed[node.target_class]
         for node in self.proxies:
@@ -142,17 +154,28 @@ class ModelSet:
         return found
 
 
-def _by_tag(roots: list[Node]) -> dict[str, list[Node]]:
-    """Every node by its tag. Not by `walk`, because this is done once per step."""
-    found: dict[str, list[Node]] = {}
-    stack = roots[::-1]
-    while stack:
-        node = stack.pop()
-        known = found.get(node.tag)
-        if known is None:
-            found[node.tag] = [node]
-        else:
-            known.append(node)
-        if node.children:
-            stack += node.children[::-1]
+class _Index:
+    """Nodes by tag, and by type where they state one."""
+
+    def __init__(self, roots: list[Node]) -> None:
+        self.by_tag: dict[str, list[Node]] = defaultdict(list)
+        self.by_type: dict[str, list[Node]] = defaultdict(list)
+        by_tag, by_type = self.by_tag, self.by_type
+        for node in all_below(roots):
+            by_tag[node.tag].append(node)
+            if node.type:
+                by_type[node.type].append(node)
+
+
+def all_below(roots: list[Node]) -> list[Node]:
+    """Every node of some trees, parents first; faster than walking, and unaffected by changes afterwards."""
+    found: list[Node] = []
+
+    def visit(nodes: list[Node]) -> None:
+        for node in nodes:
+            found.append(node)
+            if node.children:
+                visit(node.children)
+
+    visit(roots)
     return found

@@ -161,7 +161,8 @@ def test_many_objects_of_one_name_are_told_apart_quickly(tmp_path):
 def test_a_class_that_two_packages_have(tmp_path):
     content = (
         '<swModel><tasks name="T" stimuli="P?type=stimuli.Periodic"/><runnables name="R" activation="P?type=sw.Periodic"/>'
-        '<activations xsi:type="sw:Periodic" name="P"/></swModel><stimuliModel><stimuli xsi:type="stimuli:Periodic" name="P"/></stimuliModel>'
+        '<activations xsi:type="sw:Periodic" name="P"/></swModel>'
+        '<stimuliModel><stimuli xsi:type="stimuli:Periodic" name="P"/></stimuliModel>'
     )
     models = opened(*write(tmp_path, "1.3.0", m__amxmi=content))
     (task,), (runnable_,) = models.nodes("tasks"), models.nodes("runnables")

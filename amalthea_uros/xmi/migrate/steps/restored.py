@@ -69,15 +69,13 @@ def restore_3_0_0(models: ModelSet, notes: Notes) -> None:
 
 def restore_2_0_0(models: ModelSet, notes: Notes) -> None:
     """Restore what the step from 2.0.0 to 1.2.0 kept; call it at the end of the step from 1.2.0 to 2.0.0."""
+    if not any(node.get("key").startswith(_START) for node in models.nodes("customProperties")):
+        return
     by_tag: dict[str, list[Node]] = {}
-    is_kept = False
     # Not by `models.nodes`: the step up made new ones.
     for node in models.walk():
         if node.tag in _TAGS:
             by_tag.setdefault(node.tag, []).append(node)
-        is_kept = is_kept or (node.tag == "customProperties" and node.get("key").startswith(_START))
-    if not is_kept:
-        return
     for node in by_tag.get("osOverheads", ()):
         found = property_of(node, TAGS)
         if found is not None:

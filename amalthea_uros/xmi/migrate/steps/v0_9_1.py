@@ -10,8 +10,8 @@ from amalthea_uros.xmi.migrate.step import Step
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.9.0."""
-    for node in models.walk():
-        if node.type == "TimeObject" and (not official or _is_value_of_property(node)):
+    for node in models.of_type("TimeObject"):
+        if not official or _is_value_of_property(node):
             node.type = "Time"
             notes.renamed(node, "TimeObject -> Time")
 

@@ -49,11 +49,7 @@ def insert_after(following: dict[Node, Node]) -> None:
 
 def by_class(models: ModelSet, names: Iterable[str]) -> dict[str, list[Node]]:
     """The objects whose `xsi:type` states one of some classes."""
-    found: dict[str, list[Node]] = {name: [] for name in names}
-    for node in models.walk():
-        if node.type in found:
-            found[node.type].append(node)
-    return found
+    return {name: models.of_type(name) for name in names}
 
 
 def quantity_text(node: Node, official: bool) -> str:

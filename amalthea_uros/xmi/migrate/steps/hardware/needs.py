@@ -12,7 +12,7 @@ _NEEDS = {"InstructionsConstant": "NeedConstant", "InstructionsDeviation": "Need
 
 def convert_instructions(models: ModelSet, notes: Notes) -> list[Node]:
     """Convert the instructions of runnables and schedulers, and return them."""
-    found = [node for node in models.walk() if node.type == "RunnableInstructions"]
+    found = models.of_type("RunnableInstructions")
     for item in found:
         item.type = "ExecutionNeed"
         for default in item.all("default"):
