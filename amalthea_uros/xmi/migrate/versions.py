@@ -60,6 +60,12 @@ def is_older(version: str) -> bool:
     return version in _POSITIONS and _POSITIONS[version] < _POSITIONS[OLDEST_SUPPORTED]
 
 
+def migrated_name(name: str, target: str) -> str:
+    """The name of a file in another version: until ITEA 1.2.0, sub-models had suffixes of their own, such as `.amxmi-sw`."""
+    is_sub_model = ".amxmi-" in name and not name.endswith(".amxmi")
+    return name + ".amxmi" if is_sub_model and position(target) >= position("ITEA 1.3.0") else name
+
+
 class _RootFound(Exception):  # noqa: N818 (no error: it ends the search)
     """Stops the parser at the root element."""
 
