@@ -7,7 +7,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from amalthea_uros.report.wording import counted
-from amalthea_uros.services.migrate import FileState, Kind, MigrationChange, MigrationResult
+from amalthea_uros.services.migrate import FileState, Kind, MigrationChange, MigrationResult, spelled
+
+#: Of more versions only the first and the last are named.
+_MOST_VERSIONS = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +37,7 @@ class StepReport:
     @property
     def title(self) -> str:
         """The heading."""
-        return f"To AMALTHEA {self.version}" if self.version else "Reading"
+        return f"To {spelled(self.version)}" if self.version else "Reading"
 
 
 def steps(result: MigrationResult) -> list[StepReport]:
@@ -56,8 +59,7 @@ def summary(result: MigrationResult) -> str:
     done = [file for file in result.files if file.state in (FileState.WRITTEN, FileState.PLANNED, FileState.MIGRATED)]
     parts = []
     if done:
-        versions = ", ".join(sorted({file.version for file in done}, key=_version_key))
-        parts.append(f"{counted(len(done), 'file')}: AMALTHEA {versions} -> {result.version}")
+        parts.append(f"{counted(len(done), 'file')}: {_from(file.version for file in done)} -> {result.version}")
         parts += _counts(result.changes) or ["nothing else to convert"]
     if as_is := sum(file.state is FileState.AS_IS for file in result.files):
         has = "has" if as_is == 1 else "have"
@@ -67,6 +69,14 @@ def summary(result: MigrationResult) -> str:
     if any(file.state is FileState.PLANNED for file in result.files):
         parts.append("dry run")
     return ", ".join(parts)
+
+
+def _from(versions: Iterable[str]) -> str:
+    """The versions before, or the range of many."""
+    found = sorted(set(versions), key=_version_key)
+    if len(found) > _MOST_VERSIONS:
+        return f"{spelled(found[0])} to {found[-1]}"
+    return ", ".join(map(spelled, found))
 
 
 def _counts(changes: Iterable[MigrationChange]) -> list[str]:

@@ -24,6 +24,7 @@ from amalthea_uros.xmi.migrate.loss import losses_of_going_back
 from amalthea_uros.xmi.migrate.notes import Kind as Kind
 from amalthea_uros.xmi.migrate.sets import InputFile, sets_of
 from amalthea_uros.xmi.migrate.versions import VERSIONS, migrated_name
+from amalthea_uros.xmi.migrate.versions import spelled as spelled
 from amalthea_uros.xmi.writer import document_text
 
 #: The versions in which models can be written; nothing was ever migrated to the first one.

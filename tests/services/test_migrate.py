@@ -213,6 +213,12 @@ class TestSets:
         assert [finding.rule for finding in result.findings] == ["XMI002", "XMI103", "XMI006", "XMI005"]
         assert versions(tmp_path / "models-3.3.0") == {"a.amxmi": "3.3.0"}
 
+    def test_a_part_of_a_model_is_refused(self, tmp_path):
+        spaces = f'xmlns:hw="{ITEA}1.3.0/hw"'
+        (tmp_path / "a.amxmi-hw").write_text(f"<hw:ComplexPin {spaces}/>")
+        (finding,) = migrate_files(tmp_path / "a.amxmi-hw").findings
+        assert (finding.rule, finding.message) == ("XMI005", "not a whole model: the root element is a ComplexPin")
+
     def test_a_set_with_a_bad_file_is_not_written(self, tmp_path):
         folder = tmp_path / "models"
         write(folder / "a.amxmi", "0.8.2", TASK.replace("amlt:/", "b.amxmi"))
@@ -406,7 +412,7 @@ class TestModelsInMemory:
         ]
         assert model[am.Task, "T"].stimuli == [model[am.Stimulus, "S"]]
         assert [finding.message for finding in model.findings if "migrated" in finding.message] == [
-            "AMALTHEA ITEA 1.3.0, 0.8.2 was migrated to 3.3.0 in memory (2 files); the files are unchanged"
+            "ITEA 1.3.0, AMALTHEA 0.8.2 was migrated to 3.3.0 in memory (2 files); the files are unchanged"
         ]
 
     def test_a_new_file_that_an_old_one_names_is_read_once(self, tmp_path):

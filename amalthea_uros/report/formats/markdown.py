@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import IO, TYPE_CHECKING
 
 from amalthea_uros.report.migration import steps, summary
+from amalthea_uros.services.migrate import spelled
 
 if TYPE_CHECKING:
     from amalthea_uros.services.migrate import MigrationResult
@@ -19,7 +20,7 @@ def write(result: MigrationResult, stream: IO[str]) -> None:
 
 
 def _lines(result: MigrationResult) -> Iterator[str]:
-    yield from (f"# Migration to AMALTHEA {result.version}", "", summary(result), "", "## Files", "")
+    yield from (f"# Migration to {spelled(result.version)}", "", summary(result), "", "## Files", "")
     files = [(file.path, file.version or "unknown", file.state, file.target or "") for file in result.files]
     yield from _table(("file", "version", "", "result"), files)
     if result.lost:

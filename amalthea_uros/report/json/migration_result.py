@@ -33,7 +33,7 @@ def content(result: MigrationResult) -> dict[str, Any]:
 def _change(change: MigrationChange) -> dict[str, Any]:
     place = change.location
     return {
-        "kind": _KINDS.get(change.kind, change.kind),
+        "kind": _KINDS.get(change.kind, change.kind.replace(" ", "_")),
         "step": change.step or None,
         "message": change.message,
         "detail": change.detail,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from amalthea_uros.report.migration import steps, summary
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.services.migrate import MigrationResult
+from amalthea_uros.services.migrate import MigrationResult, spelled
 
 
 def write(result: MigrationResult, terminal: Terminal) -> None:
     """Write the files, what each step did, and the sum of it."""
     for file in result.files:
-        version = f"AMALTHEA {file.version}, " if file.version else ""
+        version = f"{spelled(file.version)}, " if file.version else ""
         where = f" to {file.target}" if file.target is not None else ""
         terminal.line(f"{terminal.style(str(file.path), '1')}: {version}{file.state}{where}")
     for step in steps(result):
@@ -20,12 +20,12 @@ def write(result: MigrationResult, terminal: Terminal) -> None:
                 f"{group.count:,}",
                 group.first.kind,
                 group.first.message,
-                group.place,
                 group.first.detail or group.first.object,
+                group.place,
             )
             for group in step.groups
         ]
-        terminal.table(("number", "", "what", "first", "example"), rows, right=(0,))
+        terminal.table(("number", "", "what", "example", "first"), rows, right=(0,))
     if result.files:
         terminal.line()
     terminal.line(summary(result))

@@ -14,12 +14,12 @@ from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import newest_version
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.migrate.chain import migrate, version_of_content
-from amalthea_uros.xmi.migrate.model_set import ModelSet
+from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
 from amalthea_uros.xmi.migrate.notes import Kind, Note, Notes
 from amalthea_uros.xmi.migrate.read_set import read_set
 from amalthea_uros.xmi.migrate.steps import DOWN
 from amalthea_uros.xmi.migrate.tree_reader import read_trees
-from amalthea_uros.xmi.migrate.versions import VERSIONS, is_known, is_older, position
+from amalthea_uros.xmi.migrate.versions import VERSIONS, is_known, is_older, position, spelled
 from amalthea_uros.xmi.migrate.write import tree_text
 from amalthea_uros.xmi.reader import ReadResult, read
 from amalthea_uros.xmi.references import resolve
@@ -113,6 +113,9 @@ def migrate_set(
     versions = [tree.version for tree in models.trees]
     begin = [version_of_content(tree, target) for tree in models.trees]
     migrate(models, target, notes, official)
+    refused = [finding for tree in models.trees for finding in _fragment(tree, models, target)]
+    if refused:
+        raise ReadError(refused)
     same = {place for place, version in enumerate(begin) if version == target}
     if len(same) < len(begin):
         same = {place for place in same if not _refers_to_others(models, place, same)}
@@ -127,18 +130,30 @@ def refusals(path: Path, content: FileText, version: str, target: str, where: Lo
             read(path, content)
         except ReadError as error:
             return error.findings
-        message = f"AMALTHEA {version} is not a known version, so it cannot be migrated"
+        message = f"{spelled(version)} is not a known version, so it cannot be migrated"
         help_text = f"Correct the version in the namespace of the root element; the newest known one is {VERSIONS[-1]}."
         return [Finding("XMI103", Severity.ERROR, message, where, help_text)]
     lowest = DOWN[-1].target
     if position(target) < min(position(version), position(lowest)):
-        message = f"AMALTHEA {version} cannot be migrated to the older version {target}"
+        message = f"{spelled(version)} cannot be migrated to the older version {target}"
         if position(version) > position(lowest):
             help_text = f"Choose {lowest} or newer: no model is taken further back."
         else:
             help_text = f"Choose {version} or newer: only models newer than {lowest} are taken back."
         return [Finding("XMI103", Severity.ERROR, message, where, help_text)]
     return []
+
+
+def _fragment(tree: Tree, models: ModelSet, target: str) -> Sequence[Finding]:
+    """That a file holds neither a model nor a sub-model, but only a part of one; of no matter in versions without classes."""
+    if tree.root.tag == "Amalthea" or is_older(target):
+        return []
+    origin = tree.root.origin
+    message = f"not a whole model: the root element is a {models.origins.labels[origin][0]}"
+    help_text = (
+        "Only models and sub-models are migrated; the roots of these are AMALTHEA or Amalthea, SWModel, HWModel and so on."
+    )
+    return [Finding("XMI005", Severity.ERROR, message, models.origins.location(origin), help_text)]
 
 
 def _refers_to_others(models: ModelSet, place: int, same: set[int]) -> bool:
@@ -189,9 +204,9 @@ def announcements(migrated: MigratedSet) -> list[Finding]:
         return []
     first = models.trees[places[0]]
     others = f" ({len(places)} files)" if len(places) > 1 else ""
-    stated = ", ".join(dict.fromkeys(migrated.versions[place] for place in places))
+    stated = ", ".join(dict.fromkeys(spelled(migrated.versions[place]) for place in places))
     files = "the files are" if len(places) > 1 else "the file is"
-    message = f"AMALTHEA {stated} was migrated to {migrated.target} in memory{others}; {files} unchanged"
+    message = f"{stated} was migrated to {migrated.target} in memory{others}; {files} unchanged"
     help_text = "`amuros migrate` writes the model in a newer version, with a report of what was converted."
     where = models.origins.location(first.root.origin)
     return [Finding("XMI008", Severity.INFO, message, where, help_text), *_losses(migrated)]

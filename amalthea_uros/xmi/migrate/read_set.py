@@ -17,9 +17,7 @@ from amalthea_uros.xmi.migrate.parse import Parsed, parse
 SUFFIX = ".amxmi"
 
 
-def read_set(
-    files: Iterable[tuple[Path, FileText]], max_size: int, notes: Notes, elsewhere: Collection[Path] = ()
-) -> ModelSet:
+def read_set(files: Iterable[tuple[Path, FileText]], max_size: int, notes: Notes, elsewhere: Collection[Path] = ()) -> ModelSet:
     """Read some files, and those to which they refer by file names, as one set.
 
     Parameters
