@@ -464,6 +464,12 @@ class TestModelsInMemory:
         (other,) = [f for f in amuros.check_files(path).findings if f.rule == "XMI008"]
         assert other.location.line == 2
 
+    def test_the_form_of_the_old_file_does_not_matter(self, tmp_path):
+        path = write(
+            tmp_path / "a.amxmi", "0.8.2", '<stimuliModel/><swModel><tasks name="T" preemption="_undefined_"/></swModel>'
+        )
+        assert not {f.rule for f in amuros.check_files(path).findings} & {"EMF-ID", "EMF-ORDER", "EMF-DEFAULT"}
+
     def test_the_schema_of_the_old_version_applies(self, tmp_path):
         path = write(tmp_path / "a.amxmi", "0.8.2")
         assert [f.rule for f in info(path, schema=True).findings] == ["XMI008", "XSD000"]
