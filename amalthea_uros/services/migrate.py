@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
-from amalthea_uros._internal.failures import failure
 from amalthea_uros._internal.files import MAX_SIZE
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -19,7 +18,7 @@ from amalthea_uros.services.names import require
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.xmi.files import ZIP_ENTRY, FileText, write_texts
 from amalthea_uros.xmi.load import SUFFIX
-from amalthea_uros.xmi.migrate.load import MigratedSet, migrate_set
+from amalthea_uros.xmi.migrate.load import MigratedSet, failed, migrate_set
 from amalthea_uros.xmi.migrate.loss import losses_of_going_back
 from amalthea_uros.xmi.migrate.notes import Kind as Kind
 from amalthea_uros.xmi.migrate.sets import InputFile, sets_of
@@ -238,9 +237,7 @@ def migrate_files(
                 findings += error.findings
                 done += _failed(files)
             except Exception as error:  # one bad file never stops the rest
-                message = f"the migration failed: {failure(error)}"
-                help_text = "This is an error in amuros; please report it together with the model."
-                findings.append(Finding("XMI105", Severity.ERROR, message, Location(files[0].path), help_text))
+                findings.append(failed(files[0].path, error))
                 done += _failed(files)
     return MigrationResult(version=version, files=tuple(done), changes=tuple(changes), findings=tuple(findings))
 

@@ -237,6 +237,8 @@ class TestSets:
         write(tmp_path / "models" / "b.amxmi", "0.9.8")
         result = migrate_files(tmp_path / "models")
         assert [(finding.rule, finding.location.path.name) for finding in result.findings] == [("XMI105", "a.amxmi")]
+        with pytest.raises(amuros.ReadError, match="the migration failed: AttributeError"):
+            amuros.migrate(tmp_path / "models" / "a.amxmi")
         assert versions(tmp_path / "models-3.3.0") == {"b.amxmi": "3.3.0"}
 
     def test_a_file_with_the_version_follows_what_it_refers_to(self, tmp_path, monkeypatch):

@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
+from amalthea_uros._internal.failures import failure
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.element import Element
@@ -112,7 +113,10 @@ def migrate_set(
         raise ReadError(refused)
     versions = [tree.version for tree in models.trees]
     begin = [version_of_content(tree, target) for tree in models.trees]
-    migrate(models, target, notes, official)
+    try:
+        migrate(models, target, notes, official)
+    except Exception as error:
+        raise ReadError([failed(models.trees[0].path, error)]) from error
     refused = [finding for tree in models.trees for finding in _fragment(tree, models, target)]
     if refused:
         raise ReadError(refused)
@@ -120,6 +124,12 @@ def migrate_set(
     if len(same) < len(begin):
         same = {place for place in same if not _refers_to_others(models, place, same)}
     return MigratedSet(models, versions, target, notes.all, same)
+
+
+def failed(path: Path, error: Exception) -> Finding:
+    """The finding for an error of ours, which must end neither the whole run nor a command without words."""
+    help_text = "This is an error in amuros; please report it together with the model."
+    return Finding("XMI105", Severity.ERROR, f"the migration failed: {failure(error)}", Location(path), help_text)
 
 
 def refusals(path: Path, content: FileText, version: str, target: str, where: Location | None = None) -> Sequence[Finding]:
