@@ -29,16 +29,22 @@ def losses_of_going_back(migrated: MigratedSet) -> list[Finding]:
         return []
     help_text = f"Remove it from the model, or choose a version newer than {migrated.target}."
     lost = list(_noted(migrated))
+    places = {_place(where) for _, where, _ in lost}
     before = Counter(_keys(_findings_before(migrated)))
     for finding in migrated.model.findings if migrated.model else ():
         if finding.rule in _NOT_IN_THE_MODEL:
             key, number = _key(finding)
-            if number > before[key]:
+            # A step knows better than the reader what is lost.
+            if number > before[key] and _place(finding.location) not in places:
                 lost.append((finding.message, finding.location, finding.object))
     return [
         Finding("XMI102", Severity.ERROR, f"AMALTHEA {migrated.target} cannot hold this: {message}", where, help_text, name)
         for message, where, name in lost
     ]
+
+
+def _place(where: Location | None) -> tuple[str, int | None, int | None] | None:
+    return (str(where.path), where.line, where.column) if where is not None else None
 
 
 def _noted(migrated: MigratedSet) -> Iterable[tuple[str, Location | None, str]]:
