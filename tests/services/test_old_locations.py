@@ -4,7 +4,6 @@ import pytest
 
 import amalthea_uros as amuros
 from amalthea_uros import am
-from amalthea_uros.validate.rule import ModelRule
 
 OLD = """<?xml version="1.0" encoding="UTF-8"?>
 <am:Amalthea xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
@@ -104,13 +103,3 @@ def test_rules_and_analyses_lead_to_the_objects(path):
     path.write_text(OLD.replace('value="0" unit="ms"', 'value="5" unit="ms"').replace(" Lost?type=Periodic", ""))
     (process,) = amuros.analyze_files(path).analysis.processes
     assert (process.name, process.response.worst) == ("T", 1_000_000_000)
-
-
-def test_a_user_rule_sees_the_new_classes_and_the_old_lines(path):
-    rule = ModelRule(
-        id="X", title="t", severity=amuros.Severity.INFO, target=am.Group, check=lambda *_: iter(["group"]), rationale="", remedy=""
-    )
-    from amalthea_uros.validate.engine import run
-
-    (finding,) = run(amuros.load(path), [rule])
-    assert finding.location.line == line("<graphEntries")
