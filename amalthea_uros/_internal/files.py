@@ -166,9 +166,13 @@ def _staged(path: Path, data: bytes, undo: ExitStack) -> Path:
 def _copied(path: Path, undo: ExitStack) -> Path | None:
     """A copy beside a file, None if it does not exist."""
     try:
-        return shutil.copy2(path, _beside(path, undo)) if path.exists() else None
+        if not path.exists():
+            return None
+        copy = _beside(path, undo)
+        shutil.copy2(path, copy)
     except OSError as error:
         raise not_writable(path, error) from None
+    return copy
 
 
 def _beside(path: Path, undo: ExitStack) -> Path:

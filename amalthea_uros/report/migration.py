@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from amalthea_uros.report.wording import counted
-from amalthea_uros.services.migrate import FileState, Kind, MigrationChange, MigrationResult, spelled
+from amalthea_uros.services.migrate import MigrationResult
+from amalthea_uros.services.migration import FileState, Kind, MigrationChange, spelled
 
 #: Of more versions only the first and the last are named.
 _MOST_VERSIONS = 3

@@ -4,76 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from pathlib import Path
 
 from amalthea_uros._internal.files import MAX_SIZE
 from amalthea_uros._internal.garbage import paused_garbage_collection
-from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import AmurosError, ReadError, WriteError
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import newest_version
 from amalthea_uros.services.migrated_paths import Destination, given_files
+from amalthea_uros.services.migration import FileState, Kind, MigratedFile, MigrationChange
+from amalthea_uros.services.migration_writer import Writer
 from amalthea_uros.services.names import require
 from amalthea_uros.services.paths import StrPath, as_paths
-from amalthea_uros.xmi.files import ZIP_ENTRY, FileText, write_texts
+from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.load import SUFFIX
 from amalthea_uros.xmi.migrate.load import MigratedSet, failed, migrate_set
 from amalthea_uros.xmi.migrate.loss import losses_of_going_back
-from amalthea_uros.xmi.migrate.notes import Kind as Kind
 from amalthea_uros.xmi.migrate.sets import InputFile, sets_of
-from amalthea_uros.xmi.migrate.versions import VERSIONS, migrated_name
-from amalthea_uros.xmi.migrate.versions import spelled as spelled
+from amalthea_uros.xmi.migrate.versions import VERSIONS
 from amalthea_uros.xmi.writer import document_text
 
 #: The versions in which models can be written; nothing was ever migrated to the first one.
 TARGETS = VERSIONS[1:]
-
-
-class FileState(StrEnum):
-    """What became of a file."""
-
-    MIGRATED = "migrated"
-    WRITTEN = "written"
-    PLANNED = "would be written"
-    AS_IS = "has this version already"
-    FAILED = "not written"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MigratedFile:
-    """A file of a model that is migrated.
-
-    Attributes
-    ----------
-    version : the one before, "" if unknown
-    target : the file in the new version, None if there is none
-    """
-
-    path: Path
-    version: str
-    target: Path | None
-    state: FileState
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MigrationChange:
-    """One thing that a migration did to one object.
-
-    Attributes
-    ----------
-    step : the version to which the step leads that did it, "" for reading
-    message : what happened; the same for all objects to which the same happened
-    detail : what is particular to this object, such as a value
-    location : in the old file
-    """
-
-    kind: Kind
-    step: str
-    message: str
-    detail: str
-    object: str
-    location: Location | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -142,7 +95,7 @@ class MigrationResult:
         WriteError : a file exists or cannot be written; then no file of its model is written.
         """
         goal = Destination.of(self.given, self.version, Path(target) if target is not None else None, in_place=in_place)
-        writer = _Writer(goal, force, compress, is_dry_run=False)
+        writer = Writer(goal, force, compress, is_dry_run=False)
         files: list[MigratedFile] = []
         for one in self.sets:
             files += writer.write(one)
@@ -219,7 +172,7 @@ def migrate_files(
         sets = _sets(given, version, goal.folders())
         if target is None and all(file.version == version for files in sets for file in files):
             goal = replace(goal, in_place=True)  # nothing to do, so nothing to copy
-        writer = _Writer(goal, force, compress, is_dry_run)
+        writer = Writer(goal, force, compress, is_dry_run)
         done: list[MigratedFile] = []
         changes: list[MigrationChange] = []
         findings: list[Finding] = []
@@ -296,60 +249,3 @@ def _files(migrated: MigratedSet, state: FileState) -> Iterable[MigratedFile]:
 def _failed(files: Iterable[InputFile]) -> Iterable[MigratedFile]:
     for file in files:
         yield MigratedFile(path=file.path, version=file.version, target=None, state=FileState.FAILED)
-
-
-class _Writer:
-    """Writes the files of one set after the other."""
-
-    def __init__(self, goal: Destination, force: bool, compress: bool | None, is_dry_run: bool) -> None:
-        self.goal, self.force, self.compress, self.is_dry_run = goal, force, compress, is_dry_run
-        #: What was written, and from which file, so that no two files become one.
-        self.taken: dict[Path, Path] = {}
-
-    def write(self, migrated: MigratedSet) -> list[MigratedFile]:
-        """Write all files of a set or none.
-
-        Raises
-        ------
-        ReadError, WriteError : it cannot be written.
-        """
-        trees = migrated.models.trees
-        state = FileState.PLANNED if self.is_dry_run else FileState.WRITTEN
-        done: list[MigratedFile] = []
-        contents: dict[Path, FileText] = {}
-        removed: list[Path] = []
-        for place, (tree, text, version) in enumerate(zip(trees, migrated.texts(), migrated.versions, strict=True)):
-            name = migrated_name(tree.path.name, migrated.target)
-            target = self.goal.target(tree.path, name, has_others=len(trees) > 1)
-            if migrated.is_unchanged(place) and self.goal.leaves_what_is_unchanged(tree.path):
-                done.append(MigratedFile(path=tree.path, version=version, target=None, state=FileState.AS_IS))
-                continue
-            self.claim(target, tree.path)
-            contents[target] = self.packed(text)
-            if self.goal.in_place and target != tree.path:
-                removed.append(tree.path)
-            done.append(MigratedFile(path=tree.path, version=version, target=target, state=state))
-        if not self.is_dry_run:
-            self.goal.make_folders(contents)
-            write_texts(contents, removed)
-        return done
-
-    def claim(self, target: Path, source: Path) -> None:
-        """Refuse to write a file twice, or over a file that exists."""
-        place = target.resolve()
-        other = self.taken.setdefault(place, source)
-        if other != source:
-            message = f"two files would be written here: {other} and {source}"
-            help_text = "Migrate them one by one, or rename one of them."
-            raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(target), help_text)])
-        is_itself = self.goal.in_place and place == source.resolve()
-        if target.is_file() and not self.force and not is_itself:
-            message = "the file exists already"
-            help_text = "Use --force to overwrite it, --in-place to replace the old file, or write to another place with -o."
-            raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(target), help_text)])
-
-    def packed(self, text: FileText) -> FileText:
-        """The content, zipped or not as it is wanted."""
-        if self.compress is None:
-            return text
-        return replace(text, zip_entry=(text.zip_entry or ZIP_ENTRY) if self.compress else None)

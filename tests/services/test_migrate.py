@@ -12,7 +12,8 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.fix import fix_files
 from amalthea_uros.services.format import format_files
 from amalthea_uros.services.info import info
-from amalthea_uros.services.migrate import FileState, migrate_files
+from amalthea_uros.services.migrate import migrate_files
+from amalthea_uros.services.migration import FileState
 from amalthea_uros.xmi.migrate.chain import _UP
 from amalthea_uros.xmi.migrate.notes import Kind
 from amalthea_uros.xmi.migrate.step import Step

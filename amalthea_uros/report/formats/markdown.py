@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import IO, TYPE_CHECKING
 
 from amalthea_uros.report.migration import steps, summary
-from amalthea_uros.services.migrate import spelled
+from amalthea_uros.services.migration import spelled
 
 if TYPE_CHECKING:
     from amalthea_uros.services.migrate import MigrationResult

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from amalthea_uros.report.findings import finding_json
-from amalthea_uros.services.migrate import MigrationChange, MigrationResult
+from amalthea_uros.services.migrate import MigrationResult
+from amalthea_uros.services.migration import MigrationChange
 
 _KINDS = {"kept as custom property": "kept_as_property"}
 

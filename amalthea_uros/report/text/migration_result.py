@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from amalthea_uros.report.migration import steps, summary
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.services.migrate import MigrationResult, spelled
+from amalthea_uros.services.migrate import MigrationResult
+from amalthea_uros.services.migration import spelled
 
 
 def write(result: MigrationResult, terminal: Terminal) -> None:
