@@ -290,7 +290,10 @@ class TestVersions:
 
         monkeypatch.setitem(_UP, "3.2.0", Step("3.2.0", "3.3.0", convert, frozenset({"oldLabels"})))
         path = write(tmp_path / "a.amxmi", "3.3.0", '<swModel><oldLabels name="L"/></swModel>')
-        assert amuros.migrate(path).model[am.Label, "L"]
+        model = amuros.migrate(path).model
+        assert model[am.Label, "L"]
+        amuros.save(model, tmp_path / "b.amxmi")
+        assert "oldLabels" not in (tmp_path / "b.amxmi").read_text()
 
 
 class TestWhatIsLost:
@@ -423,6 +426,13 @@ class TestModelsInMemory:
         write(tmp_path / "b.amxmi", "3.0.0", STIMULUS)
         model = amuros.load(tmp_path)
         assert [document.path.name for document in model.documents] == ["b.amxmi", "a.amxmi"]
+        assert model[am.Task, "T"].stimuli == [model[am.Stimulus, "S"]]
+
+    def test_a_file_of_the_newest_version_that_an_old_one_names_is_not_migrated(self, tmp_path):
+        path = write(tmp_path / "a.amxmi", "0.8.2", TASK.replace("amlt:/", "b.amxmi"))
+        write(tmp_path / "b.amxmi", "3.3.0", STIMULUS)
+        model = amuros.load(path)
+        assert [document.migrated_from for document in model.documents] == ["0.8.2", None]
         assert model[am.Task, "T"].stimuli == [model[am.Stimulus, "S"]]
 
     def test_it_is_not_saved_over_the_old_file_by_accident(self, tmp_path):

@@ -244,7 +244,7 @@ KINDS = (
         id="XMI101",
         title="file that cannot be written",
         severity=Severity.ERROR,
-        rationale="The path is not writable or does not fit the model. Existing files are left unchanged.",
+        rationale="The path is not writable, exists already, or does not fit the model. Existing files are left unchanged.",
         remedy="Check the path and the permissions; a model of several files needs a folder.",
     ),
     FindingKind(

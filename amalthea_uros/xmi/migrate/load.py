@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -57,10 +58,27 @@ class MigratedSet:
         """
         if is_older(self.target):
             return None
-        results, linked = read_trees(self.models, self.versions)
+        results, linked = self.read()
         model = Model(result.document for result in results)
         model.findings = tuple(resolve(results, linked))
         return model
+
+    def read(self) -> tuple[list[ReadResult], dict[str, Element]]:
+        """The files as documents whose references are not yet resolved, and the objects by the texts of the references to them.
+
+        Raises
+        ------
+        ReadError : a file is not a whole model.
+        """
+        results, linked = read_trees(self.models, self.versions)
+        for place, result in enumerate(results):
+            document = result.document
+            if self.is_unchanged(place):
+                document.migrated_from = None
+            elif document.source is not None and document.source.version == document.version:
+                # It has content of an older version than it declares: the text must not be used again.
+                document.source = replace(document.source, version="")
+        return results, linked
 
     def is_unchanged(self, place: int) -> bool:
         """Whether a file had the new version before, and refers to no file that had another one."""
@@ -202,7 +220,7 @@ def read_migrated(files: Sequence[tuple[Path, FileText]], max_size: int, elsewhe
     ReadError : a file cannot be read; carries the findings of all of them.
     """
     migrated = migrate_set(files, newest_version(), max_size, elsewhere=elsewhere)
-    results, linked = read_trees(migrated.models, migrated.versions)
+    results, linked = migrated.read()
     return MigratedFiles(results, linked, announcements(migrated))
 
 
