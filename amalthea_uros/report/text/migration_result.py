@@ -7,6 +7,9 @@ from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.migrate import MigrationResult
 from amalthea_uros.services.migration import spelled
 
+#: Longer examples, such as a whole element as text, are cut.
+_WIDTH = 60
+
 
 def write(result: MigrationResult, terminal: Terminal) -> None:
     """Write the files, what each step did, and the sum of it."""
@@ -21,7 +24,7 @@ def write(result: MigrationResult, terminal: Terminal) -> None:
                 f"{group.count:,}",
                 group.first.kind,
                 group.first.message,
-                group.first.detail or group.first.object,
+                _shortened(group.first.detail or group.first.object),
                 group.place,
             )
             for group in step.groups
@@ -30,3 +33,9 @@ def write(result: MigrationResult, terminal: Terminal) -> None:
     if result.files:
         terminal.line()
     terminal.line(summary(result))
+
+
+def _shortened(text: str) -> str:
+    """Text for a cell: one line that is not too long."""
+    line = " ".join(text.split())
+    return line if len(line) <= _WIDTH else f"{line[: _WIDTH - 3]}..."
