@@ -205,6 +205,14 @@ def is_directory(path: Path) -> bool:
         return False
 
 
+def resolved(path: Path) -> Path:
+    """The path without links; of an impossible one, or one in a circle of links, itself: opening it reports the cause."""
+    try:
+        return path.resolve()
+    except (OSError, ValueError, RuntimeError):
+        return path.absolute()
+
+
 def list_directory(path: Path) -> list[Path]:
     """The files that are directly in a directory, sorted.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from amalthea_uros._internal.files import FileError, is_directory, not_writable
+from amalthea_uros._internal.files import FileError, is_directory, not_writable, resolved
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.xmi.files import not_readable
@@ -37,7 +37,7 @@ def given_files(paths: Iterable[Path], excluded: Collection[Path]) -> list[Given
     found: dict[Path, GivenFile] = {}
     for path in paths:
         if not is_directory(path):
-            found.setdefault(path.resolve(), GivenFile(path, None))
+            found.setdefault(resolved(path), GivenFile(path, None))
             continue
         before = len(found)
         for file in _models_below(path, excluded):

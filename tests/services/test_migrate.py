@@ -388,6 +388,16 @@ class TestLibrary:
         with pytest.raises(ValueError, match="2 models; use models"):
             _ = amuros.migrate(tmp_path).model
 
+    def test_impossible_paths(self, tmp_path):
+        (tmp_path / "loop.amxmi").symlink_to(tmp_path / "loop.amxmi")
+        for path in ("a\0b", "x" * 5000, tmp_path / "loop.amxmi"):
+            with pytest.raises(amuros.ReadError, match="XMI001"):
+                amuros.migrate(path)
+        (finding,) = migrate_files(
+            [write(tmp_path / "a.amxmi", "0.9.8"), tmp_path / "loop.amxmi"], target=tmp_path / "b"
+        ).findings
+        assert finding.rule == "XMI001"
+
     def test_bad_files(self, tmp_path):
         for name in "ab":
             (tmp_path / f"{name}.amxmi").write_text("<am")

@@ -9,6 +9,7 @@ from pathlib import Path
 from urllib.parse import unquote, unquote_plus
 from xml.sax.saxutils import unescape
 
+from amalthea_uros._internal.files import resolved
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.naming import TYPE_MARK
@@ -65,7 +66,7 @@ def sets_of(files: Iterable[InputFile], target: str, max_size: int) -> list[tupl
 class _Sets:
     def __init__(self, files: list[InputFile], target: str, max_size: int) -> None:
         self.files, self.target, self.max_size = files, target, max_size
-        self.places = {file.path.resolve(): place for place, file in reversed(list(enumerate(files)))}
+        self.places = {resolved(file.path): place for place, file in reversed(list(enumerate(files)))}
         #: The representative of the set of each file.
         self.leaders = list(range(len(files)))
         self.names: dict[Path | None, dict[str, list[int]]] = {}
