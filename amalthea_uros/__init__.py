@@ -7,7 +7,7 @@
 
 This module is the public interface:
 
-- files: `load`, `save`, `check_files`, `analyze_files`, `build`, `describe`, `diff`, with their results
+- files: `load`, `save`, `check_files`, `analyze_files`, `build`, `describe`, `diff`, `migrate`, with their results
 - AMALTHEA models: `Model`, `check`, `extract`; all AMALTHEA classes are in `amuros.am`
 - systems of the generic performance model: `analyze_system`, `sensitivity`, `propose_priorities`, `paths`, `build_model`; their classes
   are in `amuros.perf`
@@ -72,6 +72,8 @@ if TYPE_CHECKING:
     from amalthea_uros.services.check import check_files as check_files
     from amalthea_uros.services.diff import DiffResult as DiffResult
     from amalthea_uros.services.diff import diff as diff
+    from amalthea_uros.services.migrate import MigrationResult as MigrationResult
+    from amalthea_uros.services.migrate import migrate as migrate
     from amalthea_uros.services.settings import CheckSettings as CheckSettings
     from amalthea_uros.timing.dataflow.paths import paths as paths
     from amalthea_uros.timing.settings import Memory as Memory
@@ -113,6 +115,7 @@ _NAMES = {
     "services.build": ("BuildResult", "build", "describe"),
     "services.check": ("CheckResult", "check", "check_files"),
     "services.diff": ("DiffResult", "diff"),
+    "services.migrate": ("MigrationResult", "migrate"),
     "services.settings": ("CheckSettings",),
     "timing.dataflow.paths": ("paths",),
     "timing.settings": ("Memory", "Settings"),

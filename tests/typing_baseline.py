@@ -13,6 +13,7 @@ value: int | None = time.value
 stimuli: list[amuros.am.Stimulus] = task.stimuli
 graph: amuros.am.ActivityGraph | None = task.activity_graph
 amuros.save(model, "model.amxmi")
+migrated: amuros.Model = amuros.migrate("old.amxmi", to="3.0.0").model
 
 Task(name=3)  # type: ignore[arg-type]
 Task(nme="t")  # type: ignore[call-arg]

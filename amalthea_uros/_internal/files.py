@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import codecs
 import os
+import shutil
 import tempfile
-from contextlib import suppress
+from collections.abc import Collection, Mapping
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 #: No input comes near this size (the largest published model has 6 MB); a larger file is refused before it fills the memory.
@@ -113,6 +115,83 @@ def write_bytes(path: Path, data: bytes) -> None:
                 Path(temporary).unlink()
 
 
+def write_all(contents: Mapping[Path, bytes], removed: Collection[Path] = ()) -> None:
+    """Write several files and remove others, all of that or nothing.
+
+    Raises
+    ------
+    FileError : a file cannot be written; all files are as they were.
+    """
+    if len(contents) == 1 and not removed:
+        ((path, data),) = contents.items()
+        write_bytes(path, data)
+        return
+    with ExitStack() as undo:
+        staged = [(path, _staged(path, data, undo)) for path, data in contents.items()]
+        former = {path: _copied(path, undo) for path in (*contents, *removed)}
+        for path, temporary in staged:
+            undo.callback(_restore, path, former[path])
+            try:
+                temporary.replace(path.resolve())
+            except OSError as error:
+                raise not_writable(path, error) from None
+        for path in removed:
+            undo.callback(_restore, path, former[path])
+            try:
+                path.unlink(missing_ok=True)
+            except OSError as error:
+                raise not_writable(path, error) from None
+        undo.pop_all()
+        for copy in filter(None, former.values()):
+            copy.unlink(missing_ok=True)
+
+
+def _staged(path: Path, data: bytes, undo: ExitStack) -> Path:
+    """A temporary file beside a file, with what is to be its content."""
+    try:
+        if path.is_dir():
+            raise FileError(path, "the file cannot be written: it is a directory")
+        mode = path.stat().st_mode & 0o777 if path.exists() else 0o666 & ~_umask()
+        temporary = _beside(path, undo)
+        with temporary.open("wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.chmod(mode)
+    except (OSError, ValueError) as error:
+        raise not_writable(path, error) from None
+    return temporary
+
+
+def _copied(path: Path, undo: ExitStack) -> Path | None:
+    """A copy beside a file, None if it does not exist."""
+    try:
+        if not path.exists():
+            return None
+        copy = _beside(path, undo)
+        shutil.copy2(path, copy)
+    except OSError as error:
+        raise not_writable(path, error) from None
+    return copy
+
+
+def _beside(path: Path, undo: ExitStack) -> Path:
+    target = path.resolve()
+    descriptor, name = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
+    os.close(descriptor)
+    undo.callback(Path(name).unlink, missing_ok=True)
+    return Path(name)
+
+
+def _restore(path: Path, former: Path | None) -> None:
+    """Give a file its former content, or let there be no file again."""
+    with suppress(OSError):
+        if former is None:
+            path.unlink(missing_ok=True)
+        elif former.exists():
+            former.replace(path.resolve())
+
+
 def not_writable(path: Path, error: OSError | ValueError) -> FileError:
     """The error for a path at which a file or a directory cannot be created."""
     return FileError(path, f"the file cannot be written: {_cause(error)}")
@@ -126,15 +205,23 @@ def is_directory(path: Path) -> bool:
         return False
 
 
-def list_directory(path: Path, suffix: str) -> list[Path]:
-    """The files with a suffix that are directly in a directory, sorted.
+def resolved(path: Path) -> Path:
+    """The path without links; of an impossible one, or one in a circle of links, itself: opening it reports the cause."""
+    try:
+        return path.resolve()
+    except (OSError, ValueError, RuntimeError):
+        return path.absolute()
+
+
+def list_directory(path: Path) -> list[Path]:
+    """The files that are directly in a directory, sorted.
 
     Raises
     ------
     FileError : not permitted, or no directory.
     """
     try:
-        return sorted(entry for entry in path.iterdir() if entry.suffix == suffix and entry.is_file())
+        return sorted(entry for entry in path.iterdir() if entry.is_file())
     except (OSError, ValueError) as error:
         raise FileError(path, f"the directory cannot be read: {_cause(error)}") from None
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.cli.output import Output, output_option, write_outputs
+from amalthea_uros.cli.output import Output, output_option, show_findings, write_outputs
 from amalthea_uros.services.diff import DiffResult, diff
 
 
@@ -19,8 +19,10 @@ def command(old: Path, new: Path, outputs: tuple[Output, ...]) -> None:
     """Compare two models by meaning: only what a review has to look at.
 
     OLD and NEW are files or folders with .amxmi files. Objects are compared by their names, in whatever file they are; order without
-    meaning, layout, ids and explicit defaults make no difference. Exit code 1 if there are differences.
+    meaning, layout, ids and explicit defaults make no difference. Models of different AMALTHEA versions are migrated to the newest one
+    in memory. Exit code 1 if there are differences.
     """
     result = diff(old, new)
+    show_findings(result.findings)
     write_outputs(outputs, result)
     sys.exit(1 if result.changes else 0)

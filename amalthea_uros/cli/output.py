@@ -53,7 +53,7 @@ def output_option(result: type) -> Callable[[Any], Any]:
         multiple=True,
         default=(names[0],),
         show_default=True,
-        help=f"Format and file of the result: {', '.join(names)}; e.g. {names[-1]}=result.{names[-1]}. May be repeated.",
+        help=f"Format and file of the result: {', '.join(names)}; e.g. json=result.json. May be repeated.",
     )
 
 

@@ -38,13 +38,19 @@ from amalthea_uros.metamodel.naming import name_of
 
 @dataclass(frozen=True, slots=True)
 class DocumentSummary:
-    """One file: path, AMALTHEA version, number of objects, size in characters, whether it is zipped."""
+    """One file: path, AMALTHEA version, number of objects, size in characters, whether it is zipped.
+
+    Attributes
+    ----------
+    migrated_from : the older version of the file, if the model was migrated in memory
+    """
 
     path: str
     version: str
     objects: int
     characters: int
     compressed: bool
+    migrated_from: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +136,7 @@ def _document(document: Document) -> DocumentSummary:
         objects=sum(1 for _ in document.root.walk()),
         characters=len(source.text) if source else 0,
         compressed=bool(source and source.zip_entry),
+        migrated_from=document.migrated_from,
     )
 
 

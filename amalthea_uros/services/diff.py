@@ -5,10 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from amalthea_uros.diagnostics import Finding
 from amalthea_uros.difference.comparison import Change, difference
 from amalthea_uros.metamodel.model import Model
+from amalthea_uros.metamodel.versions import known_versions, newest_version
+from amalthea_uros.services.migrate import migrate
 from amalthea_uros.services.paths import StrPath
 from amalthea_uros.xmi.load import load
+from amalthea_uros.xmi.migrate.load import announcements
+
+#: What is said about a model that was migrated.
+_MIGRATION = ("XMI008", "XMI009")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,22 +25,39 @@ class DiffResult:
     Attributes
     ----------
     old, new : the paths that were compared, or those of the documents of a model
+    findings : which models were migrated in memory, so that models of different versions can be compared
     """
 
     old: str
     new: str
     changes: tuple[Change, ...]
+    findings: tuple[Finding, ...] = ()
 
 
 def diff(old: Model | StrPath, new: Model | StrPath) -> DiffResult:
-    """Compare two models, or the files or folders that hold them.
+    """Compare two models, or the files or folders that hold them; if their versions differ, both as models of the newest one.
 
     Raises
     ------
     ReadError : a file cannot be read.
     """
-    changes = difference(*(one if isinstance(one, Model) else load(one) for one in (old, new)))
-    return DiffResult(old=_name(old), new=_name(new), changes=tuple(changes))
+    models = [one if isinstance(one, Model) else load(one) for one in (old, new)]
+    findings = [finding for model in models for finding in model.findings if finding.rule in _MIGRATION]
+    if len({document.facts_version for model in models for document in model.documents}) > 1:
+        for place, model in enumerate(models):
+            if _can_be_migrated(model):
+                result = migrate(model)
+                models[place] = result.model
+                findings += announcements(result.sets[0])
+    return DiffResult(
+        old=_name(old), new=_name(new), changes=tuple(difference(*models)), findings=tuple(dict.fromkeys(findings))
+    )
+
+
+def _can_be_migrated(model: Model) -> bool:
+    """Whether the model has older versions, and known ones only."""
+    versions = {document.version for document in model.documents}
+    return versions <= set(known_versions()) and versions != {newest_version()}
 
 
 def _name(model: Model | StrPath) -> str:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from amalthea_uros.metamodel.model import Model
 from amalthea_uros.services.check import selection_of
 from amalthea_uros.services.paths import StrPath, as_paths, by_model, is_description
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.repair import repair
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.xmi.load import load
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,10 +37,12 @@ class FixResult:
     Attributes
     ----------
     descriptions : the files that were not repaired, since only their authors know what is meant
+    older : the files of models that have to be migrated first, with their AMALTHEA version
     """
 
     models: tuple[ModelRepairs, ...]
     descriptions: tuple[Path, ...]
+    older: tuple[tuple[Path, str], ...] = ()
 
 
 def fix_files(paths: StrPath | Iterable[StrPath], settings: CheckSettings | None = None, *, each: bool = False) -> FixResult:
@@ -56,19 +60,24 @@ def fix_files(paths: StrPath | Iterable[StrPath], settings: CheckSettings | None
     """
     files = as_paths(paths)
     rules = selection_of((settings or CheckSettings()).over(project_settings(files[0]))).rules()
-    groups = list(by_model(files, each))
-    return FixResult(
-        models=tuple(
-            ModelRepairs(paths=group, repaired=_repair(group, rules)) for group in groups if not is_description(group[0])
-        ),
-        descriptions=tuple(group[0] for group in groups if is_description(group[0])),
-    )
+    models: list[ModelRepairs] = []
+    descriptions: list[Path] = []
+    older: list[tuple[Path, str]] = []
+    for group in by_model(files, each):
+        if is_description(group[0]):
+            descriptions.append(group[0])
+            continue
+        model = load(*group)
+        migrated = [(d.path, d.migrated_from) for d in model.documents if d.path is not None and d.migrated_from is not None]
+        older += migrated
+        if not migrated:
+            models.append(ModelRepairs(paths=group, repaired=_repair(model, rules)))
+    return FixResult(models=tuple(models), descriptions=tuple(descriptions), older=tuple(older))
 
 
-def _repair(paths: Sequence[Path], rules: Collection[str]) -> Counter[str]:
-    from amalthea_uros.xmi.load import load
+def _repair(model: Model, rules: Collection[str]) -> Counter[str]:
     from amalthea_uros.xmi.save import save_documents
 
-    repairs = repair(load(*paths), [rule for rule in map(registry.rule, rules) if isinstance(rule, ModelRule)])
+    repairs = repair(model, [rule for rule in map(registry.rule, rules) if isinstance(rule, ModelRule)])
     save_documents(repairs.changed, repairs.rewritten)
     return repairs.done

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from amalthea_uros.diagnostics import Finding
+from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.xmi.load import load, model_files
@@ -68,7 +68,12 @@ def format_files(paths: StrPath | Iterable[StrPath], write: bool = True) -> Form
 
 def _format(path: Path, write: bool) -> Iterable[FormattedFile]:
     model = load(path)
-    (document,) = model.documents
+    document = model.documents[0]
+    if document.migrated_from is not None:
+        message = f"a model of AMALTHEA {document.migrated_from} has no canonical form"
+        raise WriteError(
+            [Finding("XMI104", Severity.ERROR, message, Location(path), f"Migrate it first: amuros migrate {path}")]
+        )
     before = document.source.text if document.source else ""
     after = document_text(document, canonical=True)
     if after == before:

@@ -7,6 +7,7 @@ import lzma
 import re
 import zipfile
 import zlib
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -54,12 +55,21 @@ def write_text(path: Path, content: FileText) -> None:
     ------
     WriteError : the file cannot be written.
     """
-    # A character that the encoding lacks is written as a character reference of XML.
-    data = files.encode(content.text, content.encoding, "xmlcharrefreplace")
-    if content.zip_entry is not None:
-        data = _zip(content.zip_entry, data)
     try:
-        files.write_bytes(path, data)
+        files.write_bytes(path, _data(content))
+    except FileError as error:
+        raise not_writable(error) from None
+
+
+def write_texts(contents: Mapping[Path, FileText], removed: Collection[Path] = ()) -> None:
+    """Write several model files and remove others, all of that or nothing.
+
+    Raises
+    ------
+    WriteError : a file cannot be written; all files are as they were.
+    """
+    try:
+        files.write_all({path: _data(content) for path, content in contents.items()}, removed)
     except FileError as error:
         raise not_writable(error) from None
 
@@ -74,6 +84,12 @@ def not_readable(error: FileError) -> ReadError:
 def not_writable(error: FileError) -> WriteError:
     """A failure to write a file as the exception of this library."""
     return WriteError([Finding("XMI101", Severity.ERROR, error.reason, Location(error.path), error.advice)])
+
+
+def _data(content: FileText) -> bytes:
+    # A character that the encoding lacks is written as a character reference of XML.
+    data = files.encode(content.text, content.encoding, "xmlcharrefreplace")
+    return data if content.zip_entry is None else _zip(content.zip_entry, data)
 
 
 def _read_text(path: Path, max_size: int) -> FileText:

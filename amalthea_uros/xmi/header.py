@@ -17,6 +17,7 @@ from amalthea_uros.metamodel.versions import (
 XMI_NAMESPACE = "http://www.omg.org/XMI"
 XSI_NAMESPACE = "http://www.w3.org/2001/XMLSchema-instance"
 
+_ITEA_VERSION = re.compile(r"http://(?:www\.)?amalthea\.itea2\.org/model/([0-9.]+)").match
 _VERSION = re.compile(r"[0-9]{1,4}(\.[0-9]{1,4}){1,3}").fullmatch
 
 
@@ -67,12 +68,13 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
 
     Raises
     ------
-    NotAModelError : it is not `am:Amalthea`, or its version is too old.
+    NotAModelError : it is not `am:Amalthea`, or its version was never published.
     """
     prefix, _, local = name.rpartition(":")
     namespace = attributes.get(f"xmlns:{prefix}" if prefix else "xmlns", "")
     if "itea2.org/model" in namespace:
-        raise NotAModelError("XMI006", "the model has an ITEA version of AMALTHEA, older than APP4MC 0.7", _MIGRATE)
+        number = _ITEA_VERSION(namespace)
+        raise NotAModelError("XMI006", f"ITEA version {number[1] if number else namespace} of AMALTHEA is not known", _VERSIONS)
     if local != "Amalthea" or not prefix or not namespace.startswith(NAMESPACE_PREFIX):
         within = f" in namespace {namespace}" if namespace else ""
         raise NotAModelError(
@@ -84,9 +86,7 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
     if not _VERSION(version):
         raise NotAModelError("XMI005", f"namespace {namespace} does not end with an AMALTHEA version")
     if version_key(version) < version_key(OLDEST_SUPPORTED):
-        raise NotAModelError(
-            "XMI006", f"AMALTHEA {version} is not supported, {OLDEST_SUPPORTED} is the oldest supported version", _MIGRATE
-        )
+        raise NotAModelError("XMI006", f"AMALTHEA {version} was never published", _VERSIONS)
     prefixes = {uri: key.partition(":")[2] for key, uri in attributes.items() if key.startswith("xmlns:")}
     for usual, uri in (("xmi", XMI_NAMESPACE), ("xsi", XSI_NAMESPACE)):
         given = attributes.get(f"xmlns:{usual}", uri)
@@ -103,4 +103,5 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
     )
 
 
-_MIGRATE = f"Migrate the model with Eclipse APP4MC to AMALTHEA {OLDEST_SUPPORTED} or newer."
+#: Files of published versions before 0.9.7 are not read directly; they are migrated.
+_VERSIONS = "Correct the version in the namespace; known ones are 1.1.0, 1.2.0 and 1.3.0 of ITEA, and 0.7.0 to 3.3.0 of APP4MC."

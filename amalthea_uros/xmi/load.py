@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -19,6 +20,9 @@ from amalthea_uros.xmi.references import resolve
 
 SUFFIX = ".amxmi"
 
+#: Also those of the sub-models of ITEA versions, such as `.amxmi-sw`.
+_SUFFIXES = re.compile(r"\.amxmi(?:-[a-z]+)?")
+
 StrPath = str | os.PathLike[str]
 
 
@@ -27,17 +31,20 @@ def load(*paths: StrPath | Iterable[StrPath], max_size: int = MAX_SIZE) -> Model
 
     Parameters
     ----------
-    paths : files (plain or zipped), directories, which stand for all `.amxmi` files in them, or lists of these. Several files
-        form one model, in which every object can refer to every other
+    paths : files (plain or zipped), directories, which stand for all `.amxmi` files in them (and `.amxmi-sw` and the like of
+        ITEA versions), or lists of these. Several files form one model, in which every object can refer to every other. Files of
+        versions before 0.9.7 are migrated to the newest version in memory, together with those to which they refer by file names
     max_size : largest size of a file, unpacked, in bytes
 
     Returns
     -------
-    Model : its `findings` list what was found while reading: unresolved references, unknown elements, an unknown version
+    Model : its `findings` list what was found while reading: unresolved references, unknown elements, an unknown version,
+        a migration and what was lost in it
 
     Raises
     ------
-    ReadError : a file is missing, not a model, too old, or refused for safety; carries the findings of all files.
+    ReadError : a file is missing, not a model, of a version that was never published, or refused for safety; carries the
+        findings of all files.
     """
     with paused_garbage_collection():
         results, linked, findings = _read(model_files(_flat(paths)), max_size)
@@ -64,7 +71,7 @@ def _read(paths: Iterable[Path], max_size: int) -> tuple[list[ReadResult], dict[
         from amalthea_uros.xmi.migrate.load import read_migrated
 
         try:
-            migrated = read_migrated(older, max_size)
+            migrated = read_migrated(older, max_size, [result.document.path for result in results if result.document.path])
         except ReadError as error:
             refused += error.findings
         else:
@@ -81,6 +88,11 @@ def _flat(paths: Iterable[StrPath | Iterable[StrPath]]) -> Iterator[StrPath]:
             yield path
         else:
             yield from path
+
+
+def is_model_name(path: Path) -> bool:
+    """Whether the name of a file is that of a model."""
+    return _SUFFIXES.fullmatch(path.suffix) is not None
 
 
 def model_files(paths: Iterable[StrPath]) -> list[Path]:
@@ -100,7 +112,7 @@ def model_files(paths: Iterable[StrPath]) -> list[Path]:
 
 def _files_in(directory: Path) -> list[Path]:
     try:
-        found = list_directory(directory, SUFFIX)
+        found = [file for file in list_directory(directory) if is_model_name(file)]
         if not found:
             raise FileError(directory, f"the directory contains no {SUFFIX} file")
     except FileError as error:

@@ -11,10 +11,18 @@ from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.xmi.files import ZIP_ENTRY, FileText, not_writable, write_text
 from amalthea_uros.xmi.load import SUFFIX, StrPath
-from amalthea_uros.xmi.writer import document_text
+from amalthea_uros.xmi.migrate.versions import migrated_name
+from amalthea_uros.xmi.writer import document_text, usable_source
 
 
-def save(model: Model, path: StrPath | None = None, *, canonical: bool = False, compress: bool | None = None) -> None:
+def save(
+    model: Model,
+    path: StrPath | None = None,
+    *,
+    canonical: bool = False,
+    compress: bool | None = None,
+    version: str | None = None,
+) -> None:
     """Write a model.
 
     Parameters
@@ -23,13 +31,17 @@ def save(model: Model, path: StrPath | None = None, *, canonical: bool = False, 
         None: where it was read from
     canonical : write everything in EMF's layout; otherwise what was read and not modified is preserved byte for byte
     compress : write a ZIP (like EMF's OPTION_ZIP), or not; None: as it was read
+    version : the AMALTHEA version of the model. It has to be given to write a model that was migrated while it was loaded over
+        its files; `amuros.migrate` converts a model to another version
 
     Raises
     ------
-    WriteError : values that the AMALTHEA version does not allow (all are listed), or a file that cannot be written.
-        No file is written unless all of them can be serialised.
+    WriteError : values that the AMALTHEA version does not allow (all are listed), a model that was migrated, or a file that
+        cannot be written. No file is written unless all of them can be serialised.
     """
-    _save([(document, target, canonical) for document, target in _targets(model, path)], compress)
+    if version is not None:
+        _require_version(model, version)
+    _save([(document, target, canonical) for document, target in _targets(model, path)], compress, version)
 
 
 def save_documents(documents: Iterable[Document], canonical: Collection[Document] = ()) -> None:
@@ -43,13 +55,16 @@ def save_documents(documents: Iterable[Document], canonical: Collection[Document
     ------
     WriteError : as for `save`.
     """
-    _save([(document, _own_path(document), document in canonical) for document in documents], compress=None)
+    _save([(document, _own_path(document), document in canonical) for document in documents])
 
 
-def _save(files: Iterable[tuple[Document, Path, bool]], compress: bool | None) -> None:
+def _save(files: Iterable[tuple[Document, Path, bool]], compress: bool | None = None, version: str | None = None) -> None:
     prepared = []
     problems: list[Finding] = []
     for document, target, canonical in files:
+        if version is None and document.migrated_from is not None and target == document.path:
+            problems.append(_not_over_the_old_file(document, target))
+            continue
         try:
             prepared.append((target, _file_text(document, canonical, compress)))
         except WriteError as error:
@@ -67,7 +82,28 @@ def _file_text(document: Document, canonical: bool, compress: bool | None) -> Fi
     if compress is not None:
         zip_entry = (zip_entry or ZIP_ENTRY) if compress else None
     # The canonical header declares UTF-8.
-    return FileText(text, source.encoding if source and not canonical else "utf-8", zip_entry)
+    is_kept = not canonical and source is not None and usable_source(document) is source
+    return FileText(text, source.encoding if source and is_kept else "utf-8", zip_entry)
+
+
+def _require_version(model: Model, version: str) -> None:
+    """Refuse a version that is not the one of the model."""
+    others = dict.fromkeys(document.version for document in model.documents if document.version != version)
+    if others:
+        message = f"the model has AMALTHEA version {', '.join(others)}, not {version}"
+        advice = f"Convert it first: amuros.migrate(model, to={version!r}).save(...)."
+        raise WriteError([Finding("XMI104", Severity.ERROR, message, None, advice)])
+
+
+def _not_over_the_old_file(document: Document, path: Path) -> Finding:
+    message = (
+        f"the file has AMALTHEA {document.migrated_from}, but the model was migrated to {document.version} when it was loaded"
+    )
+    advice = (
+        f"Save it to another file, or replace this one with save(model, version={document.version!r}); "
+        "amuros.migrate() or `amuros migrate` also report what is converted."
+    )
+    return Finding("XMI104", Severity.ERROR, message, Location(path), advice)
 
 
 def _targets(model: Model, path: StrPath | None) -> list[tuple[Document, Path]]:
@@ -84,7 +120,13 @@ def _targets(model: Model, path: StrPath | None) -> list[tuple[Document, Path]]:
         raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(given), "Give a directory.")]) from None
     except (OSError, ValueError) as error:
         raise not_writable(files.not_writable(given, error)) from None
-    return [(document, given / _own_path(document).name) for document in model.documents]
+    return [(document, given / _new_name(document)) for document in model.documents]
+
+
+def _new_name(document: Document) -> str:
+    """The name in another folder: that of a sub-model of ITEA becomes one of APP4MC."""
+    name = _own_path(document).name
+    return name if document.migrated_from is None else migrated_name(name, document.version)
 
 
 def _own_path(document: Document) -> Path:

@@ -13,7 +13,8 @@ def schema_findings(document: Document) -> list[Finding]:
     if source is None or path is None:
         return []
     try:
-        problems = validate(source.text.encode(), document.version)
+        # The file of a model that was migrated in memory still has its old version.
+        problems = validate(source.text.encode(), document.migrated_from or document.version)
     except NoSchemaError as error:
         return [Finding("XSD000", Severity.WARNING, str(error), Location(path))]
     return [

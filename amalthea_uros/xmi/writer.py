@@ -37,7 +37,7 @@ def document_text(document: Document, canonical: bool = False) -> str:
     ------
     WriteError : the AMALTHEA version of the document does not allow something in it; carries a finding for each such thing.
     """
-    source = None if canonical else _usable_source(document)
+    source = None if canonical else usable_source(document)
     if source is not None:
         propagate_renames((d.root, d.changes) for d in document.model.documents)
         if not document.changes.modified:
@@ -50,8 +50,8 @@ def document_text(document: Document, canonical: bool = False) -> str:
     return text
 
 
-def _usable_source(document: Document) -> Source | None:
-    """The source, unless the root or the version of the document was replaced."""
+def usable_source(document: Document) -> Source | None:
+    """The source, unless the root or the version of the document was replaced, so that everything has to be written anew."""
     source = document.source
     if source is None or source.elements[0] is not document.root or source.version != document.version:
         return None

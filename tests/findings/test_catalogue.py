@@ -27,7 +27,7 @@ def emitted():
             continue
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Call):
-                for value in node.args[:2]:
+                for value in node.args[:4]:
                     if isinstance(value, ast.Constant) and isinstance(value.value, str) and ID.fullmatch(value.value):
                         found[value.value] |= set(re.findall(r"Severity\.([A-Z]+)", ast.unparse(node)))
             elif isinstance(node, ast.IfExp):

@@ -42,11 +42,11 @@ UNREADABLE = {
     "other root": (HEAD + b"<html/>", "XMI005", "<html>"),
     "other root of the namespace": (HEAD + b"<am:SWModel " + NAMESPACES + b"/>", "XMI005", "<am:SWModel>"),
     "no version": (GOOD.replace(b"3.0.0", b"3.0.0/../.."), "XMI005", "does not end with an AMALTHEA version"),
-    "old version": (GOOD.replace(b"3.0.0", b"0.8.1"), "XMI006", "0.8.1"),
+    "old version": (GOOD.replace(b"3.0.0", b"0.8.7"), "XMI006", "0.8.7"),
     "ITEA version": (
-        b'<central:AMALTHEA xmlns:central="http://www.amalthea.itea2.org/model/1.3.0/central"/>',
+        b'<central:AMALTHEA xmlns:central="http://www.amalthea.itea2.org/model/1.0.0/central"/>',
         "XMI006",
-        "ITEA",
+        "ITEA version 1.0.0",
     ),
     "damaged archive": (b"PK\x03\x04" + bytes(60), "XMI001", "damaged"),
 }

@@ -56,12 +56,15 @@ KINDS = (
     ),
     FindingKind(
         id="XMI006",
-        title="AMALTHEA version that is too old",
+        title="AMALTHEA version that was never published",
         severity=Severity.ERROR,
-        rationale="Models older than 0.9.7 have a structure that cannot be held.",
-        remedy="Migrate the model to a newer version first, for example with Eclipse APP4MC.",
+        rationale=(
+            "Models of every published version can be read: 1.1.0, 1.2.0 and 1.3.0 of ITEA, and 0.7.0 to 3.3.0 of APP4MC. What a "
+            "file of another old version means is not known."
+        ),
+        remedy="Correct the version in the namespace of the root element.",
         fails="""
-<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/0.7.2"/>
+<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/0.8.7"/>
 """,
     ),
     FindingKind(
@@ -75,6 +78,31 @@ KINDS = (
         remedy="Correct the version in the namespace of the root element if it is a mistake.",
         fails="""
 <am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/3.4.0"/>
+""",
+    ),
+    FindingKind(
+        id="XMI008",
+        title="model of an older version that was migrated in memory",
+        severity=Severity.INFO,
+        rationale=(
+            "Models older than 0.9.7 have another structure, so they are migrated to the newest version when they are read. The "
+            "file is unchanged, and locations are those in it."
+        ),
+        remedy="Write the model in a newer version with `amuros migrate`, which also reports what is converted.",
+        fails="""
+<am:Amalthea xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:am="http://app4mc.eclipse.org/amalthea/0.8.1"/>
+""",
+    ),
+    FindingKind(
+        id="XMI009",
+        title="content that is lost in a migration",
+        severity=Severity.WARNING,
+        rationale="The new version has no place for it, so it has no effect on checks and analyses, and is not in a migrated file.",
+        remedy="Check whether it matters; `amuros migrate --dry-run` lists everything that is converted or lost.",
+        fails="""
+<am:Amalthea xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:am="http://app4mc.eclipse.org/amalthea/0.8.1">
+  <swModel>to do</swModel>
+</am:Amalthea>
 """,
     ),
     FindingKind(
@@ -216,7 +244,41 @@ KINDS = (
         id="XMI101",
         title="file that cannot be written",
         severity=Severity.ERROR,
-        rationale="The path is not writable or does not fit the model. Existing files are left unchanged.",
+        rationale="The path is not writable, exists already, or does not fit the model. Existing files are left unchanged.",
         remedy="Check the path and the permissions; a model of several files needs a folder.",
+    ),
+    FindingKind(
+        id="XMI102",
+        title="content that an older AMALTHEA version cannot hold",
+        severity=Severity.ERROR,
+        rationale="The migration to the older version would lose it, so no file of the model is written.",
+        remedy="Remove it from the model, or choose a newer version.",
+    ),
+    FindingKind(
+        id="XMI103",
+        title="migration that is not possible",
+        severity=Severity.ERROR,
+        rationale=(
+            "No migration leads from the version of the file to the one that is wanted. Models are migrated to any newer version, "
+            "and back to 1.2.0."
+        ),
+        remedy="Choose another version.",
+    ),
+    FindingKind(
+        id="XMI104",
+        title="old model that has to be migrated before it is written",
+        severity=Severity.ERROR,
+        rationale=(
+            "The model was migrated in memory when it was read. Saving it over the old file would change the version of the file "
+            "without saying so, and what was lost could not be restored."
+        ),
+        remedy="Migrate the file with `amuros migrate`, or save the model with its new version: save(model, path, version=...).",
+    ),
+    FindingKind(
+        id="XMI105",
+        title="migration that failed",
+        severity=Severity.ERROR,
+        rationale="This is an error in amuros. The files are unchanged; other models are migrated nevertheless.",
+        remedy="Report the message together with the model.",
     ),
 )

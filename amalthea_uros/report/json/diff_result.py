@@ -6,12 +6,18 @@ from typing import Any
 
 from amalthea_uros.difference.comparison import Change
 from amalthea_uros.metamodel.element import Element
+from amalthea_uros.report.findings import finding_json
 from amalthea_uros.services.diff import DiffResult
 
 
 def content(result: DiffResult) -> dict[str, Any]:
     """The changes with their places in the files."""
-    return {"old": result.old, "new": result.new, "changes": [_as_json(change) for change in result.changes]}
+    return {
+        "old": result.old,
+        "new": result.new,
+        "changes": [_as_json(change) for change in result.changes],
+        "findings": [finding_json(finding) for finding in result.findings],
+    }
 
 
 def _as_json(change: Change) -> dict[str, Any]:

@@ -15,3 +15,5 @@ def write(result: FixResult, terminal: Terminal) -> None:
             terminal.line(f"{joined(model.paths)}: {rule} repaired in {counted(number, 'object')}")
     for path in result.descriptions:
         terminal.line(f"{path}: a description is not repaired, only its author knows what is meant")
+    for path, version in result.older:
+        terminal.line(f"{path}: a model of AMALTHEA {version} is not repaired; migrate it first: amuros migrate {path}")

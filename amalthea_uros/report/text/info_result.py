@@ -18,7 +18,11 @@ def write(result: InfoResult, terminal: Terminal) -> None:
     for document in summary.documents:
         size = f"{document.characters / 1000:,.1f} kB" + (", zipped" if document.compressed else "")
         path = terminal.style(document.path, "1")
-        terminal.line(f"{path}: AMALTHEA {document.version}, {document.objects:,} objects, {size}")
+        version = f"AMALTHEA {document.version}"
+        if document.migrated_from is not None:
+            old = document.migrated_from
+            version = f"{old if old.startswith('ITEA') else f'AMALTHEA {old}'}, migrated to {document.version} in memory"
+        terminal.line(f"{path}: {version}, {document.objects:,} objects, {size}")
     if summary.unresolved:
         terminal.line(f"  {counted(summary.unresolved, 'unresolved reference')}")
     _cores(terminal, summary)

@@ -28,7 +28,7 @@ def migrate(models: ModelSet, target: str, notes: Notes, official: bool) -> None
     KeyError : there is no such version.
     """
     for tree in models.trees:
-        tree.version = _version_of_content(tree, target)
+        tree.version = version_of_content(tree, target)
     goal = position(target)
     lowest = min(models.trees, key=lambda tree: position(tree.version)).version
     while position(lowest) < goal:
@@ -53,7 +53,7 @@ def _take(models: ModelSet, step: Step, notes: Notes, official: bool) -> str:
     return step.target
 
 
-def _version_of_content(tree: Tree, target: str) -> str:
+def version_of_content(tree: Tree, target: str) -> str:
     """The version to begin with: the declared one, or one shortly before if the content is still that of it."""
     found, version = tree.version, tree.version
     if position(target) < position(version):

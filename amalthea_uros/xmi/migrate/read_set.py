@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Finding
@@ -17,8 +17,12 @@ from amalthea_uros.xmi.migrate.parse import Parsed, parse
 SUFFIX = ".amxmi"
 
 
-def read_set(files: Iterable[tuple[Path, FileText]], max_size: int, notes: Notes) -> ModelSet:
+def read_set(files: Iterable[tuple[Path, FileText]], max_size: int, notes: Notes, elsewhere: Collection[Path] = ()) -> ModelSet:
     """Read some files, and those to which they refer by file names, as one set.
+
+    Parameters
+    ----------
+    elsewhere : files that are read in another way, and that do not become part of the set
 
     Raises
     ------
@@ -28,7 +32,7 @@ def read_set(files: Iterable[tuple[Path, FileText]], max_size: int, notes: Notes
     parsed: list[Parsed] = []
     refused: list[Finding] = []
     waiting = list(files)
-    known = {path.resolve() for path, _ in waiting}
+    known = {path.resolve() for path in (*elsewhere, *(path for path, _ in waiting))}
     while waiting:
         path, content = waiting.pop(0)
         try:
@@ -41,7 +45,10 @@ def read_set(files: Iterable[tuple[Path, FileText]], max_size: int, notes: Notes
             # A missing file is reported with the references to it.
             if other and SUFFIX in found.suffix and found.resolve() not in known and found.is_file():
                 known.add(found.resolve())
-                waiting.append((found, read_text(found, max_size)))
+                try:
+                    waiting.append((found, read_text(found, max_size)))
+                except ReadError as error:
+                    refused += error.findings
     if refused:
         raise ReadError(refused)
     return link(parsed, origins, notes)

@@ -55,9 +55,20 @@ def itea_package(namespace: str) -> str:
     return itea[2] if itea else ""
 
 
+def spelled(version: str) -> str:
+    """A version in a sentence: "AMALTHEA 0.7.2", "ITEA 1.3.0"."""
+    return version if version in ITEA else f"AMALTHEA {version}"
+
+
 def is_older(version: str) -> bool:
     """Whether models of a published version cannot be held by the classes without migration."""
     return version in _POSITIONS and _POSITIONS[version] < _POSITIONS[OLDEST_SUPPORTED]
+
+
+def migrated_name(name: str, target: str) -> str:
+    """The name of a file in another version: until ITEA 1.2.0, sub-models had suffixes of their own, such as `.amxmi-sw`."""
+    is_sub_model = ".amxmi-" in name and not name.endswith(".amxmi")
+    return name + ".amxmi" if is_sub_model and position(target) >= position("ITEA 1.3.0") else name
 
 
 class _RootFound(Exception):  # noqa: N818 (no error: it ends the search)

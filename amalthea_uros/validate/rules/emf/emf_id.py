@@ -14,7 +14,7 @@ from amalthea_uros.validate.wording import counted
 
 def _check(element: Amalthea, context: Context) -> Iterator[str]:
     document = element.document
-    if document is None or document.source is None:
+    if document is None or document.source is None or document.migrated_from is not None:
         return
     source = document.source
     stated = len(re.findall(rf"\s{re.escape(source.prefixes.xmi_id)}\s*=", source.text))

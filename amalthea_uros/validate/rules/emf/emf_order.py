@@ -16,7 +16,7 @@ from amalthea_uros.validate.wording import counted
 
 def _check(element: Amalthea, context: Context) -> Iterator[str]:
     document = element.document
-    if document is None or document.source is None:
+    if document is None or document.source is None or document.migrated_from is not None:
         return
     index = document.source.index
     moved = 0
