@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
+from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.bridge.context import Extracting
 from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDERS, extract_data_group, extract_requirement
 from amalthea_uros.bridge.tables.events import CHAINS, EVENTS
@@ -49,14 +50,15 @@ class Extraction:
 def extract(model: Model) -> Extraction:
     """The system that a model describes."""
     dropped: frozenset[Element] = frozenset()
-    while True:
-        context = Extracting(model, dropped)
-        context.name()
-        system = _Extract(model, context).system()
-        if context.dropped == dropped:
-            return Extraction(system=system, findings=context.finish())
-        # References to objects that were left out must be ignored, too.
-        dropped = frozenset(context.dropped)
+    with paused_garbage_collection():
+        while True:
+            context = Extracting(model, dropped)
+            context.name()
+            system = _Extract(model, context).system()
+            if context.dropped == dropped:
+                return Extraction(system=system, findings=context.finish())
+            # References to objects that were left out must be ignored, too.
+            dropped = frozenset(context.dropped)
 
 
 class _Extract:
