@@ -5,6 +5,7 @@ from __future__ import annotations
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree, all_below
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.postponed import bring_back, give_up
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps import DOWN, UP
 from amalthea_uros.xmi.migrate.versions import position
@@ -36,6 +37,7 @@ def migrate(models: ModelSet, target: str, notes: Notes, official: bool) -> None
     highest = max(models.trees, key=lambda tree: position(tree.version)).version
     while position(highest) > goal:
         highest = _take(models, _DOWN[highest], notes, official)
+    give_up(models.postponed, notes)
     for (node, name), targets in models.set_aside.items():
         lost = ", ".join(repr(target.name) for target in targets)
         notes.lost(node, f"reference {name!r}: this version has no place for it", lost, name)
@@ -46,6 +48,7 @@ def _take(models: ModelSet, step: Step, notes: Notes, official: bool) -> str:
     if step.change is not None:
         models.begin_step(step.source)
         notes.version = step.target
+        bring_back(models.postponed, step.target, notes)
         step.change(models, notes, official)
     for tree in models.trees:
         if tree.version == step.source:

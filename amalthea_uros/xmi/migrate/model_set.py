@@ -13,6 +13,7 @@ from amalthea_uros.metamodel.source import Source
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.finding_collector import location
 from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.migrate.postponed import Postponed
 
 
 @dataclass(eq=False)
@@ -86,6 +87,7 @@ class ModelSet:
     proxies : what stands for objects to which the files refer, but which no file contains
     set_aside : targets of references that the versions in between cannot express, by object and name; the step to the version that
         can do so again takes them back (`pop`), and what is left in the end is lost
+    postponed : content that belongs to the result from a later version on
     stated : text of a reference to an object, where it was its position or, in ITEA versions, lacked the package of the class:
         such references are what official converters lose
     """
@@ -95,6 +97,7 @@ class ModelSet:
         self.origins = origins
         self.proxies: list[Node] = []
         self.set_aside: dict[tuple[Node, str], list[Node]] = {}
+        self.postponed: list[Postponed] = []
         self.stated: dict[Node, str] = {}
         self._index: _Index | None = None
         self._active: list[Tree] = trees

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_defaults import write_defaults
 from amalthea_uros.xmi.migrate.steps.itea_modes import convert_label_values
@@ -16,6 +19,8 @@ from amalthea_uros.xmi.migrate.steps.itea_tools import (
     sub_model_or_new,
     trees_of,
 )
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA, lose_for_now
+from amalthea_uros.xmi.migrate.steps.properties import add_property
 
 #: Parts of component models, by class -> tag, and whether the class is still stated.
 _COMPONENT_PARTS = {
@@ -47,7 +52,9 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     for label in models.nodes("labels"):
         value = label.attributes.pop("initialValue", None)
         if value is not None:
-            notes.lost(label, "initial value of a label", f"{label.name}: {value}", "initialValue")
+            keep = partial(add_property, label, "initialValue", value)
+            what = ("initial value of a label", f"{label.name}: {value}", "initialValue")
+            lose_for_now(models, notes, official, Postponed(BEYOND_ITEA, keep, Kind.KEPT, label, *what))
 
 
 def _rename_attributes(models: ModelSet, notes: Notes, official: bool) -> None:
@@ -93,11 +100,14 @@ def _convert_deadlines(models: ModelSet, notes: Notes, official: bool) -> None:
         for process in processes:
             deadlines = process.all("deadline")
             for deadline in deadlines[:1] if official else deadlines:
-                _require(sub_model_or_new(trees[root], "constraintsModel"), process, deadline, notes)
+                requirement = _require(sub_model_or_new(trees[root], "constraintsModel"), process, deadline, notes)
+                if "value" not in deadline.attributes and not official:
+                    message = "a deadline without value is no requirement"
+                    models.postponed.append(Postponed(BEYOND_ITEA, requirement.remove, Kind.CONVERTED, deadline, message))
             remove_all(deadlines[:1] if official else deadlines)
 
 
-def _require(model: Node, process: Node, deadline: Node, notes: Notes) -> None:
+def _require(model: Node, process: Node, deadline: Node, notes: Notes) -> Node:
     requirement = model.add("requirements", "constraints:ProcessRequirement", like=deadline)
     requirement.attributes |= {"name": process.name} if "name" in process.attributes else {}
     requirement.attributes["severity"] = "Cosmetic"
@@ -108,6 +118,7 @@ def _require(model: Node, process: Node, deadline: Node, notes: Notes) -> None:
     value, unit = deadline.get("value", "0"), deadline.get("unit", "ps")
     limit.add("limitValue", value=value, unit=unit)
     notes.converted(deadline, "deadline: requirement for the response time", f"{process.name}: {value} {unit}")
+    return requirement
 
 
 STEP = Step(

@@ -5,10 +5,14 @@ All enumerations got `_undefined_` as their first literal, which thereby became 
 
 from __future__ import annotations
 
+from functools import partial
+
 from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.postponed import Postponed
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA, lose_for_now
 
 _EQUAL = (
     ("HwCoreProperty", "comparator", "equal"),
@@ -83,6 +87,8 @@ _TIMES: dict[str, dict[str, tuple[str, ...]]] = {
 #: Times that the official converter leaves without unit.
 _MORE_TIMES: dict[str, dict[str, tuple[str, ...]]] = {"limitValue": {"limit": ("TimeRequirementLimit",)}}
 
+_COOPERATIVE = "preemption of a task: 'cooperative' was the default, and the file does not state it"
+
 _TIME_CLASSES = ("SignedTime", "Time", "SignedTimeObject", "TimeObject")
 
 
@@ -95,7 +101,7 @@ def write_defaults(models: ModelSet, notes: Notes, official: bool) -> None:
             for class_name, attribute, value in rules:
                 if not class_name or local_name(node.type) == class_name:
                     _write(node, attribute, value, notes)
-    _write_preemption(models, notes)
+    _write_preemption(models, notes, official)
     for tag, containers in (_TIMES if official else _TIMES | _MORE_TIMES).items():
         for node in models.nodes(tag):
             if _is_in(node, containers):
@@ -117,13 +123,14 @@ def _is_overlooked(node: Node) -> bool:
     )
 
 
-def _write_preemption(models: ModelSet, notes: Notes) -> None:
+def _write_preemption(models: ModelSet, notes: Notes, official: bool) -> None:
     for task in models.nodes("tasks"):
         if task.parent is not None and task.parent.tag == "swModel":
             _write(task, "preemption", "cooperative", notes)
         elif "preemption" not in task.attributes:
             # The published conversions leave it unstated in files that hold nothing but the software model.
-            notes.lost(task, "preemption of a task: 'cooperative' was the default, and the file does not state it", task.name)
+            write = partial(task.attributes.setdefault, "preemption", "cooperative")
+            lose_for_now(models, notes, official, Postponed(BEYOND_ITEA, write, Kind.DEFAULTED, task, _COOPERATIVE, task.name))
 
 
 def _is_in(node: Node, containers: dict[str, tuple[str, ...]]) -> bool:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from amalthea_uros.metamodel.naming import TYPE_MARK
 from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_hardware import convert_values
 from amalthea_uros.xmi.migrate.steps.itea_tools import add_property, is_isr, lose_positions
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA, lose_for_now
 
 #: Classes that did not only lose their package.
 _CLASSES = {
@@ -55,7 +59,7 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
         if local_name(port.type) == "FInterfacePort":
             _convert_interface(port, notes)
     for allocation in models.nodes("processAllocation"):
-        _split_allocation(allocation, notes, official)
+        _split_allocation(models, allocation, notes, official)
     for definition in models.nodes("memTypeDefinitions"):
         definition.tag = "memoryTypeDefinitions"
         notes.renamed(definition, "memTypeDefinitions is memoryTypeDefinitions", definition.name)
@@ -104,7 +108,7 @@ def _convert_interface(port: Node, notes: Notes) -> None:
         notes.kept(port, "reference to a Franca interface: custom property 'Franca interface'", text)
 
 
-def _split_allocation(allocation: Node, notes: Notes, official: bool) -> None:
+def _split_allocation(models: ModelSet, allocation: Node, notes: Notes, official: bool) -> None:
     """`processAllocation` -> one of a task, or of an ISR."""
     known = _ALLOCATIONS.get(local_name(allocation.type))
     if known is None:
@@ -117,14 +121,16 @@ def _split_allocation(allocation: Node, notes: Notes, official: bool) -> None:
     for old, name in renamed.items():
         allocation.rename(old, name)
     notes.renamed(allocation, f"processAllocation is {allocation.tag}")
-    _keep_references(allocation, notes, official)
+    _keep_references(models, allocation, notes, official)
 
 
-def _keep_references(allocation: Node, notes: Notes, official: bool) -> None:
+def _keep_references(models: ModelSet, allocation: Node, notes: Notes, official: bool) -> None:
     """Leave away what conversions leave away: custom properties; the official one all but the two references."""
     lost = list(allocation.children) if official else allocation.all("customProperties")
     for part in lost:
-        notes.lost(part, f"{part.tag} of an allocation", part.get("key"))
+        what = (part, f"{part.tag} of an allocation", part.get("key"))
+        restore = partial(_put_back, part, allocation)
+        lose_for_now(models, notes, official, Postponed(BEYOND_ITEA, restore, Kind.MOVED, *what))
     remove_all(lost)
     if not official:
         return
@@ -133,6 +139,13 @@ def _keep_references(allocation: Node, notes: Notes, official: bool) -> None:
     allocation.attributes.clear()
     kept = ("task", "isr", "scheduler", "controller")
     allocation.references = {name: nodes for name, nodes in allocation.references.items() if name in kept}
+
+
+def _put_back(properties: Node, allocation: Node) -> None:
+    """Give an allocation a custom property back, which has missed that classes lost their packages."""
+    for node in properties.walk():
+        node.type = local_name(node.type)
+    allocation.insert(properties, len(allocation.all("customProperties")))
 
 
 def _mistreat_texts(models: ModelSet, notes: Notes) -> None:

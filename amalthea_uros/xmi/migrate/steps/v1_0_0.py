@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.step import Step
-from amalthea_uros.xmi.migrate.steps.properties import move_properties
+from amalthea_uros.xmi.migrate.steps.later import lose_for_now
+from amalthea_uros.xmi.migrate.steps.properties import add_property, move_properties
 
 #: References from a measurement to what was measured.
 _MEASURED = ("runnable", "task", "eventChain")
@@ -15,7 +19,7 @@ _MEASURED = ("runnable", "task", "eventChain")
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.9.9."""
     for model in models.nodes("measurementModel"):
-        _remove_measurements(model, notes, official)
+        _remove_measurements(models, model, notes, official)
     for event in models.nodes("events"):
         if event.type == "ProcessEvent" and event.get("eventType") == "deadline":
             del event.attributes["eventType"]
@@ -24,13 +28,19 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
             )
 
 
-def _remove_measurements(model: Node, notes: Notes, official: bool) -> None:
+def _remove_measurements(models: ModelSet, model: Node, notes: Notes, official: bool) -> None:
     for measurement in model.all("measurements"):
         measured = next((target for name in _MEASURED for target in measurement.references.get(name, ())), None)
         if not official and measured is not None and not measured.is_proxy:
             _move_properties(measurement, measured, notes)
         name = repr(measured.name) if measured is not None else "unknown"
-        notes.lost(measurement, "measurement, for which there is no place any more", f"of {name}: {_described(measurement)}")
+        what = ("measurement, for which there is no place any more", f"of {name}: {_described(measurement)}")
+        if measured is None or measured.is_proxy:
+            notes.lost(measurement, *what)
+            continue
+        # Up to 1.1.0, models of the official converter are without it.
+        keep = partial(add_property, measured, "measured runtimes", _described(measurement))
+        lose_for_now(models, notes, official, Postponed("1.2.0", keep, Kind.KEPT, measurement, *what))
     if not official and model.parent is not None:
         _move_properties(model, model.parent, notes)
     model.remove()
