@@ -214,11 +214,11 @@ class TestSets:
         assert [finding.rule for finding in result.findings] == ["XMI002", "XMI103", "XMI006", "XMI005"]
         assert versions(tmp_path / "models-3.3.0") == {"a.amxmi": "3.3.0"}
 
-    def test_a_part_of_a_model_is_refused(self, tmp_path):
+    def test_what_is_no_part_of_a_model_is_refused(self, tmp_path):
         spaces = f'xmlns:hw="{ITEA}1.3.0/hw"'
-        (tmp_path / "a.amxmi-hw").write_text(f"<hw:ComplexPin {spaces}/>")
+        (tmp_path / "a.amxmi-hw").write_text(f"<hw:Nothing {spaces}/>")
         (finding,) = migrate_files(tmp_path / "a.amxmi-hw").findings
-        assert (finding.rule, finding.message) == ("XMI005", "not a whole model: the root element is a ComplexPin")
+        assert (finding.rule, finding.message) == ("XMI005", "not a whole model: the root element is a Nothing")
 
     def test_a_set_with_a_bad_file_is_not_written(self, tmp_path):
         folder = tmp_path / "models"

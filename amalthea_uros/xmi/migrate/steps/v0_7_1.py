@@ -10,9 +10,10 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
 from amalthea_uros.xmi.migrate.steps.v0_7_1_constraints import REMOVED_CONSTRAINTS, RENAMED_CONSTRAINTS, change_constraints
 from amalthea_uros.xmi.migrate.steps.v0_7_1_sections import change_sections
-from amalthea_uros.xmi.migrate.steps.v0_7_tools import names_of, wrap_sub_models
+from amalthea_uros.xmi.migrate.steps.v0_7_tools import names_of
 
 _SWITCHES = frozenset({"ModeSwitch", "ProbabiltitySwitch"})
 
@@ -21,7 +22,7 @@ _TRUE = frozenset({"true", "1"})
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.7.0."""
-    wrap_sub_models(models, notes)
+    wrap_roots(models, notes)
     change_sections(models, notes, official)
     _state_units(models.nodes("size"), notes)
     _make_element(models.nodes("memoryTypes", "memoryTypeDefinitions"), "size", notes)

@@ -6,9 +6,10 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
 from amalthea_uros.xmi.migrate.steps.v0_7_2_hardware import move_hardware
 from amalthea_uros.xmi.migrate.steps.v0_7_2_runnables import change_runnable_items
-from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, names_of, relink, wrap_sub_models
+from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, names_of, relink
 
 _STABILITY = {"buffered": "customProtection", "notBuffered": "noProtection"}
 
@@ -34,7 +35,7 @@ _LEVELS = {"processLevel": "process", "runnableLevel": "runnable", "scheduleSect
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.7.1."""
-    wrap_sub_models(models, notes)
+    wrap_roots(models, notes)
     _change_attributes(models, notes, official)
     change_runnable_items(models, notes, official)
     for found in models.rename_classes(_RENAMED_CLASSES):
@@ -56,7 +57,7 @@ def _change_attributes(models: ModelSet, notes: Notes, official: bool) -> None:
     for node in models.walk():
         attributes = node.attributes
         # The official converter forgets the items of switches.
-        if "buffered" in attributes and not (official and node.tag == "items"):
+        if "buffered" in attributes and not (node.tag == "items" if official else node.type.startswith("SenderReceiver")):
             old = attributes.pop("buffered")
             attributes["dataStability"] = stability.get(old, old)
             notes.converted(node, "buffered -> dataStability", f"{old} -> {attributes['dataStability']}", "buffered")

@@ -9,35 +9,6 @@ from amalthea_uros.xmi.header import XSI_NAMESPACE
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.names import reference_text
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
-
-#: Class of a sub-model that is the root of a file -> its element below the root of a model.
-_SUB_MODELS = {
-    "CommonElements": "commonElements",
-    "ComponentsModel": "componentsModel",
-    "ConfigModel": "configModel",
-    "ConstraintsModel": "constraintsModel",
-    "EventModel": "eventModel",
-    "HWModel": "hwModel",
-    "MappingModel": "mappingModel",
-    "OSModel": "osModel",
-    "PropertyConstraintsModel": "propertyConstraintsModel",
-    "StimuliModel": "stimuliModel",
-    "SWModel": "swModel",
-}
-
-
-def wrap_sub_models(models: ModelSet, notes: Notes) -> None:
-    """Put sub-models that are roots of files into models."""
-    for tree in models.active:
-        root = tree.root
-        tag = _SUB_MODELS.get(root.tag)
-        if tag is None:
-            continue
-        tree.root = Node("Amalthea", origin=root.origin)
-        tree.root.insert(root)
-        notes.converted(root, "sub-model as root of a file -> part of a model", root.tag)
-        root.tag = tag
 
 
 def keep_as_properties(holder: Node, properties: Iterable[tuple[str, str]]) -> None:

@@ -6,12 +6,12 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
 from amalthea_uros.xmi.migrate.steps.v0_7_tools import (
     content_of,
     keep_as_properties,
     names_of,
     removed_key,
-    wrap_sub_models,
     xml_text,
 )
 
@@ -27,7 +27,7 @@ _RENAMED_CLASSES = {"AllocationConstraint": "CoreAllocationConstraint", "Mapping
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.7.2."""
-    wrap_sub_models(models, notes)
+    wrap_roots(models, notes)
     for mapping in models.parts("mappingModel", "mapping"):
         if mapping.type in ("AbstractElementMapping", ""):
             mapping.tag, mapping.type = "memoryMapping", ""

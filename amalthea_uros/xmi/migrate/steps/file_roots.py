@@ -1,0 +1,109 @@
+"""Roots of files that are sub-models, or parts of them: up to 0.7.0, and in one published file of 0.7.2, any object could be one."""
+
+from __future__ import annotations
+
+from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
+from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.migrate.notes import Notes
+
+_MICROCONTROLLER = ("hwModel", "system", "ecus", "microcontrollers")
+_OPERATING_SYSTEM = ("osModel", "operatingSystems")
+
+#: Class of a root -> the tags from the root of a model on that lead to such an object. The last one does not need the class as type.
+_PLACES: dict[str, tuple[str, ...]] = {
+    "CommonElements": ("commonElements",),
+    "ComponentsModel": ("componentsModel",),
+    "ConfigModel": ("configModel",),
+    "ConstraintsModel": ("constraintsModel",),
+    "EventModel": ("eventModel",),
+    "HWModel": ("hwModel",),
+    "MappingModel": ("mappingModel",),
+    "OSModel": ("osModel",),
+    "PropertyConstraintsModel": ("propertyConstraintsModel",),
+    "StimuliModel": ("stimuliModel",),
+    "SWModel": ("swModel",),
+    "Component": ("componentsModel", "components"),
+    "Core": (*_MICROCONTROLLER, "cores"),
+    "CoreType": ("hwModel", "coreTypes"),
+    "ECU": ("hwModel", "system", "ecus"),
+    "ECUType": ("hwModel", "ecuTypes"),
+    "EventChain": ("constraintsModel", "eventChains"),
+    "HwSystem": ("hwModel", "system"),
+    "ISR": ("swModel", "isrs"),
+    "InterruptController": (*_OPERATING_SYSTEM, "interruptControllers"),
+    "Label": ("swModel", "labels"),
+    "Memory": (*_MICROCONTROLLER, "memories"),
+    "MemType": ("hwModel", "memoryTypes"),
+    "MemoryType": ("hwModel", "memoryTypes"),
+    "Microcontroller": _MICROCONTROLLER,
+    "MicrocontrollerType": ("hwModel", "mcTypes"),
+    "Mode": ("swModel", "modes"),
+    "ModeLabel": ("swModel", "modeLabels"),
+    "Network": (*_MICROCONTROLLER, "networks"),
+    "OperatingSystem": _OPERATING_SYSTEM,
+    "ProcessPrototype": ("swModel", "processPrototypes"),
+    "Quartz": ("hwModel", "system", "quartzes"),
+    "Runnable": ("swModel", "runnables"),
+    "Section": ("swModel", "sections"),
+    "Semaphore": ("osModel", "semaphores"),
+    "SystemType": ("hwModel", "systemTypes"),
+    "Tag": ("swModel", "tags"),
+    "Task": ("swModel", "tasks"),
+    "TaskScheduler": (*_OPERATING_SYSTEM, "taskSchedulers"),
+}
+
+_STIMULI = (
+    "ArrivalCurve",
+    "CustomStimulus",
+    "EventStimulus",
+    "InterProcess",
+    "Periodic",
+    "PeriodicEvent",
+    "Single",
+    "Sporadic",
+)
+_EVENTS = (
+    "ChannelEvent",
+    "LabelEvent",
+    "ModeLabelEvent",
+    "ProcessChainEvent",
+    "ProcessEvent",
+    "RunnableEvent",
+    "SemaphoreEvent",
+)
+
+#: The same for objects that state their class by `xsi:type`.
+_TYPED_PLACES: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("Bridge", "Bus", "CrossbarSwitch", "NetworkType"), ("hwModel", "networkTypes")),
+    **dict.fromkeys((*_STIMULI, "StimulusEvent", "Synthetic"), ("stimuliModel", "stimuli")),
+    **dict.fromkeys(("ClockMultiplierList", "ClockSinusFunction", "ClockTriangleFunction"), ("stimuliModel", "clocks")),
+    **dict.fromkeys(_EVENTS, ("eventModel", "events")),
+    "VendorOperatingSystem": _OPERATING_SYSTEM,
+}
+
+#: Parts of hardware that mean nothing without the object that they belong to.
+_PLACELESS = frozenset({"ComplexPin", "ComplexPort", "HwPort", "Pin", "Prescaler"})
+
+
+def wrap_roots(models: ModelSet, notes: Notes) -> None:
+    """Put the roots of files that are not whole models into models."""
+    for tree in models.active:
+        root = tree.root
+        place = _PLACES.get(root.tag) or _TYPED_PLACES.get(root.tag)
+        if place is not None:
+            if root.tag in _TYPED_PLACES:
+                root.type = root.tag
+            notes.converted(root, "part of a model as root of a file -> whole model", root.tag)
+            _wrap(tree, place)
+        elif root.tag in _PLACELESS:
+            notes.lost(root, "root of a file that is part of an object in no file", root.tag)
+            tree.root = Node("Amalthea", origin=root.origin)
+
+
+def _wrap(tree: Tree, place: tuple[str, ...]) -> None:
+    part = tree.root
+    holder = tree.root = Node("Amalthea", origin=part.origin)
+    for tag in place[:-1]:
+        holder = holder.add(tag)
+    part.tag = place[-1]
+    holder.insert(part)
