@@ -39,7 +39,7 @@ def test_frequencies_are_written_as_java_does(text, double):
 def test_a_root_that_is_a_sub_model_becomes_part_of_a_model(up, root, tag):
     result = up('<customProperties key="k"/>', root=root)
     assert result.lines == ["== 0.7.1", "Amalthea", tag, "customProperties key='k'"]
-    assert result.of("CONVERTED") == ["sub-model as root of a file -> part of a model"]
+    assert result.of("CONVERTED") == ["part of a model as root of a file -> whole model"]
 
 
 def test_references_by_position_survive_a_new_root(up):

@@ -67,3 +67,14 @@ def _remove_constraints(models: ModelSet, notes: Notes, official: bool) -> None:
     for constraint in lost:
         notes.lost(constraint, "constraint for the mapping of a section", content_of(constraint))
     remove_all(lost)
+
+
+def name_mappings(models: ModelSet, notes: Notes) -> None:
+    """Name what was a SectionMapping, which had no name; what it is now needs one from 0.7.2 on."""
+    labels = models.origins.labels
+    for mapping in models.parts("mappingModel", "physicalSectionMapping"):
+        if mapping.name or labels[mapping.origin][0] != "mapping":
+            continue
+        ends = [target.name for name in ("origin", "memory") for target in mapping.references.get(name, ())]
+        mapping.attributes["name"] = "_".join(filter(None, ends)) or "mapping"
+        notes.defaulted(mapping, "name of a PhysicalSectionMapping", mapping.name)

@@ -7,6 +7,7 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
+from amalthea_uros.xmi.migrate.steps.v0_7_1_sections import name_mappings
 from amalthea_uros.xmi.migrate.steps.v0_7_2_hardware import move_hardware
 from amalthea_uros.xmi.migrate.steps.v0_7_2_runnables import change_runnable_items
 from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, names_of, relink
@@ -47,6 +48,7 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     for os_model in models.parts("osModel"):
         _change_buffering(os_model, notes, official)
     _move_tags(models, notes, official)
+    name_mappings(models, notes)
     move_hardware(models, notes, official)
     _change_traced_events(models, notes, official)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from itertools import chain, count
 
 from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XSI_NAMESPACE
@@ -12,10 +13,14 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 
 
 def keep_as_properties(holder: Node, properties: Iterable[tuple[str, str]]) -> None:
-    """Add custom properties with text values, after those that the object has."""
+    """Add custom properties with text values, after those that the object has; a key that it has already gets a number."""
     added = []
+    used = {each.get("key") for each in holder.all("customProperties")}
     for key, text in properties:
-        made = Node("customProperties", "", {"key": key}, holder.origin)
+        numbered = (f"{key} {number}" for number in count(2))
+        unique = next(each for each in chain([key], numbered) if each not in used)
+        used.add(unique)
+        made = Node("customProperties", "", {"key": unique}, holder.origin)
         made.add("value", "StringObject", value=text)
         made.parent = holder
         added.append(made)
