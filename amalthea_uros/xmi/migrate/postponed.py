@@ -18,6 +18,7 @@ class Postponed:
     until : the version from which on it is there
     restore : puts it where it belongs then
     kind, node, message, detail, attribute : what is noted of it; if the migration ends before, it is lost
+    is_kept : whether it is also kept in another form, so that nothing is lost if the migration ends before
     """
 
     until: str
@@ -27,6 +28,7 @@ class Postponed:
     message: str
     detail: str = ""
     attribute: str = ""
+    is_kept: bool = False
 
 
 def bring_back(postponed: list[Postponed], version: str, notes: Notes) -> None:
@@ -41,5 +43,6 @@ def bring_back(postponed: list[Postponed], version: str, notes: Notes) -> None:
 def give_up(postponed: list[Postponed], notes: Notes) -> None:
     """Note what is not restored, because the migration ends before."""
     for one in postponed:
-        notes.lost(one.node, one.message, one.detail, one.attribute)
+        if not one.is_kept:
+            notes.lost(one.node, one.message, one.detail, one.attribute)
     postponed.clear()

@@ -4,18 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.postponed import Postponed
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
 from amalthea_uros.xmi.migrate.steps.v0_9_3_values import number
 from amalthea_uros.xmi.migrate.steps.v0_9_parts import insert_after, keep_comments
 
 #: The key of needs that are instructions, and the category of the feature that says how many of them a cycle executes.
 _INSTRUCTIONS = "Instructions"
 
-#: What is measured in instructions. The official converter leaves the standard deviation as it is.
+#: What is measured in instructions, and what the official converter divides.
 _DIVIDED = ("value", "lowerBound", "upperBound", "mean", "average")
+
+#: The standard deviation is measured in instructions, too, but the official converter leaves it as it is.
+_DEVIATION = "sd"
+
+_DIVIDED_DEVIATION = "standard deviation of ticks: divided by the instructions per cycle of the definition"
 
 _OVERHEADS = ("apiOverhead", "isrCategory1Overhead", "isrCategory2Overhead")
 
@@ -24,7 +32,7 @@ class Ticks:
     """Converts what is stated in instructions; knows how many of them each kind of processing unit executes per cycle."""
 
     def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
-        self.notes, self.official = notes, official
+        self.models, self.notes, self.official = models, notes, official
         self.known: dict[Node, float | None] = {}
         # Also in files of newer versions: the features of definitions are the same in them.
         definitions = [node for tree in models.trees for node in tree.root.find("hwModel", "definitions")]
@@ -194,6 +202,20 @@ class Ticks:
         if shown:
             message = "instructions are ticks now: divided by the instructions per cycle of the definition"
             self.notes.converted(ticks, message, ", ".join(shown))
+        if _DEVIATION in ticks.attributes and not self.official:
+            self.postpone_deviation(ticks, rate)
+
+    def postpone_deviation(self, ticks: Node, rate: float) -> None:
+        """Divide the standard deviation as soon as the content goes beyond what the official converter makes of it."""
+        try:
+            divided = repr(float(ticks.attributes[_DEVIATION]) / rate)
+        except ValueError:
+            return
+        divide = partial(ticks.attributes.__setitem__, _DEVIATION, divided)
+        detail = f"{ticks.attributes[_DEVIATION]} / {rate:g} = {divided}"
+        self.models.postponed.append(
+            Postponed(BEYOND_CONVERTERS, divide, Kind.CONVERTED, ticks, _DIVIDED_DEVIATION, detail, is_kept=True)
+        )
 
     # Overheads of operating systems
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from decimal import Decimal, InvalidOperation
+from functools import partial
 from typing import NamedTuple
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.names import reference_text
 from amalthea_uros.xmi.migrate.node import Node, proxy
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.postponed import Postponed
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
 from amalthea_uros.xmi.migrate.steps.v0_9_parts import add_property, by_class, keep_comments, quantity_text
 
 #: The key of the custom properties that keep the older definition, as the official converter writes it.
@@ -27,7 +31,7 @@ _FUNCTIONS = {
     "ClockSinusFunction": _Function("sine", ("amplitude", "yOffset")),
     "ClockTriangleFunction": _Function("triangle", ("max", "min")),
 }
-_TIMES = ("period", "shift")
+_TIMES = {"period": "period", "shift": "xOffset"}
 _LIST = "ClockMultiplierList"
 
 _CLASSES = {**dict.fromkeys(_FUNCTIONS, "ClockFunction"), _LIST: "ClockStepList"}
@@ -47,6 +51,8 @@ def convert_clocks(models: ModelSet, notes: Notes, official: bool) -> None:
         for node in models.proxies:
             node.target_class = _CLASSES.get(node.target_class, node.target_class)
     for name, function in _FUNCTIONS.items():
+        if not official:
+            _postpone_curves(models, found[name])
         _convert_functions(found[name], function, notes, official)
     for node in found[_LIST]:
         _convert_list(node, notes)
@@ -98,6 +104,40 @@ def _convert_functions(clocks: list[Node], function: _Function, notes: Notes, of
         if texts:
             add_property(clock, _KEY, " ".join(texts))
             notes.kept(clock, _MESSAGE, " ".join(texts))
+
+
+def _postpone_curves(models: ModelSet, clocks: list[Node]) -> None:
+    """State the curves in the newer form, too, as soon as the content goes beyond what the official converter makes of them."""
+    for clock in clocks:
+        parts = [_time(new, part) for old, new in _TIMES.items() for part in clock.all(old)]
+        parts += _frequencies(clock)
+        if parts:
+            message = "curve of a clock: the unit of its frequencies was not stated"
+            state = partial(clock.take, parts)
+            models.postponed.append(Postponed(BEYOND_CONVERTERS, state, Kind.TO_CHECK, clock, message, is_kept=True))
+
+
+def _time(tag: str, old: Node) -> Node:
+    return Node(tag, "", dict(old.attributes), old.origin)
+
+
+def _frequencies(clock: Node) -> list[Node]:
+    """Height and offset of the curve, as far as they are stated."""
+    amplitude, offset = _number(clock, "amplitude"), _number(clock, "yOffset")
+    highest, lowest = _number(clock, "max"), _number(clock, "min")
+    height = 2 * amplitude if amplitude is not None else None
+    if highest is not None and lowest is not None:
+        height = highest - lowest
+    stated = {"peakToPeak": height, "yOffset": offset if offset is not None else lowest}
+    return [Node(tag, "", {"value": str(value)}, clock.origin) for tag, value in stated.items() if value is not None]
+
+
+def _number(clock: Node, name: str) -> Decimal | None:
+    try:
+        number = Decimal(clock.get(name))
+    except InvalidOperation:
+        return None
+    return number if number.is_finite() else None
 
 
 def _convert_list(clock: Node, notes: Notes) -> None:

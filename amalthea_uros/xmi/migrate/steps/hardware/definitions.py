@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, hash_order, keep_text
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
 
 INSTRUCTIONS = "Instructions"
 
@@ -59,11 +63,19 @@ class Definitions:
         node.tag, node.type = "definitions", "MemoryDefinition"
         _MEMORY_TYPE.reduce(node, self.notes, self.official)
         self.notes.converted(node, "memory type -> memory definition")
-        if kind.startswith("FLASH_") and not self.official:
-            keep_text(node, "memoryType", kind)
-            self.notes.kept(node, "'type' of memory types", kind, "type")
-        elif kind != "_undefined_":
-            self.notes.lost(node, "'type' of memory types", kind, "type")
+        if kind != "_undefined_":
+            self._keep_kind(node, kind)
+
+    def _keep_kind(self, node: Node, kind: str) -> None:
+        """Keep of which kind a memory is; newer versions have other kinds."""
+        what = (node, "'type' of memory types", kind, "type")
+        if self.official or not kind.startswith("FLASH_"):
+            self.notes.lost(*what)
+            return
+        keep_text(node, "memoryType", kind)
+        self.notes.kept(*what)
+        state = partial(node.attributes.setdefault, "memoryType", "FLASH")
+        self.models.postponed.append(Postponed(BEYOND_CONVERTERS, state, Kind.CONVERTED, *what, is_kept=True))
 
     def _convert_core_type(self, node: Node, hardware: Node) -> None:
         node.tag, node.type = "definitions", "ProcessingUnitDefinition"

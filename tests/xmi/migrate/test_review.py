@@ -1,0 +1,92 @@
+"""Content whose meaning a chain of steps has to keep, beyond what single steps show."""
+
+import pytest
+from inline_models import of_kind, written
+from migration import migrated
+
+from amalthea_uros.xmi.migrate.notes import Kind
+
+# Clocks
+
+
+def clocks_of(tmp_path, target, clocks, official=False):
+    paths = written(tmp_path, "0.9.4", f"<stimuliModel>{clocks}</stimuliModel>")
+    models, notes = migrated(paths, target, official)
+    return models.parts("stimuliModel", "clocks"), notes
+
+
+SINE = """<clocks xsi:type="am:ClockSinusFunction" name="c" amplitude="2.0" yOffset="1.5"><period value="1" unit="s"/>
+    <shift value="5" unit="ms"/></clocks>"""
+TRIANGLE = '<clocks xsi:type="am:ClockTriangleFunction" name="c" max="3.0" min="0.5"><period value="1" unit="s"/></clocks>'
+
+
+@pytest.mark.parametrize(
+    ("clock", "expected"),
+    [
+        (SINE, {"period": "1", "xOffset": "5", "peakToPeak": "4.0", "yOffset": "1.5"}),
+        (TRIANGLE, {"period": "1", "peakToPeak": "2.5", "yOffset": "0.5"}),
+        (SINE.replace('"2.0"', '"?"'), {"period": "1", "xOffset": "5", "yOffset": "1.5"}),
+        ('<clocks xsi:type="am:ClockSinusFunction" name="c"/>', {}),
+    ],
+)
+def test_the_curve_of_a_clock_is_stated_beyond_the_official_conversions(tmp_path, clock, expected):
+    [found], notes = clocks_of(tmp_path, "3.3.0", clock)
+    parts = [part for part in found.children if part.tag != "customProperties"]
+    assert {part.tag: part.get("value") for part in parts} == expected
+    assert {part.get("unit") for part in parts if part.tag in ("peakToPeak", "yOffset")} <= {""}
+    assert len(of_kind(notes, Kind.TO_CHECK)) == bool(expected)
+
+
+@pytest.mark.parametrize(("target", "official"), [("0.9.5", False), ("3.3.0", True)])
+def test_until_then_the_curve_of_a_clock_is_a_text(tmp_path, target, official):
+    [found], notes = clocks_of(tmp_path, target, SINE, official)
+    assert [part.tag for part in found.children] == ["customProperties"]
+    assert of_kind(notes, Kind.LOST) == []
+
+
+# Execution times
+
+NEED = """<runnableItems xsi:type="am:ExecutionNeed">{default}<extended key="P?type=ProcessingUnitDefinition">
+    <value key="Instructions">{value}</value></extended></runnableItems>"""
+GAUSS = """<value xsi:type="am:NeedDeviation"><deviation><distribution xsi:type="am:GaussDistribution">
+    <mean xsi:type="am:LongObject" value="100"/><sd xsi:type="am:LongObject" value="{}"/></distribution></deviation></value>"""
+CORES = """<hwModel>{definitions}<featureCategories name="Instructions"><features name="IPC" value="2.0"/></featureCategories></hwModel>"""
+DEFINITION = '<definitions xsi:type="am:ProcessingUnitDefinition" name="{}" features="Instructions/IPC?type=HwFeature"/>'
+
+
+@pytest.mark.parametrize(
+    ("target", "official", "expected"),
+    [("3.3.0", False, ["5.0", "10.0"]), ("0.9.5", False, ["10", "20"]), ("3.3.0", True, ["10"])],
+)
+def test_the_standard_deviation_is_divided_like_the_mean(tmp_path, target, official, expected):
+    default = f'<default key="Instructions">{GAUSS.format(20)}</default>'
+    need = NEED.format(default=default, value=GAUSS.format(10))
+    hardware = CORES.format(definitions=DEFINITION.format("P") + DEFINITION.format("Q"))
+    content = f'<swModel><runnables name="R">{need}</runnables></swModel>{hardware}'
+    models, notes = migrated(written(tmp_path, "0.9.2", content), target, official)
+    values = [node for tree in models.trees for node in tree.root.walk() if node.tag == "value" and "sd" in node.attributes]
+    assert [node.get("sd") for node in values] == expected
+    assert {node.get("mean") for node in values} == {"50"}
+    assert of_kind(notes, Kind.LOST) == []
+
+
+# Hardware
+
+
+@pytest.mark.parametrize(
+    ("kind", "target", "official", "memory_type", "kept"),
+    [
+        ("FLASH_EXT", "3.3.0", False, "FLASH", ["FLASH_EXT"]),
+        ("FLASH_EXT", "0.9.5", False, "", ["FLASH_EXT"]),
+        ("FLASH_EXT", "3.3.0", True, "", []),
+        ("RAM", "3.3.0", False, "", []),
+        ("_undefined_", "3.3.0", False, "", []),
+    ],
+)
+def test_the_kind_of_a_memory_comes_back(tmp_path, kind, target, official, memory_type, kept):
+    content = f'<hwModel><memoryTypes name="M" type="{kind}"/></hwModel>'
+    models, notes = migrated(written(tmp_path, "0.8.3", content), target, official)
+    [definition] = models.parts("hwModel", "definitions")
+    assert definition.get("memoryType") == memory_type
+    assert [value.get("value") for value in definition.find("customProperties", "value")] == kept
+    assert bool(of_kind(notes, Kind.LOST)) == (kind != "_undefined_" and not kept)
