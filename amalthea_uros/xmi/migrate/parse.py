@@ -17,6 +17,9 @@ from amalthea_uros.xmi.migrate.versions import itea_package, namespace_version
 
 _new = object.__new__
 
+#: What references start with that leave the search for the file to the reader.
+_ANY_FILE = "amlt:/#"
+
 
 class Href(NamedTuple):
     """A reference as an element: `<task href="amlt:/#T?type=Task"/>`.
@@ -126,7 +129,7 @@ class _Parser:
             self.skip(tag, parent)
             return
         if "href" in attributes:
-            self.hrefs.append(Href(parent, tag, attributes["href"], self.type_of(attributes.get(self.xsi_type, ""))))
+            self.hrefs.append(Href(parent, tag, _href(attributes["href"]), self.type_of(attributes.get(self.xsi_type, ""))))
             self.stack.append(None)
             return
         node = self.open(tag, attributes, parent)
@@ -212,3 +215,9 @@ class _Parser:
     @property
     def offset(self) -> int:
         return self.expat.CurrentByteIndex
+
+
+def _href(text: str) -> str:
+    """A reference into a file that was not read is written with its file name in the place of an id: `amlt:/#x.amxmi#//@swModel`."""
+    inner = text.removeprefix(_ANY_FILE)
+    return inner if "#" in inner else text

@@ -50,7 +50,8 @@ NEED = """<runnableItems xsi:type="am:ExecutionNeed">{default}<extended key="P?t
     <value key="Instructions">{value}</value></extended></runnableItems>"""
 GAUSS = """<value xsi:type="am:NeedDeviation"><deviation><distribution xsi:type="am:GaussDistribution">
     <mean xsi:type="am:LongObject" value="100"/><sd xsi:type="am:LongObject" value="{}"/></distribution></deviation></value>"""
-CORES = """<hwModel>{definitions}<featureCategories name="Instructions"><features name="IPC" value="2.0"/></featureCategories></hwModel>"""
+CORES = """<hwModel>{definitions}<featureCategories name="Instructions"><features name="IPC" value="2.0"/></featureCategories>
+    </hwModel>"""
 DEFINITION = '<definitions xsi:type="am:ProcessingUnitDefinition" name="{}" features="Instructions/IPC?type=HwFeature"/>'
 
 
@@ -90,3 +91,16 @@ def test_the_kind_of_a_memory_comes_back(tmp_path, kind, target, official, memor
     assert definition.get("memoryType") == memory_type
     assert [value.get("value") for value in definition.find("customProperties", "value")] == kept
     assert bool(of_kind(notes, Kind.LOST)) == (kind != "_undefined_" and not kept)
+
+
+# References
+
+
+def test_a_position_in_a_file_that_is_not_here_stays_one(tmp_path):
+    """Once the result of a migration is migrated again, it must not mean what is at that position in the file itself."""
+    content = """<swModel><labels name="own"/><runnables name="R"><callGraph><items xsi:type="am:LabelAccess">
+        <data href="{}gone.amxmi#//@swModel/@labels.0"/></items></callGraph></runnables></swModel>"""
+    for prefix in ("", "amlt:/#"):
+        models, _ = migrated(written(tmp_path, "0.9.5", content.format(prefix)), "3.3.0")
+        [access] = models.parts("swModel", "runnables", "activityGraph", "items")
+        assert access.target("data").get("path") == "gone.amxmi#//@swModel/@labels.0"
