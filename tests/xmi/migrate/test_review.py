@@ -1,5 +1,6 @@
 """Content whose meaning a chain of steps has to keep, beyond what single steps show."""
 
+import itea
 import pytest
 from inline_models import of_kind, written
 from migration import migrated
@@ -104,3 +105,24 @@ def test_a_position_in_a_file_that_is_not_here_stays_one(tmp_path):
         models, _ = migrated(written(tmp_path, "0.9.5", content.format(prefix)), "3.3.0")
         [access] = models.parts("swModel", "runnables", "activityGraph", "items")
         assert access.target("data").get("path") == "gone.amxmi#//@swModel/@labels.0"
+
+
+# Allocations
+
+ISR = """<swModel><isrs xmi:id="_i" name="I"/><isrs xmi:id="_j" name="J"/></swModel>
+    <hwModel><system name="S"><ecus name="E"><microcontrollers name="M"><cores xmi:id="_c" name="C"/><cores xmi:id="_d" name="D"/>
+    </microcontrollers></ecus></system></hwModel>
+    <osModel><scheduler xmi:id="_s" name="X"/><scheduler xmi:id="_u" name="Y"/></osModel>
+    <mappingModel><coreAllocation scheduler="_s" core="_c"/><coreAllocation scheduler="_u" core="_d"/>
+    <executableAllocation xsi:type="mapping:ProcessAllocation" process="_i" scheduler="_s"/>
+    <executableAllocation xsi:type="mapping:ProcessAllocation" process="_j" scheduler="_s"/></mappingModel>"""
+
+
+@pytest.mark.parametrize(("target", "official"), [("3.3.0", False), ("0.7.0", False), ("3.3.0", True)])
+def test_isrs_without_interrupt_controllers_stay_on_their_cores(tmp_path, target, official):
+    models, _ = migrated(itea.write(tmp_path, "1.1.0", m__amxmi=ISR), target, official)
+    allocations = models.parts("mappingModel", "schedulerAllocation") or models.parts("mappingModel", "coreAllocation")
+    cores = "core" if target == "0.7.0" else "responsibility"
+    found = [(node.target("scheduler").name, node.target(cores).name) for node in allocations]
+    expected = [("X", "C"), ("interruptController1_migration_generated", "C"), ("Y", "D")]
+    assert found == (expected if (target, official) == ("3.3.0", False) else [expected[0], expected[2]])

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
+
 from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr, sub_models
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
@@ -66,6 +71,8 @@ class _Allocations:
         self.notes, self.official = notes, official
         #: The interrupt controller for the ISRs of an operating system that had none.
         self.controllers: dict[Node, Node] = {}
+        #: The schedulers that an interrupt controller takes the place of.
+        self.replaced: dict[Node, dict[Node, None]] = {}
 
     def split(self, models: ModelSet) -> None:
         """Convert all allocations."""
@@ -79,6 +86,11 @@ class _Allocations:
             elif kind == "ProcessAllocation" or not self.official:
                 allocation.tag = "processAllocation"
                 self.split_process(allocation)
+        for controller, schedulers in self.replaced.items():
+            message = "interrupt controller of ISRs: it has the cores of the schedulers whose place it takes"
+            restore = partial(_allocate, controller, list(schedulers), models)
+            what = (Kind.CONVERTED, controller, message, controller.name)
+            models.postponed.append(Postponed(BEYOND_ITEA, restore, *what, is_kept=True))
 
     def split_process(self, allocation: Node) -> None:
         """Make an allocation of a process one of a task or of an ISR."""
@@ -117,12 +129,25 @@ class _Allocations:
             controller.target_class = "os:InterruptController"
             self.controllers[system] = controller
         allocation.references["scheduler"] = [controller]
+        if not self.official:
+            self.replaced.setdefault(controller, {})[scheduler] = None
         self.notes.lost(
             allocation,
             "scheduler of an ISR: ISRs have interrupt controllers now, and a new one takes its place",
             f"{scheduler.name} -> {controller.name}",
             "scheduler",
         )
+
+
+def _allocate(controller: Node, schedulers: Sequence[Node], models: ModelSet) -> None:
+    """Allocate an interrupt controller to the cores of some schedulers, so that its ISRs are executed where they were."""
+    for allocation in [node for tree in models.trees for node in tree.root.walk() if node.tag == "coreAllocation"]:
+        holder = allocation.parent
+        if holder is None or allocation.target("scheduler") not in schedulers or not allocation.references.get("core"):
+            continue
+        made = holder.add("coreAllocation", at=holder.children.index(allocation) + 1, like=allocation)
+        made.refer("scheduler", controller)
+        made.refer("core", *allocation.references["core"])
 
 
 def _is_unresolved(process: Node | None, scheduler: Node | None) -> bool:
