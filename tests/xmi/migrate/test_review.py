@@ -5,6 +5,7 @@ import pytest
 from inline_models import of_kind, written
 from migration import migrated
 
+import amalthea_uros as amuros
 from amalthea_uros.xmi.migrate.notes import Kind
 
 # Clocks
@@ -126,3 +127,17 @@ def test_isrs_without_interrupt_controllers_stay_on_their_cores(tmp_path, target
     found = [(node.target("scheduler").name, node.target(cores).name) for node in allocations]
     expected = [("X", "C"), ("interruptController1_migration_generated", "C"), ("Y", "D")]
     assert found == (expected if (target, official) == ("3.3.0", False) else [expected[0], expected[2]])
+
+
+# Constraints
+
+
+@pytest.mark.parametrize(("version", "tag"), [("0.7.1", "labels"), ("0.8.0", "group")])
+def test_the_labels_of_a_pairing_constraint_can_be_read(tmp_path, version, tag):
+    content = f"""<swModel><labels name="L"/></swModel><constraintsModel>
+        <affinityConstraints xsi:type="am:DataPairingConstraint"><{tag} labels="L?type=Label"/></affinityConstraints>
+        </constraintsModel>"""
+    model = amuros.migrate(written(tmp_path, version, content)).model
+    [constraint] = model.all(amuros.am.DataPairingConstraint)
+    assert [label.name for label in constraint.group.labels] == ["L"]
+    assert model.findings == ()

@@ -51,6 +51,8 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     _change_triggers(models, notes, official)
     _rename_features(models, notes)
     _type_mode_values(models, notes)
+    if not official:
+        _type_label_groups(models, notes)
     _keep_deadlines(models, notes)
     move_priorities(models, notes, official)
     change_schedulers(models, notes)
@@ -99,6 +101,15 @@ def _type_mode_values(models: ModelSet, notes: Notes) -> None:
             if entry.type in ("", "ModeValueListEntry"):
                 entry.type = "ModeValue"
                 notes.renamed(entry, "class renamed", "ModeValueListEntry -> ModeValue")
+
+
+def _type_label_groups(models: ModelSet, notes: Notes) -> None:
+    """State the class of the labels of a pairing constraint: there is a second kind of groups now, which the official step forgets."""
+    for constraint in models.parts("constraintsModel", "affinityConstraints"):
+        for group in constraint.all("group") if constraint.type == "DataPairingConstraint" else ():
+            if not group.type:
+                group.type = "LabelEntityGroup"
+                notes.renamed(group, "class of a group of labels is stated: LabelEntityGroup")
 
 
 def _keep_deadlines(models: ModelSet, notes: Notes) -> None:
