@@ -116,6 +116,8 @@ class Ticks:
         for entry in extended:
             values = entry.all("value")
             fitting = [value for value in values if value.get("key") == _INSTRUCTIONS]
+            if not values:
+                self.notes.lost(entry, "the execution need of a definition has no value")
             for value in values:
                 if value not in fitting[:1]:
                     message = "execution needs of definitions have no keys other than instructions any more"
