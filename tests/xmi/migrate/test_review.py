@@ -141,3 +141,26 @@ def test_the_labels_of_a_pairing_constraint_can_be_read(tmp_path, version, tag):
     [constraint] = model.all(amuros.am.DataPairingConstraint)
     assert [label.name for label in constraint.group.labels] == ["L"]
     assert model.findings == ()
+
+
+# Custom properties
+
+
+@pytest.mark.parametrize(
+    ("text", "default", "official"),
+    [
+        ("P+1?type=Periodic", "P+1?type=PeriodicStimulus", "P+1?type=PeriodicStimulus"),
+        ("mode=Single", "mode=Single", "mode=SingleStimulus"),
+        ("a=b=Single", "a=b=Single", "a=b=Single"),
+        ("x?type=InterProcessActivation", "x?type=InterProcessActivation", "x?type=InterProcessActivation"),
+    ],
+)
+def test_texts_that_are_references_to_stimuli_follow(tmp_path, text, default, official):
+    value = f'<{{}} xsi:type="am:StringObject" value="{text}"/>'
+    values = f'<value xsi:type="am:ListObject">{value.format("values")}</value>'
+    content = f"""<swModel><tasks name="T"><customProperties key="k">{value.format("value")}</customProperties>
+        <customProperties key="l">{values}</customProperties></tasks></swModel>"""
+    for is_official, expected in ((False, default), (True, official)):
+        models, _ = migrated(written(tmp_path, "0.8.0", content), "0.8.1", is_official)
+        found = [node.get("value") for tree in models.trees for node in tree.root.walk() if "value" in node.attributes]
+        assert found == [expected, expected]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from amalthea_uros.metamodel.naming import TYPE_MARK
 from amalthea_uros.xmi.migrate.classes import class_of
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.names import reference_text
@@ -28,6 +29,8 @@ _CLASSES = {
     "Synthetic": "SyntheticStimulus",
 }
 
+_STIMULI = frozenset(_CLASSES) - {"InterProcessActivation", "ProcessRunnableGroup"}
+
 _OLD_NAMES = {new: old for old, new in _CLASSES.items()}
 
 #: Sub-model and tag of objects, their class ("" for any) -> attribute or reference, and its new name.
@@ -48,6 +51,7 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.8.0."""
     for node in models.rename_classes(_CLASSES):
         notes.renamed(node, "class renamed", f"{_OLD_NAMES[node.type]} -> {node.type}")
+    _rename_in_texts(models, notes, official)
     _change_triggers(models, notes, official)
     _rename_features(models, notes)
     _type_mode_values(models, notes)
@@ -58,6 +62,18 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     change_schedulers(models, notes)
     contain_event_chains(models, notes, official)
     _change_hardware(models, notes)
+
+
+def _rename_in_texts(models: ModelSet, notes: Notes, official: bool) -> None:
+    """Rename the classes of stimuli in references that are texts of custom properties; the official converter does so after any `=`."""
+    for node in models.nodes("value", "values"):
+        before, mark, name = node.get("value").partition("=" if official else TYPE_MARK)
+        if name not in _STIMULI or not node.type or node.enclosing("customProperties") is None:
+            continue
+        if official and node.tag == "value" and node.parent is not None and node.parent.tag != "customProperties":
+            continue  # it looks only at the values of custom properties, and at those in lists
+        node.attributes["value"] = f"{before}{mark}{_CLASSES[name]}"
+        notes.renamed(node, "class renamed in the text of a custom property", f"{name} -> {_CLASSES[name]}", "value")
 
 
 def _change_triggers(models: ModelSet, notes: Notes, official: bool) -> None:
