@@ -1,11 +1,6 @@
 """Small models written inline, migrated and compared by meaning."""
 
-from migration import meaning, migrated, opened
-
-_FILE = """<?xml version="1.0" encoding="UTF-8"?>
-<am:Amalthea xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
- xmlns:am="http://app4mc.eclipse.org/amalthea/{}">{}</am:Amalthea>
-"""
+from migration import meaning, migrated, model, opened
 
 
 class InlineModels:
@@ -25,7 +20,7 @@ class InlineModels:
         folder.mkdir(exist_ok=True)
         paths = [folder / f"{number}.amxmi" for number in range(len(contents))]
         for path, content in zip(paths, contents, strict=True):
-            path.write_text(_FILE.format(version, content), encoding="utf-8")
+            path.write_text(model(version, content), encoding="utf-8")
         return paths
 
     def migrate(self, source, target, *contents, official=False):

@@ -1,11 +1,6 @@
 """Small models of old versions inside tests of migration steps."""
 
-from migration import meaning, migrated, opened
-
-_SPACES = (
-    'xmlns:am="http://app4mc.eclipse.org/amalthea/{}" xmlns:xmi="http://www.omg.org/XMI" '
-    'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmi:version="2.0"'
-)
+from migration import meaning, migrated, model, opened
 
 
 def written(folder, version, *contents):
@@ -15,7 +10,7 @@ def written(folder, version, *contents):
     paths = []
     for number, content in enumerate(contents):
         paths.append(folder / f"m{number}.amxmi")
-        paths[-1].write_text(f"<am:Amalthea {_SPACES.format(version)}>{content}</am:Amalthea>", "utf-8")
+        paths[-1].write_text(model(version, content), "utf-8")
     return paths
 
 

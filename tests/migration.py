@@ -9,6 +9,17 @@ from amalthea_uros.xmi.migrate.read_set import read_set
 
 MAX_SIZE = 100_000_000
 
+_SPACES = (
+    'xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" '
+    'xmlns:am="http://app4mc.eclipse.org/amalthea/{}"'
+)
+
+
+def model(version, content, root="Amalthea"):
+    """The text of a file of APP4MC; `xsi:type` may be written as `t`, without prefix."""
+    typed = content.replace(' t="', ' xsi:type="am:')
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n<am:{root} {_SPACES.format(version)}>{typed}</am:{root}>\n'
+
 
 def opened(*paths):
     """The linked nodes of some files."""

@@ -1,17 +1,6 @@
 """Small models of versions 0.7.0 to 0.8.0, and what the migration makes of them."""
 
-from migration import meaning, migrated
-
-HEAD = (
-    '<am:{root} xmlns:am="http://app4mc.eclipse.org/amalthea/{version}" xmlns:xmi="http://www.omg.org/XMI"'
-    ' xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmi:version="2.0">'
-)
-
-
-def model(version, content, root="Amalthea"):
-    """The text of a model; `xsi:type` is written as `t`, without prefix."""
-    typed = content.replace(' t="', ' xsi:type="am:')
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{HEAD.format(root=root, version=version)}{typed}</am:{root}>\n'
+from migration import meaning, migrated, model
 
 
 class Migrated:

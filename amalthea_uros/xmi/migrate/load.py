@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -240,23 +241,26 @@ def announcements(migrated: MigratedSet) -> list[Finding]:
     return [Finding("XMI008", Severity.INFO, message, where, help_text), *_losses(migrated)]
 
 
+#: So many kinds of lost content are named; the report of the command names all.
+_NAMED = 4
+
+
 def _losses(migrated: MigratedSet) -> list[Finding]:
-    """What the migration could not keep: one finding for each kind of thing, at the first."""
-    by_message: dict[str, list[Note]] = {}
-    for note in migrated.notes:
-        if note.kind is Kind.LOST:
-            by_message.setdefault(note.message, []).append(note)
-    found = []
-    origins = migrated.models.origins
-    for message, lost in by_message.items():
-        first = lost[0]
-        times = f" ({len(lost):,} times, this is the first)" if len(lost) > 1 else ""
+    """What the migration could not keep, in one finding at the first place."""
+    lost = [note for note in migrated.notes if note.kind is Kind.LOST]
+    if not lost:
+        return []
+    first = lost[0]
+    numbers = Counter(note.message for note in lost)
+    if len(numbers) == 1:
         detail = f": {first.detail}" if first.detail else ""
-        step = f"the migration to {first.version}" if first.version else "reading"
-        text = f"lost in {step}: {message}{detail}{times}"
-        where = origins.location(first.origin, first.attribute)
-        help_text = (
-            "The new version has no place for it. `amuros migrate --dry-run` lists everything that is converted or lost."
-        )
-        found.append(Finding("XMI009", Severity.WARNING, text, where, help_text, origins.object_name(first.origin)))
-    return found
+        what = f"{first.message}{detail}" + (f" ({len(lost):,} times, this is the first)" if len(lost) > 1 else "")
+    else:
+        named = [f"{message} ({number:,})" for message, number in numbers.most_common(_NAMED)]
+        rest = f" and {len(numbers) - _NAMED} more kinds" if len(numbers) > _NAMED else ""
+        what = f"{', '.join(named)}{rest}; this is the first place"
+    origins = migrated.models.origins
+    help_text = "The new version has no place for it. `amuros migrate --dry-run` lists everything that is converted or lost."
+    where = origins.location(first.origin, first.attribute)
+    message = f"lost in the migration to {migrated.target}: {what}"
+    return [Finding("XMI009", Severity.WARNING, message, where, help_text, origins.object_name(first.origin))]

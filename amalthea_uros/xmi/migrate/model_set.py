@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,6 +11,7 @@ from amalthea_uros.diagnostics import Location
 from amalthea_uros.metamodel.source import Source
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.finding_collector import location
+from amalthea_uros.xmi.migrate.index import NodeIndex, all_below
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.postponed import Postponed
 
@@ -99,13 +99,14 @@ class ModelSet:
         self.set_aside: dict[tuple[Node, str], list[Node]] = {}
         self.postponed: list[Postponed] = []
         self.stated: dict[Node, str] = {}
-        self._index: _Index | None = None
+        self._index = NodeIndex()
+        self._is_current = False
         self._active: list[Tree] = trees
 
     def begin_step(self, version: str) -> None:
         """From now on only the files of that version are meant; nodes are indexed anew."""
         self._active = [tree for tree in self.trees if tree.version == version]
-        self._index = None
+        self._is_current = False
 
     @property
     def active(self) -> list[Tree]:
@@ -122,21 +123,22 @@ class ModelSet:
         return iter(all_below(self.roots))
 
     @property
-    def index(self) -> _Index:
+    def index(self) -> NodeIndex:
         """The nodes by tag and by type, as of the first use within the step."""
-        if self._index is None:
-            self._index = _Index(self.roots)
+        if not self._is_current:
+            self._index.update(self.roots)
+            self._is_current = True
         return self._index
 
     def nodes(self, *tags: str) -> list[Node]:
         """Every node of these tags, in order for one tag; as of the first use of the index within the step."""
-        by_tag = self.index.by_tag
-        return [node for tag in tags for node in by_tag.get(tag, ())]
+        index = self.index
+        return [node for tag in tags for node in index.of_tag(tag)]
 
     def of_type(self, *types: str) -> list[Node]:
         """Every node that states one of these types, in order for one type; as of the first use of the index within the step."""
-        by_type = self.index.by_type
-        return [node for name in types for node in by_type.get(name, ()) if node.type == name]
+        index = self.index
+        return [node for name in types for node in index.of_type(name) if node.type == name]
 
     def parts(self, *path: str) -> list[Node]:
         """Everything below the roots that a path of tags leads to."""
@@ -155,30 +157,3 @@ class ModelSet:
         for node in self.proxies:
             node.target_class = renamed.get(node.target_class, node.target_class)
         return found
-
-
-class _Index:
-    """Nodes by tag, and by type where they state one."""
-
-    def __init__(self, roots: list[Node]) -> None:
-        self.by_tag: dict[str, list[Node]] = defaultdict(list)
-        self.by_type: dict[str, list[Node]] = defaultdict(list)
-        by_tag, by_type = self.by_tag, self.by_type
-        for node in all_below(roots):
-            by_tag[node.tag].append(node)
-            if node.type:
-                by_type[node.type].append(node)
-
-
-def all_below(roots: list[Node]) -> list[Node]:
-    """Every node of some trees, parents first; faster than walking, and unaffected by changes afterwards."""
-    found: list[Node] = []
-
-    def visit(nodes: list[Node]) -> None:
-        for node in nodes:
-            found.append(node)
-            if node.children:
-                visit(node.children)
-
-    visit(roots)
-    return found

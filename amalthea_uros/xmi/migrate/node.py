@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Protocol
+
+
+class Index(Protocol):
+    """What wants to know of changes below a root."""
+
+    def note(self, node: Node) -> None:
+        """Note, before it happens, that a node gets another tag or type."""
+
+    def note_all(self, top: Node) -> None:
+        """Note that a node gets or loses its container, with everything in it."""
 
 
 class Node:
     """An object of a model in any version: what an element of the file says, without knowing its class.
 
-    A step may change everything, by the methods or directly; only the container is set by the methods alone.
+    A step may change everything, by the methods or directly; only containers and their parts are set by the methods alone.
 
     Attributes
     ----------
-    tag : name of the element, without prefix
-    type : class that `xsi:type` states, "" if it states none; in ITEA versions with the package ("sw:LabelAccess")
     attributes : text by name; without references
     references : targets by name, whether they were attributes or `href` elements
     children : the parts, in order
@@ -21,13 +30,25 @@ class Node:
     target_class : class by which references name this object, where the tag does not tell it
     comments : comments and processing instructions in front of the element
     origin : index of the element in the files from which this comes
+    index : what is told of changes in a whole tree, at its root
     """
 
-    __slots__ = ("attributes", "children", "comments", "origin", "parent", "references", "tag", "target_class", "type")
+    __slots__ = (
+        "_tag",
+        "_type",
+        "attributes",
+        "children",
+        "comments",
+        "index",
+        "origin",
+        "parent",
+        "references",
+        "target_class",
+    )
 
     def __init__(self, tag: str, type_name: str = "", attributes: dict[str, str] | None = None, origin: int = -1) -> None:
-        self.tag = tag
-        self.type = type_name
+        self._tag = tag
+        self._type = type_name
         self.attributes: dict[str, str] = {} if attributes is None else attributes
         self.references: dict[str, list[Node]] = {}
         self.children: list[Node] = []
@@ -35,8 +56,33 @@ class Node:
         self.target_class = ""
         self.comments: list[str] | None = None
         self.origin = origin
+        self.index: Index | None = None
 
     # Reading
+
+    @property
+    def tag(self) -> str:
+        """Name of the element, without prefix."""
+        return self._tag
+
+    @tag.setter
+    def tag(self, tag: str) -> None:
+        index = self.root.index
+        if index is not None:
+            index.note(self)
+        self._tag = tag
+
+    @property
+    def type(self) -> str:
+        """Class that `xsi:type` states, "" if it states none; in ITEA versions with the package ("sw:LabelAccess")."""
+        return self._type
+
+    @type.setter  # noqa: A003 (as in the files)
+    def type(self, type_name: str) -> None:
+        index = self.root.index
+        if index is not None:
+            index.note(self)
+        self._type = type_name
 
     @property
     def name(self) -> str:
@@ -59,17 +105,17 @@ class Node:
 
     def child(self, tag: str) -> Node | None:
         """The first part of that tag, None if there is none."""
-        return next((child for child in self.children if child.tag == tag), None)
+        return next((child for child in self.children if child._tag == tag), None)
 
     def all(self, *tags: str) -> list[Node]:
         """The parts of these tags, in order; a copy, so that they can be moved and removed meanwhile."""
-        return [child for child in self.children if child.tag in tags]
+        return [child for child in self.children if child._tag in tags]
 
     def find(self, *path: str) -> list[Node]:
         """Everything below that a path of tags leads to."""
         found = [self]
         for tag in path:
-            found = [child for node in found for child in node.children if child.tag == tag]
+            found = [child for node in found for child in node.children if child._tag == tag]
         return found
 
     def walk(self) -> Iterator[Node]:
@@ -114,6 +160,7 @@ class Node:
         """Make a node a part of this one, the last one or at a position; it leaves its present container."""
         child.remove()
         child.parent = self
+        _note_all(self, (child,))
         if at is None:
             self.children.append(child)
         else:
@@ -125,11 +172,23 @@ class Node:
         remove_all(taken)
         for child in taken:
             child.parent = self
+        _note_all(self, taken)
         self.children.extend(taken)
+
+    def set_children(self, children: list[Node]) -> None:
+        """Make some nodes, of which none is a part of another node, the parts of this one; the present ones leave it."""
+        _note_all(self, self.children)
+        for child in self.children:
+            child.parent = None
+        for child in children:
+            child.parent = self
+        _note_all(self, children)
+        self.children = children
 
     def remove(self) -> None:
         """Leave the container."""
         if self.parent is not None:
+            _note_all(self.parent, (self,))
             # By identity: nodes are never equal to others.
             self.parent.children.remove(self)
             self.parent = None
@@ -176,10 +235,21 @@ class Node:
 def remove_all(nodes: Iterable[Node]) -> None:
     """Let nodes leave their containers, in time linear in the number of the nodes and their siblings."""
     removed = set(nodes)
+    for node in removed:
+        if node.parent is not None:
+            _note_all(node.parent, (node,))
     for holder in {node.parent for node in removed if node.parent is not None}:
         holder.children = [child for child in holder.children if child not in removed]
     for node in removed:
         node.parent = None
+
+
+def _note_all(holder: Node, parts: Iterable[Node]) -> None:
+    """Tell of some parts, present or coming, of a node that they change."""
+    index = holder.root.index
+    if index is not None:
+        for part in parts:
+            index.note_all(part)
 
 
 def proxy(path: str, class_name: str) -> Node:

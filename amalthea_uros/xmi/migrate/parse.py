@@ -142,9 +142,9 @@ class _Parser:
         """A new node for the start tag."""
         origins = self.origins
         node: Node = _new(Node)
-        node.tag, node.type, node.target_class = tag, "", ""
+        node._tag, node._type, node.target_class = tag, "", ""
         node.attributes, node.references, node.children = attributes, {}, []
-        node.parent = node.comments = None
+        node.parent = node.comments = node.index = None
         node.origin = len(origins.starts)
         origins.starts.append(self.expat.CurrentByteIndex)
         origins.ends.append(0)
@@ -168,7 +168,7 @@ class _Parser:
             if key == self.xmi_id:
                 self.ids.setdefault(attributes.pop(key), node)
             elif key == self.xsi_type:
-                node.type = self.type_of(attributes.pop(key))
+                node._type = self.type_of(attributes.pop(key))
             elif key not in declared:
                 self.notes.lost(node, "attribute of another namespace", f"{key}={attributes.pop(key)!r}", key)
 

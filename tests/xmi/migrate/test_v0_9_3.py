@@ -1,6 +1,5 @@
 """0.9.2 -> 0.9.3, as far as the pairs of models do not show it."""
 
-import time
 from functools import partial
 
 import pytest
@@ -468,11 +467,3 @@ def test_jitter_of_constraints_is_a_time(same):
 )
 def test_damaged_content_is_survived(tmp_path, content, official):
     migrated(written(tmp_path, "0.9.2", content), "0.9.3", official)
-
-
-def test_time_is_linear(tmp_path):
-    items = need(default(5), default(6, "FLOP")) + need(extended("P", 3, "FLOP"))
-    (path,) = written(tmp_path, "0.9.2", runnable(items * 5_000))
-    start = time.perf_counter()
-    migrated([path], "0.9.3")
-    assert time.perf_counter() - start < 10

@@ -1,6 +1,5 @@
 """0.9.3 -> 0.9.4, as far as the pairs of models do not show it."""
 
-import time
 from functools import partial
 
 import pytest
@@ -359,12 +358,3 @@ def test_what_is_new_already_is_left_alone(tmp_path):
 )
 def test_damaged_content_is_survived(tmp_path, content, official):
     migrated(written(tmp_path, "0.9.3", content), "0.9.4", official)
-
-
-def test_time_is_linear(tmp_path):
-    runnables = "".join(f'<runnables name="R{n}"><deadline value="{n}"/></runnables>' for n in range(5_000))
-    labels = "".join(f'<modeLabels name="L{n}" initialValue="m+1/off?type=ModeLiteral"/>' for n in range(5_000))
-    (path,) = written(tmp_path, "0.9.3", software(runnables + labels))
-    start = time.perf_counter()
-    migrated([path], "0.9.4")
-    assert time.perf_counter() - start < 10

@@ -1,6 +1,5 @@
 """0.9.4 -> 0.9.5, as far as the pairs of models do not show it."""
 
-import time
 from functools import partial
 
 import pytest
@@ -265,12 +264,3 @@ def test_what_is_new_already_is_left_alone(tmp_path):
 )
 def test_damaged_content_is_survived(tmp_path, content, official):
     migrated(written(tmp_path, "0.9.4", content), "0.9.5", official)
-
-
-def test_time_is_linear(tmp_path):
-    items = "<runnableItems xsi:type='am:SemaphoreAccess'/>" * 10_000
-    calls = process("tasks", sequence("", old_call() * 10_000) + sequence("", "") * 5_000)
-    (path,) = written(tmp_path, "0.9.4", f"<swModel><runnables name='R'>{items}</runnables></swModel>{calls}")
-    start = time.perf_counter()
-    migrated([path], "0.9.5")
-    assert time.perf_counter() - start < 10

@@ -53,19 +53,15 @@ def _unwrap_items(group: Node, notes: Notes, official: bool) -> None:
         children += _unwrapped(child, notes, official)
     if wrappers:
         remove_all(wrappers)
-        for child in children:
-            child.parent = group
-        group.children = children
+        group.set_children(children)
 
 
 def _unwrapped(wrapper: Node, notes: Notes, official: bool) -> list[Node]:
     items = wrapper.all("runnableItem")
     properties = [] if official or not items else wrapper.all("customProperties")
     remove_all([*items, *properties])
-    for found in properties:
-        found.parent = items[0]
     if items:
-        items[0].children[:0] = properties
+        items[0].set_children([*properties, *items[0].children])
     for item in items:
         item.tag = "items"
         notes.converted(item, "DeviationRunnableItem of a group -> the item itself")

@@ -22,10 +22,9 @@ def keep_as_properties(holder: Node, properties: Iterable[tuple[str, str]]) -> N
         used.add(unique)
         made = Node("customProperties", "", {"key": unique}, holder.origin)
         made.add("value", "StringObject", value=text)
-        made.parent = holder
         added.append(made)
     others = [child for child in holder.children if child.tag != "customProperties"]
-    holder.children = [*holder.all("customProperties"), *added, *others]
+    holder.set_children([*holder.all("customProperties"), *added, *others])
 
 
 def remove_and_keep(nodes: Iterable[Node], version: str) -> None:

@@ -131,7 +131,8 @@ class Ticks:
         kept = []
         for entry in entries:
             stated = self.stated(entry, "value", holder)
-            entry.tag, entry.children = "needs", []
+            entry.tag = "needs"
+            entry.set_children([])
             if stated is not None:
                 entry.take([stated])
                 kept.append(entry)
@@ -151,7 +152,7 @@ class Ticks:
             parts.append(stated)
         for entry, value in by_definition:
             ticks = self.stated(value, "value", node)
-            entry.children = []
+            entry.set_children([])
             # An entry without a value would be nothing that can be read.
             if ticks is not None:
                 self.divide_for(entry, ticks)
@@ -237,7 +238,7 @@ class Ticks:
         part.type = ""
         part.attributes.pop("value", None)
         properties = part.all("customProperties")
-        part.children = []
+        part.set_children([])
         part.take([*properties, *([stated] if stated else ())])
         self.notes.converted(part, "instructions of the operating system are ticks now")
         if stated and not self.official:

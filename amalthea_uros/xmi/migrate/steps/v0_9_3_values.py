@@ -143,7 +143,7 @@ def _take_parameters(node: Node, distribution: Node | None, kind: str, form: _Fo
     if distribution is not None:
         keep_comments(distribution, node)
         parts += [(part, form.parameters) for part in distribution.children]
-    node.children = []
+    node.set_children([])
     times = []
     for part, names in parts:
         part.parent = None

@@ -29,7 +29,7 @@ def keep_comments(dissolved: Node, owner: Node) -> None:
 def become(node: Node, other: Node) -> None:
     """Take class, attributes, references and parts of another node, which goes away."""
     node.type, node.attributes, node.references = other.type, other.attributes, other.references
-    node.children = []
+    node.set_children([])
     node.take(other.children)
     keep_comments(other, node)
 
@@ -42,9 +42,8 @@ def insert_after(following: dict[Node, Node]) -> None:
             children.append(child)
             added = following.get(child)
             if added is not None:
-                added.parent = holder
                 children.append(added)
-        holder.children = children
+        holder.set_children(children)
 
 
 def by_class(models: ModelSet, names: Iterable[str]) -> dict[str, list[Node]]:
