@@ -47,6 +47,13 @@ def test_a_type_may_be_in_another_file_or_in_none(models):
     assert models.migrate("3.0.0", "2.2.0", before, other) == models.read("2.2.0", after, other)
 
 
+def test_a_type_that_refers_to_nothing_is_an_error(models):
+    content = """<swModel><typeDefinitions xsi:type="am:DataTypeDefinition" name="D"><dataType xsi:type="am:TypeRef"/>
+    </typeDefinitions></swModel>"""
+    models.migrate("3.0.0", "2.2.0", content)
+    assert models.messages(Kind.LOST) == ["data type that refers to nothing"]
+
+
 def test_interfaces_have_a_datatype(models):
     parts = f"""<componentsModel><interfaces name="I" {{0}}="unsigned+8?type=BaseTypeDefinition">
     <subInterfaces name="J" {{0}}="unsigned+8?type=BaseTypeDefinition"/></interfaces></componentsModel>

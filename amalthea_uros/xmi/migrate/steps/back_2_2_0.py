@@ -16,6 +16,10 @@ _TYPED = {"labels": "dataType", "channels": "elementType"}
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 3.0.0."""
     refuse_stale(models, notes, "3.0.0")
+    for node in models.of_type("TypeRef"):
+        # The step up drops it, because the reference is mandatory since 3.0.0.
+        if not (node.references.get("typeDef") or node.get("typeDef")):
+            notes.lost(node, "data type that refers to nothing")
     for tag, feature in _TYPED.items():
         for node in models.nodes(tag):
             _contain_type(node, feature, notes)
