@@ -362,7 +362,8 @@ def _fixed_priority(_scheduler: Scheduler, parameters: _Parameters, base: Schedu
 
 def _osek(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
     found, group = _fixed_priority(scheduler, parameters, base), parameters.of(scheduler, "taskGroup")
-    return found if group is None else replace(found, group=f"{scheduler.name}/{group}")
+    # The parameter is mandatory in APP4MC, and 0 was the value of a task without group when it was an attribute (`osekTaskGroup`).
+    return found if group in (None, 0) else replace(found, group=f"{scheduler.name}/{group}")
 
 
 def _round_robin(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:

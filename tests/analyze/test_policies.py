@@ -141,6 +141,14 @@ class TestPolicies:
         # Those up to the ceiling of the group wait for ten of `low`; its last five are interrupted by `top` only.
         assert worst(system([root()], tasks)) == {"top": 1, "high": 13, "other": 16, "low": 21}
 
+    def test_group_0_is_no_group(self):
+        none = (Parameter("taskGroup", (0,)),)
+        tasks = [
+            ("high", 100, [ticks(2)], {"scheduler": "root", "priority": 2, "parameters": none}),
+            ("low", 100, [ticks(10)], {"scheduler": "root", "priority": 1, "parameters": none}),
+        ]
+        assert worst(system([root()], tasks)) == {"high": 2, "low": 12}
+
     def test_waiting_for_events_has_no_bound(self):
         built = system([root()], [("T", 10, [ticks(1), WaitEvent(events=("e",))], {"scheduler": "root", "priority": 1})])
         assert worst(built)["T"].startswith("it waits for events")
