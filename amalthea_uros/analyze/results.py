@@ -257,6 +257,15 @@ class Quantity(StrEnum):
         return self.value.startswith("mean")
 
 
+#: The quantities that can be explained.
+EXPLAINED = (
+    Quantity.MAX_REACTION_TIME,
+    Quantity.MAX_REDUCED_REACTION_TIME,
+    Quantity.MAX_DATA_AGE,
+    Quantity.MAX_REDUCED_DATA_AGE,
+)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Value:
     """A quantity by one method, in picoseconds; None if there is no finite value or it is unknown."""

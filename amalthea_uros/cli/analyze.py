@@ -11,8 +11,7 @@ from typing import Any, TypeVar
 
 import click
 
-from amalthea_uros.analyze.chains.explanation import EXPLAINED
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results import EXPLAINED, Quantity
 from amalthea_uros.analyze.summary import Schedulable
 from amalthea_uros.cli.output import Output, output_option, show_findings, shows_text, write_outputs
 from amalthea_uros.perf.activities import Communication

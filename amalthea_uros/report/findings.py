@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.validate import registry
 
 
 def finding_json(finding: Finding) -> dict[str, Any]:
@@ -27,6 +26,8 @@ def finding_json(finding: Finding) -> dict[str, Any]:
 
 def profile_name(identifier: str) -> str:
     """The profile of a rule; "reading" for problems found while reading files and descriptions."""
+    from amalthea_uros.validate import registry
+
     return registry.profile_of(identifier) or "reading"
 
 

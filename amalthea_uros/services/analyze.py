@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from amalthea_uros.analyze.assignment import Proposal, propose_priorities
-from amalthea_uros.analyze.chains.explanation import ChainExplanation, explain_chain
-from amalthea_uros.analyze.explanation import ProcessExplanation, explain_process
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
-from amalthea_uros.analyze.sensitivity import Sensitivity, sensitivity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.system import System
@@ -19,6 +16,12 @@ from amalthea_uros.services.names import require
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.timing.phases import sources
 from amalthea_uros.timing.settings import Settings
+
+if TYPE_CHECKING:
+    from amalthea_uros.analyze.assignment import Proposal
+    from amalthea_uros.analyze.chains.explanation import ChainExplanation
+    from amalthea_uros.analyze.explanation import ProcessExplanation
+    from amalthea_uros.analyze.sensitivity import Sensitivity
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,11 +104,23 @@ def analyze_files(
         settings=settings,
         analysis=analysis,
         findings=(*opened.findings, *analysis.findings),
-        sensitivity=sensitivity(analysis) if with_sensitivity else None,
-        proposals=tuple(propose_priorities(analysis)) if with_priorities else None,
+        sensitivity=_sensitivity(analysis) if with_sensitivity else None,
+        proposals=_proposals(analysis) if with_priorities else None,
         all_methods=all_methods,
         with_metrics=with_metrics,
     )
+
+
+def _sensitivity(analysis: Analysis) -> Sensitivity:
+    from amalthea_uros.analyze.sensitivity import sensitivity
+
+    return sensitivity(analysis)
+
+
+def _proposals(analysis: Analysis) -> tuple[Proposal, ...]:
+    from amalthea_uros.analyze.assignment import propose_priorities
+
+    return tuple(propose_priorities(analysis))
 
 
 def explain(result: AnalysisResult, name: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Explanation:
@@ -113,12 +128,15 @@ def explain(result: AnalysisResult, name: str, quantity: Quantity = Quantity.MAX
 
     Parameters
     ----------
-    quantity : of a chain, one of `analyze.chains.explanation.EXPLAINED`
+    quantity : of a chain, one of `analyze.results.EXPLAINED`
 
     Raises
     ------
     InvalidArgumentError : there is no such process or chain.
     """
+    from amalthea_uros.analyze.chains.explanation import explain_chain
+    from amalthea_uros.analyze.explanation import explain_process
+
     system, analysis = result.system, result.analysis
     require("process or chain", [name], dict.fromkeys((*system.processes, *system.chains)))
     return Explanation(

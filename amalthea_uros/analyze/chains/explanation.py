@@ -28,13 +28,6 @@ from amalthea_uros.timing.phases import unknown_phases
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.units import Time
 
-#: The quantities that can be explained.
-EXPLAINED = (
-    Quantity.MAX_REACTION_TIME,
-    Quantity.MAX_REDUCED_REACTION_TIME,
-    Quantity.MAX_DATA_AGE,
-    Quantity.MAX_REDUCED_DATA_AGE,
-)
 _REACTIONS = (Quantity.MAX_REACTION_TIME, Quantity.MAX_REDUCED_REACTION_TIME)
 
 

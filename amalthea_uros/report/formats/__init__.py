@@ -1,4 +1,7 @@
-"""Output formats. A new one is a new file here: a module that has the attributes of `Format`."""
+"""Output formats. A new one is a new file here: a module that has the attributes of `Format`.
+
+Commands import all of them to list their names, so what only the writing needs is imported there.
+"""
 
 from __future__ import annotations
 

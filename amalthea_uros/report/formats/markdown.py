@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import IO, TYPE_CHECKING
 
-from amalthea_uros.report.migration import steps, summary
-from amalthea_uros.services.migration import spelled
-
 if TYPE_CHECKING:
     from amalthea_uros.services.migrate import MigrationResult
 
@@ -20,6 +17,9 @@ def write(result: MigrationResult, stream: IO[str]) -> None:
 
 
 def _lines(result: MigrationResult) -> Iterator[str]:
+    from amalthea_uros.report.migration import steps, summary
+    from amalthea_uros.services.migration import spelled
+
     yield from (f"# Migration to {spelled(result.version)}", "", summary(result), "", "## Files", "")
     files = [(file.path, file.version or "unknown", file.state, file.target or "") for file in result.files]
     yield from _table(("file", "version", "", "result"), files)

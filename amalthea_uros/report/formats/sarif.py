@@ -10,11 +10,10 @@ from urllib.parse import quote
 from amalthea_uros._version import __version__
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.findings.fingerprint import fingerprint
-from amalthea_uros.findings.presentation import Entry
 from amalthea_uros.report.findings import profile_name, relative
-from amalthea_uros.validate import registry
 
 if TYPE_CHECKING:
+    from amalthea_uros.findings.presentation import Entry
     from amalthea_uros.services.check import CheckResult
 
 RENDERS = ("CheckResult",)
@@ -41,6 +40,8 @@ def write(result: CheckResult, stream: IO[str]) -> None:
 
 
 def _rule(identifier: str) -> dict[str, Any]:
+    from amalthea_uros.validate import registry
+
     kind = registry.kind(identifier)
     if kind is None:
         return {"id": identifier}

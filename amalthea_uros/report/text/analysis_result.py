@@ -5,9 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil
 
-from amalthea_uros.analyze.assignment import Outcome, Proposal
 from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, RequirementResult
-from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
 from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.latencies import write_chains
@@ -30,9 +28,14 @@ def write(result: AnalysisResult, terminal: Terminal) -> None:
         write_metrics(terminal, analysis.processes)
     write_chains(terminal, analysis.chains)
     _requirements(terminal, analysis)
-    _sensitivity(terminal, result.sensitivity)
-    for proposal in result.proposals or ():
-        _proposal(terminal, proposal)
+    if result.sensitivity is not None:
+        from amalthea_uros.report.text.sensitivity import write_sensitivity
+
+        write_sensitivity(terminal, result.sensitivity)
+    if result.proposals is not None:
+        from amalthea_uros.report.text.proposals import write_proposals
+
+        write_proposals(terminal, result.proposals)
     _methods(terminal, analysis)
     if analysis.assumptions:
         terminal.heading("Assumptions")
@@ -145,33 +148,6 @@ def _value(requirement: RequirementResult) -> str:
 
 def _margin(requirement: RequirementResult) -> str:
     return "" if requirement.margin is None or requirement.verdict is Verdict.UNKNOWN else time_text(requirement.margin)
-
-
-def _sensitivity(terminal: Terminal, found: Sensitivity | None) -> None:
-    if found is None:
-        return
-    terminal.heading("Maximum factors on execution times")
-    rows = [("all together", _factor(found.everything)), *((name, _factor(f)) for name, f in found.processes.items())]
-    terminal.table(("process", "factor"), rows, right=(1,))
-
-
-def _factor(factor: Fraction | None) -> str:
-    if factor is None:
-        return "none"
-    return f"{float(factor):.3f}" if factor < MAX_FACTOR else f"{MAX_FACTOR} or more"
-
-
-def _proposal(terminal: Terminal, proposal: Proposal) -> None:
-    terminal.heading(f"Priorities on {proposal.core}")
-    if proposal.outcome is Outcome.KEPT:
-        terminal.line("  the present priorities meet all deadlines")
-        return
-    if proposal.priorities is None:
-        terminal.line(f"  no proposal: {proposal.reason}")
-        return
-    ordered = sorted(proposal.priorities.items(), key=lambda item: -item[1])
-    rows = [(name, "?" if (now := proposal.current[name]) is None else str(now), str(to)) for name, to in ordered]
-    terminal.table(("task", "now", "proposed"), rows, right=(1, 2))
 
 
 def _methods(terminal: Terminal, analysis: Analysis) -> None:
