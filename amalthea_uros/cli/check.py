@@ -11,7 +11,6 @@ import click
 from amalthea_uros.cli.output import Output, output_option, show_text, write_outputs
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.check import CheckResult, CheckStatistics, add_rules, check_files, write_baseline
-from amalthea_uros.services.fix import fix_files
 from amalthea_uros.services.settings import CheckSettings
 from amalthea_uros.validate.rule import Profile
 
@@ -103,6 +102,8 @@ def command(
         baseline=baseline,
     )
     if fix:
+        from amalthea_uros.services.fix import fix_files
+
         show_text(fix_files(paths, settings, each=each), on_error_stream=True)
     result = check_files(paths, settings, each=each)
     if new_baseline is not None:

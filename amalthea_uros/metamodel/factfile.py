@@ -25,6 +25,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
+from functools import cache
 from typing import NamedTuple
 
 
@@ -76,14 +77,24 @@ class FeatureFact(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ClassFact:
-    """What one version declares of one class: its own features only."""
+    """What one version declares of one class: its own features only.
+
+    Attributes
+    ----------
+    lines : the declarations of the features
+    """
 
     name: str
     module: str
     abstract: bool
     entry: bool
     supertypes: tuple[str, ...]
-    features: tuple[FeatureFact, ...]
+    lines: tuple[str, ...]
+
+    @property
+    def features(self) -> tuple[FeatureFact, ...]:
+        """The features (parsed when asked for: most models use few classes)."""
+        return _features(self.lines)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,13 +157,18 @@ def _fact(module: str, words: list[str], body: list[str]) -> Fact:
                 abstract="abstract" in rest[:split] or "interface" in rest[:split],
                 entry="entry" in rest[:split],
                 supertypes=tuple(rest[split + 1 :]),
-                features=tuple(map(_feature, body)),
+                lines=tuple(body),
             )
         case ["enum", name]:
             return EnumFact(name, tuple(line.strip() for line in body))
         case ["datatype", name, java_type, facet, limit]:
             return NumberFact(name, java_type, int(limit), exclusive=facet == "minExclusive")
     raise ValueError(f"facts file {module}: not a declaration: {' '.join(words)}")
+
+
+@cache
+def _features(lines: tuple[str, ...]) -> tuple[FeatureFact, ...]:
+    return tuple(map(_feature, lines))
 
 
 def _feature(line: str) -> FeatureFact:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from typing import IO, TYPE_CHECKING
-from xml.etree import ElementTree
 
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report.findings import joined, profile_name
@@ -16,6 +15,8 @@ RENDERS = ("CheckResult",)
 
 def write(result: CheckResult, stream: IO[str]) -> None:
     """Write a test case for each rule that fired; it fails if a finding is more than information."""
+    from xml.etree import ElementTree
+
     by_rule: dict[str, list[Finding]] = {}
     for finding in (entry.finding for entry in result.presentation.entries() if entry.counts):
         by_rule.setdefault(finding.rule, []).append(finding)

@@ -9,7 +9,6 @@ from urllib.parse import quote
 
 from amalthea_uros._version import __version__
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.findings.fingerprint import fingerprint
 from amalthea_uros.report.findings import profile_name, relative
 
 if TYPE_CHECKING:
@@ -56,6 +55,8 @@ def _rule(identifier: str) -> dict[str, Any]:
 
 
 def _result(entry: Entry, index: int) -> dict[str, Any]:
+    from amalthea_uros.findings.fingerprint import fingerprint
+
     finding = entry.finding
     result: dict[str, Any] = {
         "ruleId": finding.rule,
