@@ -19,6 +19,7 @@ from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.limits import MAX_INPUT
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
+from amalthea_uros.timing.process_stretches import ProcessStretches
 from amalthea_uros.timing.releases import response_time_limits
 from amalthea_uros.timing.scheduling import NotSchedulableError, ScheduledProcess, Scheduling, Server
 from amalthea_uros.timing.server_calls import with_direct_calls
@@ -83,6 +84,11 @@ class TimingContext:
     def demand_model(self) -> DemandModel:
         """Converts activities to execution demand."""
         return DemandModel(self.system, self.notes, self.settings)
+
+    @cached_property
+    def stretches(self) -> ProcessStretches:
+        """The stretches of jobs in which others cannot preempt them."""
+        return ProcessStretches(self.demand_model)
 
     @cached_property
     def dataflow(self) -> Dataflow:
