@@ -111,7 +111,7 @@ class Entry:
         if self.is_named:
             values["name"] = context.names[element]
         if self.has_origin:
-            values["origin"] = context.location(element)
+            values["origin"] = partial(context.location, element)
         if self.is_activity:
             values["locate"] = partial(context.location, element)
         return self.model_class(**values)
@@ -152,7 +152,7 @@ class Table:
 
     def extract_all(self, elements: Iterable[Element], context: Extracting) -> tuple[Any, ...]:
         """The objects of perf; those without counterpart are left out."""
-        return tuple(item for element in elements if (item := self.extract(element, context)) is not None)
+        return tuple([item for element in elements if (item := self.extract(element, context)) is not None])
 
     def extract_each(self, elements: Iterable[Element], context: Extracting) -> tuple[Any, ...] | None:
         """The objects of perf; None if one of them is incomplete."""

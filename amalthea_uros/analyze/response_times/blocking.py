@@ -255,9 +255,8 @@ class Blocking:
 
     def last_region(self, item: ScheduledProcess) -> Time:
         """The demand after the last point at which others of its kind can run, where that point is as late as possible."""
-        whole = self.demand_model.of_process(item.process, item.core).worst
         if preemption(item) is Preemption.NON_PREEMPTIVE:
-            return whole
+            return self.demand_model.of_process(item.process, item.core).worst
         found = self._of(item, KeptOff(throughout=True, yields_after_calls=item.group is None))
         return found.total if found.before_last is None else max(0, found.total - found.before_last)
 
