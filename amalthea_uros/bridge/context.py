@@ -141,7 +141,8 @@ class Extracting:
         if element in self.names:
             self.dropped.add(element)
 
-    def location(self, element: Element) -> Location | None:
+    @staticmethod
+    def location(element: Element) -> Location | None:
         """The location of an object."""
         document = element.document
         return document.location_of(element) if document else None
