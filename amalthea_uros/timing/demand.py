@@ -144,7 +144,7 @@ class DemandModel:
     def _access(self, core: str, label: str, kind: AccessKind, times: Count | float | None) -> Frame:
         """The demand of an access to a label, or to its copy, which can be anywhere on the way to the label."""
         found = self.memory.frame(core, label, kind, count_of(times), self.settings.scale * self.time_base(core))
-        return replace(found, best=0) if self.settings.memory is Memory.IMPLICIT else found
+        return _at_most(found) if self.settings.memory is Memory.IMPLICIT else found
 
     def _copies(self, process: Process, core: str) -> list[Frame]:
         """Copies of the labels that a process accesses, at its start, and of those that it writes, at its end.
@@ -162,7 +162,7 @@ class DemandModel:
                     certain[key] = certain.get(key, False) or is_certain
         time_base = self.settings.scale * self.time_base(core)
         frames = [(self.memory.frame(core, *key, count_of(1), time_base), is_certain) for key, is_certain in certain.items()]
-        return [frame if is_certain else replace(frame, best=0) for frame, is_certain in frames]
+        return [frame if is_certain else _at_most(frame) for frame, is_certain in frames]
 
     def _positions(self, process: Process) -> Sequence[ActivityPosition]:
         """Everything that the jobs of a process do."""
@@ -386,6 +386,11 @@ def _scaled(frames: tuple[Frame, ...], growth: Fraction) -> tuple[Frame, ...]:
         )
         for frame in frames
     )
+
+
+def _at_most(access: Frame) -> Frame:
+    """The demand of an access that may take no time."""
+    return Frame(worst=access.worst, best=0, average=access.average)
 
 
 def _any_time(frame: Frame) -> Frame:
