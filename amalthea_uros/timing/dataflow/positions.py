@@ -108,14 +108,8 @@ class _Walk:
             place = len(self.found)
             if place >= MAX_POSITIONS or len(branch.above) > MAX_CALL_DEPTH:
                 raise TooComplexError(f"{self.process.name!r} has too many calls, or too deeply nested calls, to be analysed")
-            if isinstance(activity, LabelAccess):  # most activities are accesses
-                if activity.times is not None:
-                    times *= _max_times(activity.times)
-                self.found.append(
-                    ActivityPosition(
-                        self.process, place + 1, place + 1, activity, branch.runnable, outer, counter, branch.is_certain, times
-                    )
-                )
+            if isinstance(activity, LabelAccess):
+                self.found.append(self._access(activity, branch, outer))
                 continue
             if isinstance(activity, Call):
                 times *= _max_times(activity.times)
@@ -143,6 +137,12 @@ class _Walk:
                 times,
                 _conditions(activity, self.system) if isinstance(activity, _WITH_CONDITIONS) else (),
             )
+
+    def _access(self, access: LabelAccess, branch: _Branch, outer: Nesting) -> ActivityPosition:
+        """The position of an access, as most activities are: nothing is within it."""
+        number, times = len(self.found) + 1, branch.times * _max_times(access.times)
+        certain = branch.is_certain
+        return ActivityPosition(self.process, number, number, access, branch.runnable, outer, branch.counter, certain, times)
 
     def _counter(self, calls: tuple[Call, ...], branch: _Branch) -> Counter | None:
         """In which jobs the last of nested calls is executed; None if unknown."""
