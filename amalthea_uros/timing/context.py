@@ -259,7 +259,7 @@ class TimingContext:
                     self._mark_unclear(name, str(error))
         locks = Locks(self.system, self.protection, requests)
         self.open_semaphores = locks.open_semaphores
-        for name in self.open_semaphores:
+        for name in sorted(self.open_semaphores):
             self.notes.assume(
                 f"the semaphore {name!r} has no priority ceiling and no inheritance: whoever waits for it is also delayed by all "
                 "processes above its lowest user"
@@ -278,7 +278,7 @@ class TimingContext:
         """Find processes that can wait for other cores or servers at a semaphore."""
         users: dict[str, list[ScheduledProcess]] = {}
         for name, uses in self.protection.items():
-            for semaphore in uses.semaphores:
+            for semaphore in sorted(uses.semaphores):
                 users.setdefault(semaphore, []).append(self.scheduled[name])
         for semaphore, here in users.items():
             if len({(scheduled.core, scheduled.server) for scheduled in here}) > 1:

@@ -156,7 +156,7 @@ class DemandModel:
         certain: dict[tuple[str, AccessKind], bool] = {}
         for position in self._positions(process):
             if isinstance(position.activity, LabelAccess | SenderReceiverAccess):
-                for kind in {AccessKind.READ, position.activity.kind}:
+                for kind in dict.fromkeys((AccessKind.READ, position.activity.kind)):
                     key = (position.activity.label, kind)
                     is_certain = position.is_certain and position.counter is not None and is_always(position.counter)
                     certain[key] = certain.get(key, False) or is_certain
