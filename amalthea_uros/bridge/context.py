@@ -112,7 +112,7 @@ class Extracting:
         """Give every referable object a name that is unique within its kind."""
         taken: set[tuple[Kind, str]] = set()
         for kind, element in self._named():
-            own = getattr(element, "name", None) or f"unnamed_{type(element).__name__}"
+            own = element.__dict__.get("name") or f"unnamed_{type(element).__name__}"
             found = own
             if (kind, found) in taken:
                 found = element.qualified_name if "/" in element.qualified_name else own
@@ -141,7 +141,8 @@ class Extracting:
         if element in self.names:
             self.dropped.add(element)
 
-    def location(self, element: Element) -> Location | None:
+    @staticmethod
+    def location(element: Element) -> Location | None:
         """The location of an object."""
         document = element.document
         return document.location_of(element) if document else None

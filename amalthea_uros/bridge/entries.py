@@ -45,6 +45,16 @@ class Entry:
         self.is_activity = "locate" in declared
         self._defaults = {column.name: _default(declared[column.name]) for column in columns}
         features = features_of(amalthea_class)
+        self._extracted = tuple(
+            (
+                column.name,
+                column.feature,
+                () if features[column.feature].many else None,
+                None if column.codec is PLAIN else column.codec.extract,
+                self._defaults[column.name],
+            )
+            for column in columns
+        )
         self._xml_names = {column.feature: features[column.feature].xml_name for column in columns}
 
     def create(self, item: Any, context: Building) -> Element:
@@ -86,21 +96,22 @@ class Entry:
         strictly : a value that is given but cannot be read is not replaced by the default
         """
         values: dict[str, Any] = {}
-        for column in self.columns:
-            given = getattr(element, column.feature)
-            value = None if given is None else column.codec.extract(given, context, element)
+        features = element.__dict__  # quicker than by the descriptors, which also make a list for each unset feature
+        for name, feature, unset, extract, default in self._extracted:
+            given = features.get(feature, unset)
+            value = None if given is None else given if extract is None else extract(given, context, element)
             if value is None:
-                value = self._defaults[column.name]
+                value = default
                 if value is MISSING or (strictly and given is not None):
                     flaw = "has no" if given is None else "has an incomplete"
-                    what = self._xml_names[column.feature]
+                    what = self._xml_names[feature]
                     context.note("EXT004", f"{type(element).__name__} is incomplete: it {flaw} {what}", element)
                     return None
-            values[column.name] = value
+            values[name] = value
         if self.is_named:
             values["name"] = context.names[element]
         if self.has_origin:
-            values["origin"] = context.location(element)
+            values["origin"] = partial(context.location, element)
         if self.is_activity:
             values["locate"] = partial(context.location, element)
         return self.model_class(**values)
@@ -141,7 +152,7 @@ class Table:
 
     def extract_all(self, elements: Iterable[Element], context: Extracting) -> tuple[Any, ...]:
         """The objects of perf; those without counterpart are left out."""
-        return tuple(item for element in elements if (item := self.extract(element, context)) is not None)
+        return tuple([item for element in elements if (item := self.extract(element, context)) is not None])
 
     def extract_each(self, elements: Iterable[Element], context: Extracting) -> tuple[Any, ...] | None:
         """The objects of perf; None if one of them is incomplete."""

@@ -11,6 +11,8 @@ from amalthea_uros.metamodel.element import Element
 class Kind(Enum):
     """A kind of named objects."""
 
+    __hash__ = object.__hash__  # each kind is equal only to itself; the hash of Enum is slow
+
     CLOCK = auto()
     CORE_TYPE = auto()
     STRUCTURE = auto()

@@ -56,4 +56,5 @@ def bits_per_second(rate: DataRate | None) -> int | None:
 
 
 def _scaled(value: int | None, unit: Unit | None, sizes: Mapping[Unit | None, int]) -> int | None:
-    return (value or 0) * sizes[unit] if unit in sizes else None
+    size = sizes.get(unit)
+    return None if size is None else (value or 0) * size

@@ -79,9 +79,9 @@ class Document:
         while holder is not None:
             if holder in self.origins:
                 return self.origins[holder]
-            if self.source is not None and self.path is not None and holder in self.source.index:
-                line, column = self.source.position_of(holder)
-                return Location(self.path, line, column, self.source.line(line))
+            place = self.source.place_of(holder) if self.source is not None else None
+            if place is not None and self.path is not None:
+                return Location(self.path, *place)
             holder = holder.container
         return Location(self.path) if self.path else None
 

@@ -131,6 +131,18 @@ class Source:
         start = self.start(self.index[element])
         return self.position(self.attribute_offset(start, attribute) if attribute else start)
 
+    def place_of(self, element: Element) -> tuple[int, int, str] | None:
+        """Line and column of an object, and the text of the line; None if the object was not read from this text."""
+        index = self.index.get(element)
+        if index is None:
+            return None
+        offset = self.byte_starts[index]
+        if not self._is_ascii:
+            offset = self.character_offset(offset)
+        starts = self._line_starts
+        line = bisect_right(starts, offset)
+        return line, offset - starts[line - 1] + 1, self._lines.get(line) or self.line(line)
+
     def position(self, offset: int) -> Position:
         """Line and column of an offset."""
         line = bisect_right(self._line_starts, offset)

@@ -389,12 +389,17 @@ Activity: TypeAlias = (
 )
 
 
+#: The classes of activities that contain others; most activities are accesses.
+WITH_PARTS = (Group, Loop, ProbabilitySwitch, Switch)
+
+
 def walk(activities: tuple[Activity, ...]) -> Iterator[Activity]:
     """All activities with those inside groups, branches and loops, in order."""
     for activity in activities:
         yield activity
-        for inner in inner_activities(activity):
-            yield from walk(inner)
+        if isinstance(activity, WITH_PARTS):
+            for inner in inner_activities(activity):
+                yield from walk(inner)
 
 
 def inner_activities(activity: Activity) -> tuple[tuple[Activity, ...], ...]:

@@ -11,7 +11,7 @@ from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, Runnab
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.events import UnresolvedError, raises
+from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.event_models import Downsampled, EventModel, Multiplied, aggregated
@@ -107,7 +107,7 @@ class Activations:
             if event is None:
                 raise UnknownActivationError(f"the event {name!r} is not defined in the model")
             self._check(event)
-            causes = [Cause(p.process, p.times, None) for p in self._positions if raises(p, event)]
+            causes = [Cause(p.process, p.times, None) for p in self.dataflow.events.raising(event) if p.times > 0]
             if not causes and isinstance(event, CustomEvent):
                 raise UnknownActivationError(f"no activity in the model raises the event {name!r}")
             found += causes

@@ -19,6 +19,7 @@ from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.limits import MAX_INPUT
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
+from amalthea_uros.timing.process_stretches import ProcessStretches
 from amalthea_uros.timing.releases import response_time_limits
 from amalthea_uros.timing.scheduling import NotSchedulableError, ScheduledProcess, Scheduling, Server
 from amalthea_uros.timing.server_calls import with_direct_calls
@@ -83,6 +84,11 @@ class TimingContext:
     def demand_model(self) -> DemandModel:
         """Converts activities to execution demand."""
         return DemandModel(self.system, self.notes, self.settings)
+
+    @cached_property
+    def stretches(self) -> ProcessStretches:
+        """The stretches of jobs in which others cannot preempt them."""
+        return ProcessStretches(self.demand_model)
 
     @cached_property
     def dataflow(self) -> Dataflow:
@@ -253,7 +259,7 @@ class TimingContext:
                     self._mark_unclear(name, str(error))
         locks = Locks(self.system, self.protection, requests)
         self.open_semaphores = locks.open_semaphores
-        for name in self.open_semaphores:
+        for name in sorted(self.open_semaphores):
             self.notes.assume(
                 f"the semaphore {name!r} has no priority ceiling and no inheritance: whoever waits for it is also delayed by all "
                 "processes above its lowest user"
@@ -272,7 +278,7 @@ class TimingContext:
         """Find processes that can wait for other cores or servers at a semaphore."""
         users: dict[str, list[ScheduledProcess]] = {}
         for name, uses in self.protection.items():
-            for semaphore in uses.semaphores:
+            for semaphore in sorted(uses.semaphores):
                 users.setdefault(semaphore, []).append(self.scheduled[name])
         for semaphore, here in users.items():
             if len({(scheduled.core, scheduled.server) for scheduled in here}) > 1:

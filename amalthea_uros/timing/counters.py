@@ -13,7 +13,7 @@ from functools import cached_property
 from math import gcd
 from typing import TypeAlias
 
-from amalthea_uros.perf.activities import Activity, Call, Group, SenderReceiverAccess, ServerCall, inner_activities
+from amalthea_uros.perf.activities import WITH_PARTS, Activity, Call, Group, SenderReceiverAccess, ServerCall, inner_activities
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 
@@ -156,6 +156,8 @@ class CallSites:
                     yield from ((called, _Site(around.caller)) for called in (name, result) if called)
                 case SenderReceiverAccess(notifies=names):
                     yield from ((called, _Site(around.caller)) for called in names)
+            if not isinstance(activity, WITH_PARTS):
+                continue
             is_group = isinstance(activity, Group)
             inside = replace(
                 around,

@@ -47,7 +47,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.counters import CallSites, UncountableError, first_effect, is_always
 from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH, ActivityPosition, TooComplexError, positions
 from amalthea_uros.timing.limits import LIMIT
-from amalthea_uros.timing.means import mean
+from amalthea_uros.timing.means import exact_sum, mean
 from amalthea_uros.timing.memory import MemoryAccess, count_of
 from amalthea_uros.timing.modes import holds
 from amalthea_uros.timing.multiframe import Frame, MultiframeDemand
@@ -72,6 +72,8 @@ class DemandModel:
     overheads: Overheads = field(init=False)
     sites: CallSites = field(init=False)
     _servers: Mapping[str, tuple[str, ...]] | None = None
+    _time_bases: dict[str, int] = field(default_factory=dict)
+    _times_of_ticks: dict[tuple[str, Fraction], int | Fraction] = field(default_factory=dict)
     _of_runnables: dict[tuple[str, str], tuple[Frame, ...]] = field(default_factory=dict)
     _in_preparation: set[str] = field(default_factory=set)
 
@@ -83,11 +85,11 @@ class DemandModel:
 
     def time_base(self, core: str) -> int:
         """Time units per picosecond on a core; 1 if they would be too small, and then demand is rounded outwards."""
-        frequency = self.frequency(core)
-        if frequency is None:
-            return 1
-        fineness = (time_of_ticks(1, frequency) * self.settings.scale).denominator
-        return fineness if fineness <= MAX_TIME_BASE else 1
+        if core not in self._time_bases:
+            frequency = self.frequency(core)
+            fineness = 1 if frequency is None else (time_of_ticks(1, frequency) * self.settings.scale).denominator
+            self._time_bases[core] = fineness if fineness <= MAX_TIME_BASE else 1
+        return self._time_bases[core]
 
     def frequency(self, core: str) -> Frequency | None:
         """The clock frequency of a core; None if it is unknown."""
@@ -142,7 +144,7 @@ class DemandModel:
     def _access(self, core: str, label: str, kind: AccessKind, times: Count | float | None) -> Frame:
         """The demand of an access to a label, or to its copy, which can be anywhere on the way to the label."""
         found = self.memory.frame(core, label, kind, count_of(times), self.settings.scale * self.time_base(core))
-        return replace(found, best=0) if self.settings.memory is Memory.IMPLICIT else found
+        return _at_most(found) if self.settings.memory is Memory.IMPLICIT else found
 
     def _copies(self, process: Process, core: str) -> list[Frame]:
         """Copies of the labels that a process accesses, at its start, and of those that it writes, at its end.
@@ -154,13 +156,13 @@ class DemandModel:
         certain: dict[tuple[str, AccessKind], bool] = {}
         for position in self._positions(process):
             if isinstance(position.activity, LabelAccess | SenderReceiverAccess):
-                for kind in {AccessKind.READ, position.activity.kind}:
+                for kind in dict.fromkeys((AccessKind.READ, position.activity.kind)):
                     key = (position.activity.label, kind)
                     is_certain = position.is_certain and position.counter is not None and is_always(position.counter)
                     certain[key] = certain.get(key, False) or is_certain
         time_base = self.settings.scale * self.time_base(core)
         frames = [(self.memory.frame(core, *key, count_of(1), time_base), is_certain) for key, is_certain in certain.items()]
-        return [frame if is_certain else replace(frame, best=0) for frame, is_certain in frames]
+        return [frame if is_certain else _at_most(frame) for frame, is_certain in frames]
 
     def _positions(self, process: Process) -> Sequence[ActivityPosition]:
         """Everything that the jobs of a process do."""
@@ -170,7 +172,10 @@ class DemandModel:
             raise UnknownDemandError(str(error)) from None
 
     def _frames(self, activities: Iterable[Activity], core: str, above: tuple[str, ...]) -> list[Frame]:
-        return [frame for activity in activities for frame in self._with_services(activity, core, above)]
+        # Most activities are accesses.
+        timeless = LabelAccess if self.settings.memory is Memory.NONE else ()
+        taking_time = (activity for activity in activities if not isinstance(activity, timeless))
+        return [frame for activity in taking_time for frame in self._with_services(activity, core, above)]
 
     def _with_services(self, activity: Activity, core: str, above: tuple[str, ...]) -> Iterator[Frame]:
         """The frames of one activity and of the OS services that it calls."""
@@ -180,8 +185,6 @@ class DemandModel:
 
     def _of(self, activity: Activity, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
         """The frames of one activity; activities without execution time have none."""
-        if self.settings.memory is Memory.NONE and isinstance(activity, LabelAccess):
-            return []  # most activities are accesses
         match activity:
             case Execute(demand=demand):
                 return [self._ticks(demand, core)]
@@ -278,6 +281,8 @@ class DemandModel:
 
     def _counted(self, frame: Frame, call: Call) -> Frame | None:
         """A frame of a called runnable in the executions of the caller; None if it is never executed."""
+        if frame.is_always and call.counter is None:
+            return Frame(worst=frame.worst, best=frame.best, average=frame.average, offset=1)
         inner = Counter(prescaler=frame.prescaler, offset=frame.offset, is_phase_known=frame.is_certain)
         try:
             counter = self.sites.lifted(call, inner)
@@ -309,9 +314,7 @@ class DemandModel:
 
     def _time(self, ticks: Distribution[int], factor: Fraction, core: str) -> Frame:
         """The demand of ticks, or of units that take `factor` ticks each, in the time base."""
-        frequency = self.frequency(core)
-        if frequency is None:
-            raise UnknownDemandError(f"the clock frequency of the core {core!r} is unknown")
+        tick = self._time_of_tick(factor, core)
         worst, best = highest(ticks), lowest(ticks)
         if worst is None or best is None:
             raise UnknownDemandError("a distribution of ticks has no bounds")
@@ -320,10 +323,20 @@ class DemandModel:
             raise UnknownDemandError("a number of ticks is negative")
         if best > worst:
             raise UnknownDemandError("the minimum of a number of ticks is greater than the maximum")
-        tick = time_of_ticks(1, frequency) * factor * self.time_base(core)
         if worst * tick > LIMIT:
             raise UnknownDemandError("an execution time exceeds 13 days")
         return Frame(worst=ceil(worst * tick), best=floor(best * tick), average=mean(ticks) * tick)
+
+    def _time_of_tick(self, factor: Fraction, core: str) -> int | Fraction:
+        """The time units that `factor` ticks of a core take: usually a whole number, with which it is quicker to calculate."""
+        key = (core, factor)
+        if key not in self._times_of_ticks:
+            frequency = self.frequency(core)
+            if frequency is None:
+                raise UnknownDemandError(f"the clock frequency of the core {core!r} is unknown")
+            found = time_of_ticks(1, frequency) * factor * self.time_base(core)
+            self._times_of_ticks[key] = int(found) if found.denominator == 1 else found
+        return self._times_of_ticks[key]
 
     def _ticks_per_unit(self, need: str, core: str) -> Fraction:
         """Ticks per unit of an execution need: the value of the feature, or its inverse for instructions per cycle."""
@@ -345,18 +358,19 @@ def _ends_early(position: ActivityPosition) -> bool:
 
 def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:
     """The frames of the same jobs added up."""
-    found: dict[tuple[int, int, bool], Frame] = {}
+    found: dict[tuple[int, int, bool], list[Frame]] = {}
     for frame in frames:
-        key = (frame.prescaler, frame.offset, frame.is_certain)
-        same = found.get(key)
-        found[key] = (
-            frame
-            if same is None
-            else replace(
-                same, worst=same.worst + frame.worst, best=same.best + frame.best, average=same.average + frame.average
-            )
-        )
-    return tuple(found.values())
+        found.setdefault((frame.prescaler, frame.offset, frame.is_certain), []).append(frame)
+    return tuple(same[0] if len(same) == 1 else _sum(same) for same in found.values())
+
+
+def _sum(same: Sequence[Frame]) -> Frame:
+    return replace(
+        same[0],
+        worst=sum(frame.worst for frame in same),
+        best=sum(frame.best for frame in same),
+        average=exact_sum(frame.average for frame in same),
+    )
 
 
 def _scaled(frames: tuple[Frame, ...], growth: Fraction) -> tuple[Frame, ...]:
@@ -372,6 +386,11 @@ def _scaled(frames: tuple[Frame, ...], growth: Fraction) -> tuple[Frame, ...]:
         )
         for frame in frames
     )
+
+
+def _at_most(access: Frame) -> Frame:
+    """The demand of an access that may take no time."""
+    return Frame(worst=access.worst, best=0, average=access.average)
 
 
 def _any_time(frame: Frame) -> Frame:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 from functools import cache
 from math import exp, sqrt
@@ -36,6 +37,14 @@ def mean(distribution: Distribution[int]) -> Fraction:
     if lower is not None and found < lower:
         found = Fraction(lower)
     return found if upper is None or found <= upper else Fraction(upper)
+
+
+def exact_sum(values: Iterable[Fraction]) -> Fraction:
+    """The sum of fractions, most of which have one of a few denominators; quicker than adding them one by one."""
+    numerators: dict[int, int] = {}
+    for value in values:
+        numerators[value.denominator] = numerators.get(value.denominator, 0) + value.numerator
+    return sum((Fraction(numerator, denominator) for denominator, numerator in numerators.items()), Fraction(0))
 
 
 def _mean(distribution: Distribution[int]) -> Fraction:

@@ -11,10 +11,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
+from math import ceil, floor
 
 from amalthea_uros.perf.activities import AccessKind, Count
 from amalthea_uros.perf.distributions import Distribution, highest, lowest
-from amalthea_uros.perf.hardware import Access, Cache, Connection, Interconnect, Latency
+from amalthea_uros.perf.hardware import Access, Cache, Connection, Interconnect, Latency, Memory
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.means import mean
@@ -24,6 +25,8 @@ from amalthea_uros.units import SECOND, Frequency, down, time_of_ticks, up
 
 #: (minimum, mean, maximum), in picoseconds.
 Times = tuple[Fraction, Fraction, Fraction]
+#: The same in the time base of a core; minimum and maximum are usually whole numbers, with which it is quicker to calculate.
+_TimesInBase = tuple[int | Fraction, Fraction, int | Fraction]
 ZERO: Times = (Fraction(0), Fraction(0), Fraction(0))
 
 
@@ -39,7 +42,7 @@ class MemoryAccess:
     system: System
     notes: Notes
     frequency: Callable[[str], Frequency | None]
-    _found: dict[tuple[str, str, AccessKind], Times] = field(default_factory=dict)
+    _found: dict[tuple[str, str, AccessKind, int | None, int, int], _TimesInBase] = field(default_factory=dict)
 
     def frame(self, core: str, label: str, kind: AccessKind, count: tuple[int, Fraction, int], time_base: Fraction) -> Frame:
         """The demand of some accesses.
@@ -54,25 +57,28 @@ class MemoryAccess:
         ------
         UnknownDemandError : the latency is unknown.
         """
-        key = (core, label, kind)
-        if key not in self._found:
-            self._found[key] = self._times(core, label, kind)
-        minimum, average, maximum = self._found[key]
-        return Frame(
-            worst=up(maximum * count[2] * time_base),
-            best=down(minimum * count[0] * time_base),
-            average=average * count[1] * time_base,
-        )
-
-    def _times(self, core: str, label: str, kind: AccessKind) -> Times:
         memory = self.system.memories.get(self.system.memory_of.get(label) or "")
         if memory is None:
             item = self.system.labels.get(label) or self.system.channels.get(label)
             raise self._unknown(f"{label!r} is not mapped to a memory", item)
+        # Thousands of labels are in a few memories.
+        key = (core, memory.name, kind, self._size(label), time_base.numerator, time_base.denominator)
+        if key not in self._found:
+            self._found[key] = self._times(core, memory, kind, self._size(label), time_base)
+        minimum, average, maximum = self._found[key]
+        return Frame(worst=ceil(maximum * count[2]), best=floor(minimum * count[0]), average=average * count[1])
+
+    def _times(self, core: str, memory: Memory, kind: AccessKind, size: int | None, time_base: Fraction) -> _TimesInBase:
+        """The latency of one access, in the time base."""
+        found = self._latency(core, memory, kind, size)
+        minimum, average, maximum = (time * time_base for time in found)
+        return (_whole(minimum), average, _whole(maximum))
+
+    def _latency(self, core: str, memory: Memory, kind: AccessKind, size: int | None) -> Times:
         accesses = [access for access in self.system.cores[core].accesses if access.memory == memory.name]
         if not accesses:
             raise self._unknown(f"the core {core!r} has no access element for the memory {memory.name!r}", memory)
-        paths = [self._path(core, access, kind, self._size(label)) for access in accesses]
+        paths = [self._path(core, access, kind, size) for access in accesses]
         # Any of several paths can be used.
         path = (min(times[0] for times in paths), max(paths, key=lambda times: times[2])[1], max(times[2] for times in paths))
         return _sum(path, _cycles(memory.latency, self._clock(memory.clock), memory.name))
@@ -134,8 +140,17 @@ def _cycles(cycles: Distribution[int] | None, frequency: Frequency | None, where
     return (minimum * one, mean(cycles) * one, maximum * one)
 
 
+def _whole(time: Fraction) -> int | Fraction:
+    """The same number, as an integer if it is one."""
+    return time.numerator if time.denominator == 1 else time
+
+
 def _sum(first: Times, second: Times) -> Times:
     return (first[0] + second[0], first[1] + second[1], first[2] + second[2])
+
+
+#: Minimum, mean and maximum number of a single access.
+_ONCE = (1, Fraction(1), 1)
 
 
 def count_of(times: Count | float | None) -> tuple[int, Fraction, int]:
@@ -145,8 +160,10 @@ def count_of(times: Count | float | None) -> tuple[int, Fraction, int]:
     ------
     UnknownDemandError : they are negative or in the wrong order.
     """
+    if times is None:
+        return _ONCE
     try:
-        number = Fraction(1 if times is None or isinstance(times, Count) else times)
+        number = Fraction(1 if isinstance(times, Count) else times)
         found = (
             (times.least, Fraction(times.mean), times.most) if isinstance(times, Count) else (down(number), number, up(number))
         )

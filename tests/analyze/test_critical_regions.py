@@ -96,6 +96,18 @@ class TestCriticalSections:
         )
         assert found["middle"][1] >= 6
 
+    def test_are_told_in_the_same_order_in_each_run(self):
+        names = [f"S{number}" for number in range(8)]
+        sections = [item for name in names for item in locked(name, execute(1))]
+        plain = {
+            "cores": {"core": "FPP"},
+            "semaphores": {name: {"ceiling": False} for name in names},
+            "runnables": {},
+            "processes": [process("hi", 2, 50, *sections), process("lo", 1, 100, *sections)],
+        }
+        told = [text.split("'")[1] for text in analyze_system(to_perf(plain)).assumptions if "no priority ceiling" in text]
+        assert told == names
+
     def test_nested_sections_are_one_stretch(self):
         # lo holds A and, within it, B: from 0 to 6 it keeps off hi, which uses only B: but only while it holds B, from 2 to 4.
         body = [{"request": "A"}, execute(2), *locked("B", execute(2)), execute(2), {"release": "A"}]

@@ -1,10 +1,15 @@
 """What is wrong with a built model is told with the place that caused it."""
 
+import copy
+import pickle
+from dataclasses import FrozenInstanceError, replace
+
 import pytest
 
 from amalthea_uros import load, save
 from amalthea_uros.am import Label, Task
 from amalthea_uros.bridge.build import build_model
+from amalthea_uros.bridge.extract import extract
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.errors import WriteError
 from amalthea_uros.perf.activities import Call
@@ -58,3 +63,37 @@ def test_a_part_of_a_built_object_comes_from_where_that_comes_from(tmp_path):
     graph = model[Task, "T"].activity_graph
     assert graph is None or model.documents[0].location_of(graph) == place
     assert model.documents[0].location_of(model.root) is None
+
+
+LABELS = """<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0" xmlns:xmi="http://www.omg.org/XMI">
+  <swModel>
+    <labels name="é"/> <labels name="L"/>
+  </swModel>
+</am:Amalthea>
+"""
+
+
+@pytest.fixture
+def label(tmp_path):
+    path = tmp_path / "model.amxmi"
+    path.write_text(LABELS)
+    return extract(load(path)).system.labels["L"]
+
+
+def test_an_extracted_object_comes_from_its_place_in_the_file(label, tmp_path):
+    assert label.origin == Location(tmp_path / "model.amxmi", 3, 24, '    <labels name="é"/> <labels name="L"/>')
+    assert label.origin is label.origin
+
+
+def test_an_extracted_object_can_be_copied_with_its_origin(label, tmp_path):
+    for copied in (copy.deepcopy(label), pickle.loads(pickle.dumps(label)), replace(label, size=8)):
+        assert copied.origin == Location(tmp_path / "model.amxmi", 3, 24, '    <labels name="é"/> <labels name="L"/>')
+
+
+def test_the_origin_of_an_object_cannot_be_changed(label):
+    with pytest.raises(FrozenInstanceError):
+        label.origin = None
+
+
+def test_a_new_object_has_no_origin():
+    assert PerfTask(name="T").origin is None

@@ -1,5 +1,6 @@
 """Means of distributions: they are finite and between the bounds, and equal closed formulas where these are stable."""
 
+from fractions import Fraction
 from math import erf, exp, pi, sqrt
 
 import pytest
@@ -19,7 +20,7 @@ from amalthea_uros.perf.distributions import (
     highest,
     lowest,
 )
-from amalthea_uros.timing.means import mean
+from amalthea_uros.timing.means import exact_sum, mean
 
 ANY_NUMBER = st.floats(allow_nan=True, allow_infinity=True)
 BOUNDS = st.tuples(st.integers(0, 10**20), st.integers(0, 10**20)).map(sorted)
@@ -89,3 +90,9 @@ def test_in_the_far_tail_it_is_the_asymptotic_series_of_the_hazard_rate(bound):
 def test_a_load_between_20_and_26_percent_has_a_mean_there():
     # The mean of the normal distribution is 10 standard deviations below the least value.
     assert 20 < mean(Gauss(mean=10.0, deviation=1.0, lower=20, upper=26)) < 20.2
+
+
+@given(st.lists(st.fractions(max_denominator=12)))
+def test_the_sum_of_fractions_is_exact(values):
+    assert exact_sum(values) == sum(values, Fraction(0))
+    assert isinstance(exact_sum(values), Fraction)

@@ -19,13 +19,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.perf.activities import Activity
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.critical_sections import Protection
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.preemption import preemption
+from amalthea_uros.timing.process_stretches import ProcessStretches
 from amalthea_uros.timing.scheduling import EqualPriority, Rank, ScheduledProcess
-from amalthea_uros.timing.stretches import KeptOff, Stretches, StretchWalk
+from amalthea_uros.timing.stretches import KeptOff, Stretches
 from amalthea_uros.units import Time
 
 
@@ -73,13 +73,12 @@ class Blocking:
     """
 
     processes: Sequence[ScheduledProcess]
-    demand_model: DemandModel
+    stretches: ProcessStretches
     protection: Mapping[str, Protection]
     unknown: frozenset[str] = frozenset()
     open_semaphores: frozenset[str] = frozenset()
     is_possible: bool = field(init=False)
     _ceilings: dict[str, Rank] = field(default_factory=dict)
-    _stretches: dict[tuple[str, KeptOff], Stretches] = field(default_factory=dict)
     _levels: dict[Rank, Level] = field(default_factory=dict)
     _of_ranks: dict[Rank, _Above] = field(default_factory=dict)
 
@@ -88,13 +87,18 @@ class Blocking:
         """The blocking among processes of a core, or of a server."""
         context = solution.context
         unknown = frozenset(item.name for item in processes if not solution.is_analysable(item.name))
-        return cls(processes, context.demand_model, context.protection, unknown, context.open_semaphores)
+        return cls(processes, context.stretches, context.protection, unknown, context.open_semaphores)
 
     def __post_init__(self) -> None:
         self.is_possible = any(map(self.keeps_off_others, self.processes))
         for item in self.processes:
             for name in self._exclusions(item):
                 self._ceilings[name] = max(self._ceilings.get(name, item.rank), item.rank)
+
+    @property
+    def demand_model(self) -> DemandModel:
+        """Converts activities to execution demand."""
+        return self.stretches.demand_model
 
     def _exclusions(self, item: ScheduledProcess) -> Iterator[str]:
         """The semaphores that a process uses, and its group."""
@@ -208,9 +212,12 @@ class Blocking:
         if preemption(other) is Preemption.NON_PREEMPTIVE and self._throughout(other, above):
             return self.demand_model.of_process(other.process, other.core).worst
         in_group = other.group is not None and self._ceilings[other.group] >= above.lowest
+        throughout, uses = self._throughout(other, above), self.protection[other.name]
+        if not (throughout or uses.semaphores or uses.has_non_interruptible_group):
+            return 0
         kept_off = KeptOff(
             frozenset(semaphores) - self.open_semaphores,
-            throughout=self._throughout(other, above),
+            throughout=throughout,
             yields_after_calls=not in_group and preemption(other) is Preemption.COOPERATIVE,
         )
         return self._of(other, kept_off).longest
@@ -248,9 +255,8 @@ class Blocking:
 
     def last_region(self, item: ScheduledProcess) -> Time:
         """The demand after the last point at which others of its kind can run, where that point is as late as possible."""
-        whole = self.demand_model.of_process(item.process, item.core).worst
         if preemption(item) is Preemption.NON_PREEMPTIVE:
-            return whole
+            return self.demand_model.of_process(item.process, item.core).worst
         found = self._of(item, KeptOff(throughout=True, yields_after_calls=item.group is None))
         return found.total if found.before_last is None else max(0, found.total - found.before_last)
 
@@ -273,16 +279,7 @@ class Blocking:
         return BlockingByDeadline(tuple(steps))
 
     def _of(self, item: ScheduledProcess, kept_off: KeptOff) -> Stretches:
-        key = (item.name, kept_off)
-        if key not in self._stretches:
-
-            def demand_of(activity: Activity) -> Time:
-                return self.demand_model.of_activities(item.process, (activity,), item.core).worst
-
-            model = self.demand_model
-            walk = StretchWalk(model.system, kept_off, demand_of, model.possible_branches)
-            self._stretches[key] = walk.of(item.process.activities)
-        return self._stretches[key]
+        return self.stretches.of(item.process, item.core, kept_off)
 
 
 @dataclass(frozen=True, slots=True)

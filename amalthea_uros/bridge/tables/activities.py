@@ -141,6 +141,8 @@ class _Activities(Table):
 
     def _complete(self, element: Any, context: Extracting) -> Any:
         """The activity; None, with a finding, if something is missing."""
+        if type(element) is am.LabelAccess:  # as most activities
+            return super().extract(element, context)
         match element:
             case am.Group() if (reason := extract_reason(element)) is not None:
                 is_access = element.name == _ACCESS

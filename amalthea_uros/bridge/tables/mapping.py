@@ -87,10 +87,12 @@ def extract_mapping(mapping: am.MappingModel, context: Extracting) -> perf.Mappi
     """The way back."""
     for left_out in (*mapping.runnable_allocation, *mapping.physical_section_mapping):
         context.leave_out(left_out)
-    placed = [m for m in mapping.memory_mapping if not _is_other(m)]
-    for other in mapping.memory_mapping:
-        if _is_other(other):
-            context.leave_out(other)
+    placed = []
+    for placement in mapping.memory_mapping:
+        if _is_other(placement):
+            context.leave_out(placement)
+        else:
+            placed.append(placement)
     return perf.Mapping(
         tasks=tuple(_extract_tasks(mapping.task_allocation, context)),
         isrs=ISR_ALLOCATIONS.extract_all(mapping.isr_allocation, context),
@@ -101,7 +103,7 @@ def extract_mapping(mapping: am.MappingModel, context: Extracting) -> perf.Mappi
 def _is_other(mapping: am.MemoryMapping) -> bool:
     """Whether something else than data is placed."""
     element = mapping.abstract_element
-    return element is not None and not element.unresolved and not isinstance(element, am.Label | am.Channel)
+    return element is not None and not isinstance(element, am.Label | am.Channel) and not element.unresolved
 
 
 def _extract_tasks(allocations: Iterable[am.TaskAllocation], context: Extracting) -> Iterable[perf.TaskAllocation]:

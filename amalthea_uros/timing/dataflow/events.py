@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import TypeAlias
 
 from amalthea_uros.perf.activities import (
     AccessKind,
+    Activity,
     Call,
     LabelAccess,
     ModeAccess,
@@ -40,6 +42,9 @@ from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.counters import CallSites
 from amalthea_uros.timing.dataflow.positions import ActivityPosition, TooComplexError, positions
+
+#: The class of the events that an activity can raise, and the name of the object that it accesses.
+_Accessed: TypeAlias = tuple[type[Event], str]
 
 
 class UnresolvedError(Exception):
@@ -93,6 +98,7 @@ class EventLocator:
     guesses: dict[str, str] = field(default_factory=dict)
     sites: CallSites = field(init=False)
     _positions: dict[str, list[ActivityPosition]] = field(default_factory=dict)
+    _by_accessed: dict[str, dict[_Accessed, list[ActivityPosition]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.sites = CallSites(self.system)
@@ -115,6 +121,34 @@ class EventLocator:
         """Everything that the jobs of all processes do; raises as `positions`."""
         for process in self.system.processes:
             yield from self.positions(process)
+
+    def raising(self, event: Event) -> list[ActivityPosition]:
+        """The positions of the activities that raise an event, process by process.
+
+        Raises
+        ------
+        UnresolvedError : a process in which it could occur executes too many activities.
+        """
+        process = None if isinstance(event, CustomEvent) else getattr(event, "process", None)
+        within = self.system.processes if process is None else [process] if process in self.system.processes else []
+        return [position for name in within for position in self.raising_in(name, event)]
+
+    def raising_in(self, process: str, event: Event) -> list[ActivityPosition]:
+        """The positions in the jobs of a process of the activities that raise an event; raises as `positions`."""
+        accessed = _accessed_by(event)
+        found = self.positions(process) if accessed is None else self._accessing(process).get(accessed, ())
+        return [position for position in found if raises(position, event)]
+
+    def _accessing(self, process: str) -> dict[_Accessed, list[ActivityPosition]]:
+        """The positions of a process by what their activities access."""
+        if process not in self._by_accessed:
+            found: dict[_Accessed, list[ActivityPosition]] = {}
+            for position in self.positions(process):
+                accessed = _accessed(position.activity)
+                if accessed is not None:
+                    found.setdefault(accessed, []).append(position)
+            self._by_accessed[process] = found
+        return self._by_accessed[process]
 
     def of(self, event: Event) -> list[EventOccurrence]:
         """Where an event occurs.
@@ -142,10 +176,9 @@ class EventLocator:
                 if event.change not in (RunnableChange.START, RunnableChange.TERMINATE):
                     raise UnresolvedError(_no_single_time(event))
                 when = JobPhase.BEFORE if event.change is RunnableChange.START else JobPhase.AFTER
-                return [EventOccurrence(p.process, when, p) for p in self._within(event.process) if raises(p, event)]
+                return [EventOccurrence(p.process, when, p) for p in self.raising(event)]
             case CustomEvent() | LabelEvent() | ModeLabelEvent() | ChannelEvent() | SemaphoreEvent():
-                process = None if isinstance(event, CustomEvent) else event.process
-                return [EventOccurrence(p.process, JobPhase.AFTER, p) for p in self._within(process) if raises(p, event)]
+                return [EventOccurrence(p.process, JobPhase.AFTER, p) for p in self.raising(event)]
         raise UnresolvedError(f"the kind of the event {event.name!r} cannot be analysed")
 
     def _guess(self, event: Event) -> list[EventOccurrence]:
@@ -196,6 +229,35 @@ _MODES = {
     ModeChange.INCREMENT: ModeOperation.INCREMENT,
     ModeChange.DECREMENT: ModeOperation.DECREMENT,
 }
+
+
+def _accessed(activity: Activity) -> _Accessed | None:
+    """What an activity accesses, as the key of the events that it raises; None if it raises none."""
+    match activity:
+        case LabelAccess(label=name) | SenderReceiverAccess(label=name):
+            return (LabelEvent, name)
+        case Call(runnable=name):
+            return (RunnableEvent, name)
+        case RaiseEvent(event=name):
+            return (CustomEvent, name)
+        case ModeAccess(label=name):
+            return (ModeLabelEvent, name)
+        case Send(channel=name) | Receive(channel=name):
+            return (ChannelEvent, name)
+        case SemaphoreAccess(semaphore=name):
+            return (SemaphoreEvent, name)
+    return None
+
+
+def _accessed_by(event: Event) -> _Accessed | None:
+    """The key of the activities that can raise an event; None if the event does not name the object."""
+    name: str | None = None
+    match event:
+        case LabelEvent(label=name) | ModeLabelEvent(label=name) | RunnableEvent(runnable=name) | CustomEvent(name=name):
+            pass
+        case ChannelEvent(channel=name) | SemaphoreEvent(semaphore=name):
+            pass
+    return None if name is None else (type(event), name)
 
 
 def raises(position: ActivityPosition, event: Event) -> bool:

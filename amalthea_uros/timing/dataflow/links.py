@@ -5,7 +5,7 @@ Chains, paths and rules all use these links.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
@@ -29,7 +29,7 @@ from amalthea_uros.perf.conditions import read_by
 from amalthea_uros.perf.events import Event, RunnableChange, RunnableEvent
 from amalthea_uros.perf.stimuli import EventTriggered
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.events import EventLocator, EventOccurrence, JobPhase, raises
+from amalthea_uros.timing.dataflow.events import EventLocator, EventOccurrence, JobPhase
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.server_calls import with_direct_calls
 
@@ -180,16 +180,16 @@ class Dataflow:
         """The stimuli that a process fires, in order, by triggers and by the events that it raises."""
         if self._fired is None:
             reactions = self._reactions()
-            self._fired = {name: list(self._find_triggers(name, reactions)) for name in self.system.processes}
+            self._fired = {name: self._find_triggers(name, reactions) for name in self.system.processes}
         return self._fired[process]
 
-    def _find_triggers(self, process: str, reactions: Sequence[tuple[str, Event]]) -> Iterator[Firing]:
-        for position in self.events.positions(process):
-            if isinstance(position.activity, Trigger):
-                yield Firing(position.activity.stimulus, position)
-            for stimulus, event in reactions:
-                if raises(position, event):
-                    yield Firing(stimulus, position, _is_start(event))
+    def _find_triggers(self, process: str, reactions: Iterable[tuple[str, Event]]) -> list[Firing]:
+        everything = self.events.positions(process)
+        found = [Firing(p.activity.stimulus, p) for p in everything if isinstance(p.activity, Trigger)]
+        for stimulus, event in reactions:
+            is_before = _is_start(event)
+            found += (Firing(stimulus, position, is_before) for position in self.events.raising_in(process, event))
+        return sorted(found, key=lambda firing: firing.position.number)
 
     def _reactions(self) -> list[tuple[str, Event]]:
         """The stimuli that react to events."""

@@ -7,13 +7,13 @@ from math import ceil
 from typing import NamedTuple, TypeAlias
 
 from amalthea_uros.perf.activities import (
+    WITH_PARTS,
     Activity,
     Call,
     Count,
     Group,
     LabelAccess,
     Loop,
-    ProbabilitySwitch,
     Switch,
     inner_activities,
 )
@@ -28,7 +28,6 @@ MAX_POSITIONS = 200_000
 MAX_CALL_DEPTH = 100
 
 #: Most activities are accesses: what only these classes need is not looked for in the others.
-_WITH_PARTS = (Group, Loop, Switch, ProbabilitySwitch)
 _WITH_CONDITIONS = (Call, Loop, Switch)
 
 #: Lists of activities, from the process inwards, each with an index into it.
@@ -106,20 +105,22 @@ class _Walk:
         for index, activity in enumerate(activities):
             outer = (*branch.outer, (activities, index))
             counter, times = branch.counter, branch.times
-            if isinstance(activity, Call | LabelAccess):
-                times *= _max_times(activity.times)
-            if isinstance(activity, Call):
-                counter = self._counter((*branch.calls, activity), branch)
             place = len(self.found)
             if place >= MAX_POSITIONS or len(branch.above) > MAX_CALL_DEPTH:
                 raise TooComplexError(f"{self.process.name!r} has too many calls, or too deeply nested calls, to be analysed")
+            if isinstance(activity, LabelAccess):
+                self.found.append(self._access(activity, branch, outer))
+                continue
+            if isinstance(activity, Call):
+                times *= _max_times(activity.times)
+                counter = self._counter((*branch.calls, activity), branch)
             # Its last number is known only after its inner activities.
             self.found.append(None)
             if isinstance(activity, Call):
                 called = self.system.runnables.get(activity.runnable)
                 if called is not None and called.name not in branch.above:
                     self.through(called.activities, _of_call(activity, called, branch, outer, counter, times))
-            elif isinstance(activity, _WITH_PARTS):
+            elif isinstance(activity, WITH_PARTS):
                 is_certain = branch.is_certain and isinstance(activity, Group) and activity.ordered
                 within = _Branch(branch.runnable, outer, counter, is_certain, times, branch.above, branch.calls)
                 for each in inner_activities(activity):
@@ -136,6 +137,12 @@ class _Walk:
                 times,
                 _conditions(activity, self.system) if isinstance(activity, _WITH_CONDITIONS) else (),
             )
+
+    def _access(self, access: LabelAccess, branch: _Branch, outer: Nesting) -> ActivityPosition:
+        """The position of an access, as most activities are: nothing is within it."""
+        number, times = len(self.found) + 1, branch.times * _max_times(access.times)
+        certain = branch.is_certain
+        return ActivityPosition(self.process, number, number, access, branch.runnable, outer, branch.counter, certain, times)
 
     def _counter(self, calls: tuple[Call, ...], branch: _Branch) -> Counter | None:
         """In which jobs the last of nested calls is executed; None if unknown."""
