@@ -14,7 +14,7 @@ from amalthea_uros import describe
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda, terms
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.explanation import explain_chain
-from amalthea_uros.analyze.results import Claim, Quantity
+from amalthea_uros.analyze.results import EXPLAINED, Claim, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.hardware import StructureKind
