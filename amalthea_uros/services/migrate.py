@@ -158,7 +158,7 @@ def migrate_files(
     to, official : as for `migrate`
     target, in_place, force, compress : as for `MigrationResult.save`
     is_dry_run : write nothing
-    track : is told the sets, and gives them one by one
+    track : wraps the iteration over the sets, for example to show progress
 
     Raises
     ------

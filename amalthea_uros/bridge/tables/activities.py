@@ -102,7 +102,7 @@ _ACCESS = "access"
 
 
 class _Activities(Table):
-    """Everything that can stand in an activity graph; what is shaped differently in AMALTHEA has its own functions."""
+    """All activities of an activity graph; those with another structure in AMALTHEA have functions of their own."""
 
     def build(self, item: Any, context: Building) -> Any:
         match item:

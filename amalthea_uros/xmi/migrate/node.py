@@ -30,7 +30,7 @@ class Node:
     target_class : class by which references name this object, where the tag does not tell it
     comments : comments and processing instructions in front of the element
     origin : index of the element in the files from which this comes
-    index : what is told of changes in a whole tree, at its root
+    index : at a root, what keeps track of changes in the whole tree
     """
 
     __slots__ = (

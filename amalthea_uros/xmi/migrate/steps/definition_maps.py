@@ -12,7 +12,7 @@ PARAMETER_LISTS = ("algorithmParameters", "processParameters")
 
 _CUSTOM = "customProperties"
 
-#: Says of a part that it is not there: it is told from the other parts by the map it is in.
+#: Marks a part as absent, in the map that distinguishes it from the other parts.
 Report = Callable[[Node], None]
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from itertools import count
+from collections.abc import Collection
+from itertools import chain, count
 
 from amalthea_uros.xmi.migrate.node import Node
 
@@ -22,9 +23,10 @@ def property_text(found: Node | None) -> str | None:
 
 
 def add_property(node: Node, key: str, text: str) -> None:
-    """Add a text as the last custom property."""
-    added = node.add("customProperties", at=len(node.all("customProperties")), key=key)
-    added.add("value", "StringObject", value=text)
+    """Add a text as the last custom property; a key that is there already gets a number, because keys are unique."""
+    present = node.all("customProperties")
+    unique = free_key(key, {each.get("key") for each in present})
+    node.add("customProperties", at=len(present), key=unique).add("value", "StringObject", value=text)
 
 
 def move_properties(source: Node, target: Node) -> list[Node]:
@@ -36,12 +38,13 @@ def move_properties(source: Node, target: Node) -> list[Node]:
     keys = {each.get("key") for each in present}
     moved = source.all("customProperties")
     for at, each in enumerate(moved, len(present)):
-        base = key = each.get("key")
-        for number in count(2):
-            if key not in keys:
-                break
-            key = f"{base} {number}"
-        keys.add(key)
-        each.attributes["key"] = key
+        each.attributes["key"] = free_key(each.get("key"), keys)
+        keys.add(each.get("key"))
         target.insert(each, at)
     return moved
+
+
+def free_key(key: str, used: Collection[str]) -> str:
+    """The key, or with the first number from 2 on that makes it differ from those that are used."""
+    numbered = (f"{key} {number}" for number in count(2))
+    return next(each for each in chain([key], numbered) if each not in used)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from itertools import chain, count
 
 from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XSI_NAMESPACE
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.names import reference_text
 from amalthea_uros.xmi.migrate.node import Node, remove_all
+from amalthea_uros.xmi.migrate.steps.properties import free_key
 
 
 def keep_as_properties(holder: Node, properties: Iterable[tuple[str, str]]) -> None:
@@ -17,8 +17,7 @@ def keep_as_properties(holder: Node, properties: Iterable[tuple[str, str]]) -> N
     added = []
     used = {each.get("key") for each in holder.all("customProperties")}
     for key, text in properties:
-        numbered = (f"{key} {number}" for number in count(2))
-        unique = next(each for each in chain([key], numbered) if each not in used)
+        unique = free_key(key, used)
         used.add(unique)
         made = Node("customProperties", "", {"key": unique}, holder.origin)
         made.add("value", "StringObject", value=text)

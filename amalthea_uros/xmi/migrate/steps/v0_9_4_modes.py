@@ -7,7 +7,8 @@ from urllib.parse import unquote_plus
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, proxy
 from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.steps.v0_9_parts import add_property, by_class
+from amalthea_uros.xmi.migrate.steps.properties import add_property
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import by_class
 
 _CLASSES = {
     "Mode": "EnumMode",

@@ -6,8 +6,9 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.properties import add_property
 from amalthea_uros.xmi.migrate.steps.v0_9_5_clocks import convert_clocks
-from amalthea_uros.xmi.migrate.steps.v0_9_parts import add_property, by_class, keep_comments
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import by_class, keep_comments
 
 _RENAMED = {
     "TaskRunnableCall": "RunnableCall",

@@ -12,7 +12,8 @@ from amalthea_uros.xmi.migrate.node import Node, proxy
 from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
-from amalthea_uros.xmi.migrate.steps.v0_9_parts import add_property, by_class, keep_comments, quantity_text
+from amalthea_uros.xmi.migrate.steps.properties import add_property
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import by_class, keep_comments, quantity_text
 
 #: The key of the custom properties that keep the older definition, as the official converter writes it.
 _KEY = "old_definition_v0.9.4"

@@ -1,4 +1,4 @@
-"""What the steps 0.9.2 ... 0.9.5 share: custom properties, elements that become part of others, and nodes by class."""
+"""What the steps 0.9.2 ... 0.9.5 share: elements that become part of others, and nodes by class."""
 
 from __future__ import annotations
 
@@ -6,17 +6,6 @@ from collections.abc import Iterable
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-
-
-def add_property(owner: Node, key: str, text: str) -> None:
-    """Keep a text as a custom property, after those that are there; keys are unique."""
-    keys = {child.get("key") for child in owner.children if child.tag == "customProperties"}
-    number, unique = 1, key
-    while unique in keys:
-        number += 1
-        unique = f"{key} {number}"
-    made = owner.add("customProperties", at=len(keys), key=unique)
-    made.add("value", "StringObject", value=text)
 
 
 def keep_comments(dissolved: Node, owner: Node) -> None:

@@ -8,8 +8,9 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.postponed import Postponed
-from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, hash_order, keep_text
+from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, hash_order
 from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
+from amalthea_uros.xmi.migrate.steps.properties import add_property
 
 INSTRUCTIONS = "Instructions"
 
@@ -72,7 +73,7 @@ class Definitions:
         if self.official or not kind.startswith("FLASH_"):
             self.notes.lost(*what)
             return
-        keep_text(node, "memoryType", kind)
+        add_property(node, "memoryType", kind)
         self.notes.kept(*what)
         state = partial(node.attributes.setdefault, "memoryType", "FLASH")
         self.models.postponed.append(Postponed(BEYOND_CONVERTERS, state, Kind.CONVERTED, *what, is_kept=True))

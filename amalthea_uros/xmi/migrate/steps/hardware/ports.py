@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, keep_reference, keep_text
+from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, keep_reference
+from amalthea_uros.xmi.migrate.steps.properties import add_property
 
 _ATTRIBUTES = frozenset({"bitWidth", "portType", "priority", "portInterface"})
 _PORT = Shape("ports", _ATTRIBUTES)
@@ -35,7 +36,7 @@ def _keep(port: Node, names: tuple[str, ...], notes: Notes) -> None:
         text = port.attributes.pop(name, "")
         # An address of 0 means something if there is a range.
         if text not in _NOTHING or (name == "baseAddress" and text and port.get("addressRange") not in _NOTHING):
-            keep_text(port, name, text)
+            add_property(port, name, text)
             notes.kept(port, f"{name!r} of ports", text, name)
     network = port.references.pop("network", [])
     if network:

@@ -7,7 +7,8 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.hardware.clocks import Clocks
 from amalthea_uros.xmi.migrate.steps.hardware.ports import convert_ports
-from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, copy_of, hash_order, is_cache, keep_text
+from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, copy_of, hash_order, is_cache
+from amalthea_uros.xmi.migrate.steps.properties import add_property
 
 #: Tag -> type of the structure.
 _STRUCTURES = {"system": "System", "ecus": "ECU", "microcontrollers": "Microcontroller"}
@@ -92,7 +93,7 @@ class Structures:
         core.tag, core.type = "modules", "ProcessingUnit"
         group = core.attributes.pop("lockstepGroup", "0")
         if group != "0" and not self.official:
-            keep_text(core, "lockstepGroup", group)
+            add_property(core, "lockstepGroup", group)
             self.notes.kept(core, "'lockstepGroup' of cores", group, "lockstepGroup")
         self._convert_module(core, "coreType")
         if self.official:

@@ -46,12 +46,6 @@ class Shape:
         remove_all(superfluous)
 
 
-def keep_text(node: Node, key: str, text: str) -> None:
-    """State a text as a custom property."""
-    made = node.add("customProperties", at=_place_for_property(node), key=key)
-    made.add("value", "StringObject", value=text)
-
-
 def keep_reference(node: Node, key: str, targets: Sequence[Node]) -> None:
     """State references as custom properties."""
     for target in targets:
