@@ -10,13 +10,21 @@ import older_forms
 import pytest
 from support import SHARED
 
-from amalthea_uros import Settings, am, analyze_system, extract, load
+from amalthea_uros import Claim, Communication, Quantity, Settings, am, analyze_system, extract, load
 from amalthea_uros.units import MICROSECOND as US
 
 MODEL = SHARED / "corpus" / "WATERS_2017_v072.amxmi"
 FIGURES = SHARED / "vectors" / "waters2017.json"
 
 pytestmark = pytest.mark.skipif(not (MODEL.exists() and FIGURES.exists()), reason="the challenge is not at hand")
+
+LATENCIES = {
+    "max_reaction": Quantity.MAX_REACTION_TIME,
+    "max_reaction_without_sampling": Quantity.MAX_REDUCED_REACTION_TIME,
+    "max_data_age_L2L": Quantity.MAX_REDUCED_DATA_AGE,
+    "max_data_age_until_replaced": Quantity.MAX_DATA_AGE,
+    "min_forward": Quantity.MIN_FIRST_TO_FIRST,
+}
 
 CORES = ["CORE0", "CORE1", "CORE2", "CORE3"]
 
@@ -68,3 +76,18 @@ def test_response_times(model, figures, variant, megahertz):
         else:
             # A third of a picosecond is printed rounded to the nearest one; a bound is rounded up.
             assert worst == pytest.approx(expected * US, abs=1), row["name"]
+
+
+def test_chains_with_logical_execution_times(model, figures):
+    """Exact figures; the labels are those that the runnables share, not those in the names of the segments."""
+    settings = Settings(dict.fromkeys(CORES, Fraction(300 * 10**6)), communication=Communication.LET)
+    chains = {chain.name: chain for chain in analyze_system(extract(model).system, settings).chains}
+    expected = {chain["name"]: chain["LET_exact_us"] for chain in figures["chains"]}
+    for name in ("EffectChain_1", "EffectChain_2"):
+        known = expected[name]["as_modelled"]
+        found = {key: chains[name].value(quantity) for key, quantity in LATENCIES.items()}
+        assert {key: value.value / US for key, value in found.items()} == {key: known[key] for key in LATENCIES}
+        assert {value.claim for value in found.values()} == {Claim.EXACT}
+    # Its first task is sporadic, and has no period.
+    assert "EffectChain_3" in chains
+    assert not chains["EffectChain_3"].values
