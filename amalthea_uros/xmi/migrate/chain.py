@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.index import all_below
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
-from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.postponed import bring_back, give_up
 from amalthea_uros.xmi.migrate.step import Step
@@ -62,34 +61,32 @@ def version_of_content(tree: Tree, target: str) -> str:
     found, version = tree.version, tree.version
     if position(target) < position(version):
         return version
-    nodes = all_below([tree.root])
-    names = {node.tag for node in nodes} | {node.type for node in nodes}
     for _ in range(_BEHIND):
         before = next((step for step in _UP.values() if step.target == version), None)
         if before is None:
             break
         version = before.source
-        if not names.isdisjoint(before.leftovers):
+        if not tree.names.isdisjoint(before.leftovers):
             found = version
     return found
 
 
 def drop_dangling(models: ModelSet, notes: Notes) -> None:
     """Remove references to objects that a step removed."""
-    roots = {tree.root for tree in models.trees}
-    attached: dict[Node, bool] = {}
-    for node in all_below(list(roots)):
-        if node.references:
-            for name, targets in list(node.references.items()):
-                for target in targets:
-                    if target not in attached:
-                        attached[target] = target.is_proxy or target.root in roots
-                kept = [target for target in targets if attached[target]]
-                if len(kept) == len(targets):
-                    continue
-                lost = ", ".join(repr(target.name) for target in targets if not attached[target])
-                notes.lost(node, f"reference {name!r}: its target is lost", lost, name)
-                if kept:
-                    node.references[name] = kept
-                else:
-                    del node.references[name]
+    nodes = all_below([tree.root for tree in models.trees])
+    attached = set(nodes)
+    for node in nodes:
+        if not node.references:
+            continue
+        for name, targets in list(node.references.items()):
+            if attached.issuperset(targets):
+                continue
+            kept = [target for target in targets if target in attached or target.is_proxy]
+            if len(kept) == len(targets):
+                continue
+            lost = ", ".join(repr(target.name) for target in targets if target not in kept)
+            notes.lost(node, f"reference {name!r}: its target is lost", lost, name)
+            if kept:
+                node.references[name] = kept
+            else:
+                del node.references[name]

@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Iterator
+from itertools import chain
+from operator import attrgetter
+
 from amalthea_uros.xmi.migrate.node import Node
+
+_ORIGIN = attrgetter("origin")
 
 #: If more than this share of the nodes changed, everything is indexed anew, which is faster then.
 _LARGE_SHARE = 0.1
@@ -58,28 +65,24 @@ class NodeIndex:
         self._unordered.update((node.tag, node.type))
 
     def _build(self, roots: list[Node]) -> None:
-        by_tag: dict[str, list[Node]] = {}
-        by_type: dict[str, list[Node]] = {}
-        nodes = all_below(roots)
+        by_tag: defaultdict[str, dict[Node, None]] = defaultdict(dict)
+        by_type: defaultdict[str, dict[Node, None]] = defaultdict(dict)
+        nodes = list(roots)
         for node in nodes:
-            tag, type_name = node.tag, node.type
-            known = by_tag.get(tag)
-            if known is None:
-                by_tag[tag] = [node]
-            else:
-                known.append(node)
-            if type_name:
-                known = by_type.get(type_name)
-                if known is None:
-                    by_type[type_name] = [node]
-                else:
-                    known.append(node)
-        self._by_tag = {tag: dict.fromkeys(found) for tag, found in by_tag.items()}
-        self._by_type = {name: dict.fromkeys(found) for name, found in by_type.items()}
+            # The list grows meanwhile: level by level is the fastest way, and order matters only where somebody asks.
+            nodes += node.children
+            by_tag[node._tag][node] = None
+            if node._type:
+                by_type[node._type][node] = None
+        self._by_tag, self._by_type = dict(by_tag), dict(by_type)
         self._size, self._changed = len(nodes), {}
-        self._unordered.clear()
+        self._unordered = {*by_tag, *by_type}
         for root in roots:
             root.index = self
+
+    def all(self) -> Iterator[Node]:
+        """All nodes, in no order that means something."""
+        return chain.from_iterable(self._by_tag.values())
 
     def of_tag(self, tag: str) -> list[Node]:
         """The nodes of a tag, in the order of the files."""
@@ -93,7 +96,7 @@ class NodeIndex:
         found = list(by_name.get(name, ()))
         if name in self._unordered:
             # What a step made has the origin of what it was made from.
-            found.sort(key=lambda node: node.origin)
+            found.sort(key=_ORIGIN)
         return found
 
 

@@ -71,14 +71,16 @@ class _Linker:
         self.by_name: dict[str, list[Node]] = {}
         self.siblings: dict[tuple[Node, str], list[Node]] = {}
         nameless: list[Node] = []
-        self.nodes = {one.tree.root: list(one.tree.root.walk()) for one in parsed}
-        for nodes in self.nodes.values():
-            for node in nodes:
+        by_name = self.by_name
+        for one in parsed:
+            for node in one.nodes:
                 name = node.attributes.get("name")
-                if name:
-                    self.by_name.setdefault(name, []).append(node)
-                else:
+                if not name:
                     nameless.append(node)
+                elif name in by_name:
+                    by_name[name].append(node)
+                else:
+                    by_name[name] = [node]
         self.nameless = nameless
         self.nameless_of: dict[str, list[Node]] = {}
         self.proxies: dict[str, Node] = {}
@@ -90,7 +92,7 @@ class _Linker:
         """Link the references of one file."""
         # Ids are mostly UUIDs, which can be told by their first character.
         other_ids = {text for text in one.ids if text[:1] not in _STARTS and TYPE_MARK not in text}
-        for node in self.nodes.pop(one.tree.root):
+        for node in one.nodes:
             attributes = node.attributes
             linked: list[str] | None = None
             for key, text in attributes.items():
@@ -226,6 +228,8 @@ class _Linker:
 
     def make_unique(self, notes: Notes) -> None:
         """Give names of their own to objects to which references were not by name, where the name does not tell them from others."""
+        if not self.by_identity:
+            return
         alike: dict[tuple[str, str, str], list[Node]] = {}
         for node in chain(chain.from_iterable(self.by_name.values()), self.nameless):
             alike.setdefault((node.name, node.tag, node.type), []).append(node)

@@ -27,6 +27,7 @@ class Tree:
     version : that of its present content
     root : its content
     prolog, epilog : comments and processing instructions around the root
+    names : the tags and types that occurred in it
     """
 
     path: Path
@@ -35,6 +36,7 @@ class Tree:
     root: Node
     prolog: list[str] = field(default_factory=list)
     epilog: list[str] = field(default_factory=list)
+    names: frozenset[str] = frozenset()
 
 
 class Origins:
@@ -57,6 +59,14 @@ class Origins:
     def begin_file(self, path: Path, text: str) -> None:
         """All elements from now on are in that file."""
         self._files.append((len(self.starts), path, Source(text)))
+
+    def add(self, start: int, parent: int, tag: str, name: str) -> int:
+        """An element more; what it has as origin."""
+        self.starts.append(start)
+        self.ends.append(0)
+        self.parents.append(parent)
+        self.labels.append((tag, name))
+        return len(self.starts) - 1
 
     def location(self, origin: int, attribute: str = "") -> Location | None:
         """Where an element is, or one of its attributes; None for -1."""
@@ -151,7 +161,7 @@ class ModelSet:
             for node in self.of_type(old):
                 node.type = new
                 found.append(node)
-        for node in self.walk():
+        for node in self.index.all():
             if node.target_class in renamed:
                 node.target_class = renamed[node.target_class]
         for node in self.proxies:

@@ -158,9 +158,15 @@ class Node:
 
     def insert(self, child: Node, at: int | None = None) -> None:
         """Make a node a part of this one, the last one or at a position; it leaves its present container."""
-        child.remove()
-        child.parent = self
-        _note_all(self, (child,))
+        holder = child.parent
+        if holder is not None and holder.root is self.root:
+            # Nothing for the index: the tree has the same nodes as before.
+            holder.children.remove(child)
+            child.parent = self
+        else:
+            child.remove()
+            child.parent = self
+            _note_all(self, (child,))
         if at is None:
             self.children.append(child)
         else:
@@ -169,10 +175,13 @@ class Node:
     def take(self, children: Iterable[Node]) -> None:
         """Make some nodes the last parts of this one; in time linear in their number, unlike inserting one after the other."""
         taken = list(children)
-        remove_all(taken)
+        root = self.root
+        coming = [child for child in taken if child.parent is None or child.root is not root]
+        remove_all(coming)
+        _leave(taken)
         for child in taken:
             child.parent = self
-        _note_all(self, taken)
+        _note_all(self, coming)
         self.children.extend(taken)
 
     def set_children(self, children: list[Node]) -> None:
@@ -234,10 +243,16 @@ class Node:
 
 def remove_all(nodes: Iterable[Node]) -> None:
     """Let nodes leave their containers, in time linear in the number of the nodes and their siblings."""
-    removed = set(nodes)
+    removed = list(nodes)
     for node in removed:
         if node.parent is not None:
             _note_all(node.parent, (node,))
+    _leave(removed)
+
+
+def _leave(nodes: Iterable[Node]) -> None:
+    """Take nodes out of their containers, untold."""
+    removed = set(nodes)
     for holder in {node.parent for node in removed if node.parent is not None}:
         holder.children = [child for child in holder.children if child not in removed]
     for node in removed:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -41,11 +42,13 @@ class Parsed:
 
     Attributes
     ----------
+    nodes : all objects, in the order of the file
     hrefs : references as elements; those as attributes are still attributes
     ids : objects by their `xmi:id`, the first of several
     """
 
     tree: Tree
+    nodes: list[Node]
     hrefs: list[Href] = field(default_factory=list)
     ids: dict[str, Node] = field(default_factory=dict)
 
@@ -70,6 +73,7 @@ class _Parser:
         self.expat = expat.ParserCreate()
         self.root: Node | None = None
         self.version = ""
+        self.nodes: list[Node] = []
         #: The open elements; None for one without a node of its own.
         self.stack: list[Node | None] = []
         self.hrefs: list[Href] = []
@@ -99,8 +103,9 @@ class _Parser:
             place = (held.type or held.tag, self.origins.starts[held.origin]) if held else None
             raise refusals.malformed(self.path, self.content.text, error, parser.ErrorByteIndex, place) from None
         assert self.root is not None
-        tree = Tree(self.path, self.content, self.version, self.root, self.prolog, self.comments)
-        return Parsed(tree, self.hrefs, self.ids)
+        names = {node.tag for node in self.nodes} | {node.type for node in self.nodes}
+        tree = Tree(self.path, self.content, self.version, self.root, self.prolog, self.comments, frozenset(names))
+        return Parsed(tree, self.nodes, self.hrefs, self.ids)
 
     def disconnect(self) -> None:
         """Break the cycle of both parsers, which would keep the text alive until the next collection."""
@@ -120,47 +125,61 @@ class _Parser:
         self.declare_packages(attributes)
         own = {key: text for key, text in attributes.items() if not key.startswith(("xmlns", f"{xmi}:version", f"{prefix}:"))}
         self.prolog, self.comments = self.comments, []
-        self.expat.StartElementHandler = self.start
-        self.root = self.open(tag, own, None)
+        self.root = root = Node(tag, attributes=own, origin=self.origins.add(self.offset, -1, tag, own.get("name", "")))
+        self.take_marked(root)
+        self.nodes.append(root)
+        self.stack.append(root)
+        self.expat.StartElementHandler = self.start_handler()
 
-    def start(self, tag: str, attributes: dict[str, str]) -> None:
-        parent = self.stack[-1]
-        if parent is None or ":" in tag:
-            self.skip(tag, parent)
-            return
-        if "href" in attributes:
-            self.hrefs.append(Href(parent, tag, _href(attributes["href"]), self.type_of(attributes.get(self.xsi_type, ""))))
-            self.stack.append(None)
-            return
-        node = self.open(tag, attributes, parent)
-        node.parent = parent
-        parent.children.append(node)
-        if len(self.stack) > refusals.MAX_DEPTH:
-            raise refusals.too_deep(self.path, self.content.text, self.offset)
+    def start_handler(self) -> Callable[[str, dict[str, str]], None]:
+        """The handler of start tags, with everything it needs in local names: it runs once per element."""
+        parser, stack, max_depth, origins = self.expat, self.stack, refusals.MAX_DEPTH, self.origins
+        add_start, add_end, add_parent = origins.starts.append, origins.ends.append, origins.parents.append
+        add_label, starts, add_node = origins.labels.append, origins.starts, self.nodes.append
 
-    def open(self, tag: str, attributes: dict[str, str], parent: Node | None) -> Node:
-        """A new node for the start tag."""
-        origins = self.origins
-        node: Node = _new(Node)
-        node._tag, node._type, node.target_class = tag, "", ""
-        node.attributes, node.references, node.children = attributes, {}, []
-        node.parent = node.comments = node.index = None
-        node.origin = len(origins.starts)
-        origins.starts.append(self.expat.CurrentByteIndex)
-        origins.ends.append(0)
-        origins.parents.append(-1 if parent is None else parent.origin)
-        origins.labels.append((tag, attributes.get("name", "")))
-        marked = [key for key in attributes if ":" in key]
-        if marked:
-            self.take_marked(node, marked)
-        if self.comments:
-            node.comments, self.comments = self.comments, []
-        self.stack.append(node)
-        return node
+        def start(tag: str, attributes: dict[str, str]) -> None:
+            parent = stack[-1]
+            if parent is None or ":" in tag:
+                self.skip(tag, parent)
+                return
+            if "href" in attributes:
+                self.start_href(parent, tag, attributes)
+                return
+            node: Node = _new(Node)
+            node._tag, node._type, node.target_class = tag, "", ""
+            node.attributes, node.references, node.children = attributes, {}, []
+            node.parent, node.comments, node.index = parent, None, None
+            node.origin = len(starts)
+            parent.children.append(node)
+            add_start(parser.CurrentByteIndex)
+            add_end(0)
+            add_parent(parent.origin)
+            add_label((tag, attributes.get("name", "")))
+            add_node(node)
+            for key in attributes:
+                if ":" in key:
+                    self.take_marked(node)
+                    break
+            if self.comments:
+                node.comments, self.comments = self.comments, []
+            stack.append(node)
+            if len(stack) > max_depth:
+                raise refusals.too_deep(self.path, self.content.text, self.offset)
 
-    def take_marked(self, node: Node, keys: list[str]) -> None:
+        return start
+
+    def start_href(self, holder: Node, tag: str, attributes: dict[str, str]) -> None:
+        """A reference as an element."""
+        self.hrefs.append(Href(holder, tag, _href(attributes["href"]), self.type_of(attributes.get(self.xsi_type, ""))))
+        self.stack.append(None)
+
+    def take_marked(self, node: Node) -> None:
         """Take the attributes with a prefix away from a node; nothing of a model has one."""
         attributes = node.attributes
+        if len(attributes) == 1 and self.xsi_type in attributes:
+            node._type = self.type_of(attributes.pop(self.xsi_type))
+            return
+        keys = [key for key in attributes if ":" in key]
         declared = {key: attributes.pop(key) for key in keys if key.startswith("xmlns:")}
         if declared:
             self.declare_packages(declared)

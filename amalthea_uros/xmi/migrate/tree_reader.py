@@ -96,37 +96,60 @@ class TreeEvents:
             "xmlns:xsi": XSI_NAMESPACE,
             "xmlns:am": NAMESPACE_PREFIX + self.tree.version,
         }
-        self.element(root, "am:" + root.tag)
+        self.CurrentByteIndex = self.origins.starts[root.origin]
+        hrefs = self.refer(root)
+        self.StartElementHandler("am:" + root.tag, root.attributes)
+        self.made_of[root] = self.made[0]
+        self.report_hrefs(hrefs)
+        report = self.reporter()
+        for child in root.children:
+            report(child)
+        self.CurrentByteIndex = self.origins.ends[root.origin]
+        self.EndElementHandler(root.tag)
         self.outside(self.tree.epilog)
 
-    def element(self, node: Node, tag: str) -> None:
-        """Report a node and everything in it."""
-        if node.comments:
-            self.outside(node.comments)
-        attributes = node.attributes
-        if node.type:
-            attributes["xsi:type"] = "am:" + node.type
+    def reporter(self) -> Callable[[Node], None]:
+        """What reports a node and everything in it, with all that it needs in local names: it runs once per node."""
+        made, made_of, starts, ends = self.made, self.made_of, self.origins.starts, self.origins.ends
+
+        def report(node: Node) -> None:
+            if node.comments:
+                self.outside(node.comments)
+            tag, attributes, origin = node._tag, node.attributes, node.origin
+            if node._type:
+                attributes["xsi:type"] = "am:" + node._type
+            hrefs = self.refer(node) if node.references else None
+            self.CurrentByteIndex = starts[origin]
+            before = len(made)
+            # The reader changes its handlers while it skips something.
+            self.StartElementHandler(tag, attributes)
+            if len(made) > before:
+                made_of[node] = made[-1]
+            if hrefs:
+                self.report_hrefs(hrefs)
+            for child in node.children:
+                report(child)
+            self.CurrentByteIndex = ends[origin]
+            self.EndElementHandler(tag)
+
+        return report
+
+    def refer(self, node: Node) -> list[tuple[str, str]]:
+        """Write the references of a node as attributes; those that must be elements, because a target is in another file."""
         hrefs: list[tuple[str, str]] = []
         for name, targets in node.references.items():
             texts, is_local = self.texts.of_targets(targets, self.tree.root)
             if is_local:
-                attributes[name] = texts[0] if len(texts) == 1 else " ".join(texts)
+                node.attributes[name] = texts[0] if len(texts) == 1 else " ".join(texts)
             else:
                 hrefs += [(name, text) for text in texts]
-        origin = node.origin
-        self.CurrentByteIndex = start = self.origins.starts[origin]
-        before = len(self.made)
-        self.StartElementHandler(tag, attributes)
-        if len(self.made) > before:
-            self.made_of[node] = self.made[-1]
+        return hrefs
+
+    def report_hrefs(self, hrefs: list[tuple[str, str]]) -> None:
+        """Report references as elements, at the present place."""
         for name, text in hrefs:
-            self.CurrentByteIndex = start
             self.StartElementHandler(name, {"href": "amlt:/#" + text})
             self.EndElementHandler(name)
-        for child in node.children:
-            self.element(child, child.tag)
-        self.CurrentByteIndex = self.origins.ends[origin]
-        self.EndElementHandler(tag)
 
     def outside(self, comments: list[str]) -> None:
         """Report comments and processing instructions."""

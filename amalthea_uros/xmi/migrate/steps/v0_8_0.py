@@ -46,18 +46,18 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
 def _change_values(models: ModelSet, notes: Notes, official: bool) -> None:
     """Classes and units that occur in many places."""
     units = _SIZE_UNITS if official else _SIZE_UNITS | _RATE_UNITS
-    for node in models.walk():
-        unit = node.attributes.get("unit", "")
-        if unit in units:
+    for node in models.index.all():
+        if "unit" in node.attributes and (unit := node.attributes["unit"]) in units:
             node.attributes["unit"] = units[unit]
             notes.renamed(node, f"unit {unit} -> {units[unit]}", attribute="unit")
-        if node.type in _TIMES:
-            # The official converter knows only these two places.
-            if not official or node.enclosing("stimulusDeviation", "customProperties") is not None:
-                notes.renamed(node, f"{node.type} -> {_TIMES[node.type]}")
-                node.type = _TIMES[node.type]
-        elif node.type == "ProbabiltitySwitch" and not (official and node.enclosing("isrs") is not None):
-            # The official converter forgets interrupt service routines.
+    for node in models.of_type(*_TIMES):
+        # The official converter knows only these two places.
+        if not official or node.enclosing("stimulusDeviation", "customProperties") is not None:
+            notes.renamed(node, f"{node.type} -> {_TIMES[node.type]}")
+            node.type = _TIMES[node.type]
+    for node in models.of_type("ProbabiltitySwitch"):
+        # The official converter forgets interrupt service routines.
+        if not (official and node.enclosing("isrs") is not None):
             node.type = "ProbabilitySwitch"
             notes.renamed(node, "ProbabiltitySwitch -> ProbabilitySwitch")
 
