@@ -113,13 +113,7 @@ class Source:
 
     @cached_property
     def _line_starts(self) -> list[int]:
-        starts = [0]
-        find = self.text.find
-        at = find("\n") + 1
-        while at:
-            starts.append(at)
-            at = find("\n", at) + 1
-        return starts
+        return [0, *(end.end() for end in re.finditer("\n", self.text))]
 
     def position_of(self, element: Element, attribute: str = "") -> Position:
         """Line and column of an object or of one of its attributes (by its XML name).

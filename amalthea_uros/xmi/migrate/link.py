@@ -91,13 +91,17 @@ class _Linker:
     def link(self, one: Parsed) -> None:
         """Link the references of one file."""
         # Ids are mostly UUIDs, which can be told by their first character.
+        found, root = self.found, one.tree.root
         other_ids = {text for text in one.ids if text[:1] not in _STARTS and TYPE_MARK not in text}
         for node in one.nodes:
             attributes = node.attributes
             linked: list[str] | None = None
             for key, text in attributes.items():
                 if text[:1] in _STARTS or TYPE_MARK in text or (other_ids and text.partition(" ")[0] in other_ids):
-                    targets = None if key in _TEXT or _is_text_value(node, key) else self.targets(one, text.split())
+                    if key in _TEXT or _is_text_value(node, key):
+                        continue
+                    known = found.get((text, root))
+                    targets = [known] if known is not None else self.targets(one, text.split())
                     if targets:
                         node.references[key] = targets
                         linked = [*(linked or ()), key]

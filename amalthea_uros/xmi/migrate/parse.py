@@ -126,7 +126,7 @@ class _Parser:
         own = {key: text for key, text in attributes.items() if not key.startswith(("xmlns", f"{xmi}:version", f"{prefix}:"))}
         self.prolog, self.comments = self.comments, []
         self.root = root = Node(tag, attributes=own, origin=self.origins.add(self.offset, -1, tag, own.get("name", "")))
-        self.take_marked(root)
+        self.take_marked(root, own.pop(self.xsi_type, ""))
         self.nodes.append(root)
         self.stack.append(root)
         self.expat.StartElementHandler = self.start_handler()
@@ -136,6 +136,7 @@ class _Parser:
         parser, stack, max_depth, origins = self.expat, self.stack, refusals.MAX_DEPTH, self.origins
         add_start, add_end, add_parent = origins.starts.append, origins.ends.append, origins.parents.append
         add_label, starts, add_node = origins.labels.append, origins.starts, self.nodes.append
+        xsi_type, types = self.xsi_type, self.types
 
         def start(tag: str, attributes: dict[str, str]) -> None:
             parent = stack[-1]
@@ -147,6 +148,9 @@ class _Parser:
                 return
             node: Node = _new(Node)
             node._tag, node._type, node.target_class = tag, "", ""
+            type_text = attributes.pop(xsi_type, "")
+            if type_text:
+                node._type = types.get(type_text) or self.type_of(type_text)
             node.attributes, node.references, node.children = attributes, {}, []
             node.parent, node.comments, node.index = parent, None, None
             node.origin = len(starts)
@@ -158,7 +162,7 @@ class _Parser:
             add_node(node)
             for key in attributes:
                 if ":" in key:
-                    self.take_marked(node)
+                    self.take_marked(node, type_text)
                     break
             if self.comments:
                 node.comments, self.comments = self.comments, []
@@ -173,21 +177,17 @@ class _Parser:
         self.hrefs.append(Href(holder, tag, _href(attributes["href"]), self.type_of(attributes.get(self.xsi_type, ""))))
         self.stack.append(None)
 
-    def take_marked(self, node: Node) -> None:
-        """Take the attributes with a prefix away from a node; nothing of a model has one."""
+    def take_marked(self, node: Node, type_text: str) -> None:
+        """Take the attributes with a prefix away from a node, of which `xsi:type` was taken; nothing of a model has one."""
         attributes = node.attributes
-        if len(attributes) == 1 and self.xsi_type in attributes:
-            node._type = self.type_of(attributes.pop(self.xsi_type))
-            return
         keys = [key for key in attributes if ":" in key]
         declared = {key: attributes.pop(key) for key in keys if key.startswith("xmlns:")}
         if declared:
             self.declare_packages(declared)
+        node._type = self.type_of(type_text)
         for key in keys:
             if key == self.xmi_id:
                 self.ids.setdefault(attributes.pop(key), node)
-            elif key == self.xsi_type:
-                node._type = self.type_of(attributes.pop(key))
             elif key not in declared:
                 self.notes.lost(node, "attribute of another namespace", f"{key}={attributes.pop(key)!r}", key)
 
