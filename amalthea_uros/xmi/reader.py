@@ -22,6 +22,7 @@ from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.xmi import refusals
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.finding_collector import CollectedFinding, FindingCollector
+from amalthea_uros.xmi.handlers import Handlers, connect, disconnect
 from amalthea_uros.xmi.header import XSI_NAMESPACE, Header, NotAModelError, read_header
 from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
 
@@ -112,7 +113,7 @@ def _finish(reader: _Reader) -> ReadResult:
     try:
         return reader.read()
     finally:
-        reader.disconnect()
+        disconnect(reader.parser)
 
 
 class _Reader:
@@ -142,25 +143,22 @@ class _Reader:
 
     def read(self) -> ReadResult:
         parser = self.parser
-        parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
-        parser.buffer_text = True
-        parser.StartDoctypeDeclHandler = self.refuse_doctype
-        parser.StartElementHandler = self.start_root
-        parser.EndElementHandler = self.end_part
-        parser.CharacterDataHandler = self.characters
-        parser.CommentHandler = self.comment
-        parser.ProcessingInstructionHandler = self.processing_instruction
+        text = self.content.text
+        handlers = Handlers(
+            self.start_root,
+            self.end_part,
+            self.characters,
+            self.comment,
+            self.processing_instruction,
+            self.refuse_doctype,
+        )
+        connect(parser, text, handlers)
         try:
             # As str: then offsets count UTF-8 bytes, whatever the encoding of the file.
-            parser.Parse(self.content.text, True)
+            parser.Parse(text, True)
         except expat.ExpatError as error:
             raise self.malformed(error) from None
         return self.result()
-
-    def disconnect(self) -> None:
-        """Break the cycle of parser and reader, which would keep the text alive until the next collection."""
-        for handler in ("StartElement", "EndElement", "CharacterData", "Comment", "ProcessingInstruction", "StartDoctypeDecl"):
-            setattr(self.parser, f"{handler}Handler", None)
 
     def result(self) -> ReadResult:
         root, header = self.elements[0], self.header

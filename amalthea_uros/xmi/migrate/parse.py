@@ -10,6 +10,7 @@ from xml.parsers import expat
 
 from amalthea_uros.xmi import refusals
 from amalthea_uros.xmi.files import FileText
+from amalthea_uros.xmi.handlers import Handlers, connect, disconnect
 from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
 from amalthea_uros.xmi.migrate.model_set import Origins, Tree
 from amalthea_uros.xmi.migrate.node import Node
@@ -64,7 +65,7 @@ def parse(path: Path, content: FileText, origins: Origins, notes: Notes) -> Pars
     try:
         return parser.parse()
     finally:
-        parser.disconnect()
+        disconnect(parser.expat)
 
 
 class _Parser:
@@ -86,14 +87,15 @@ class _Parser:
 
     def parse(self) -> Parsed:
         parser = self.expat
-        parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
-        parser.buffer_text = True
-        parser.StartDoctypeDeclHandler = self.refuse_doctype
-        parser.StartElementHandler = self.start_root
-        parser.EndElementHandler = self.end
-        parser.CharacterDataHandler = self.characters
-        parser.CommentHandler = lambda data: self.comments.append(f"<!--{data}-->")
-        parser.ProcessingInstructionHandler = lambda target, data: self.comments.append(f"<?{target} {data}?>")
+        handlers = Handlers(
+            self.start_root,
+            self.end,
+            self.characters,
+            lambda data: self.comments.append(f"<!--{data}-->"),
+            lambda target, data: self.comments.append(f"<?{target} {data}?>"),
+            self.refuse_doctype,
+        )
+        connect(parser, self.content.text, handlers)
         self.origins.begin_file(self.path, self.content.text)
         try:
             # As str: then offsets count UTF-8 bytes, whatever the encoding of the file.
@@ -106,11 +108,6 @@ class _Parser:
         names = {node.tag for node in self.nodes} | {node.type for node in self.nodes}
         tree = Tree(self.path, self.content, self.version, self.root, self.prolog, self.comments, frozenset(names))
         return Parsed(tree, self.nodes, self.hrefs, self.ids)
-
-    def disconnect(self) -> None:
-        """Break the cycle of both parsers, which would keep the text alive until the next collection."""
-        for handler in ("StartElement", "EndElement", "CharacterData", "Comment", "ProcessingInstruction", "StartDoctypeDecl"):
-            setattr(self.expat, f"{handler}Handler", None)
 
     def start_root(self, name: str, attributes: dict[str, str]) -> None:
         prefixes = {key.partition(":")[2]: uri for key, uri in attributes.items() if key.startswith("xmlns")}
