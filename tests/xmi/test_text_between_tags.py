@@ -34,5 +34,5 @@ def test_a_greater_than_sign_in_a_value_is_no_text(tmp_path: Path) -> None:
     model = (
         f'<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0" {_NAMESPACES}>\n  <swModel>\n    <labels name="a>b" '
     )
-    path.write_text(f'{model}xmi:id="a>b?type=Label"/>\n  </swModel>\n</am:Amalthea>\n')
+    path.write_text(f'{model}xmi:id="a%3Eb?type=Label"/>\n  </swModel>\n</am:Amalthea>\n')
     assert not load(path).findings
