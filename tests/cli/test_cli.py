@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from support import DATA
@@ -119,6 +120,18 @@ def test_a_closed_pipe_is_no_error():
     command = f"{sys.executable} -m amalthea_uros info {BRAKE} | head -1"
     run = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
     assert run.stderr == ""
+
+
+@pytest.mark.parametrize("arguments", [("info", BRAKE), ("rules",), ("--help",)])
+def test_output_that_cannot_be_written_is_said(arguments):
+    full = Path("/dev/full")
+    if not full.exists():
+        pytest.skip("this system has no /dev/full")
+    with full.open("w") as stream:
+        command = [sys.executable, "-m", "amalthea_uros", *map(str, arguments)]
+        run = subprocess.run(command, stdout=stream, stderr=subprocess.PIPE, text=True, check=False)
+    assert run.returncode == 2
+    assert run.stderr == "amuros: the output cannot be written: No space left on device\n"
 
 
 def test_a_zipped_model(brake):
