@@ -13,7 +13,6 @@ from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.event_models import Downsampled, EventModel, Multiplied, aggregated
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 
@@ -45,7 +44,6 @@ class Activations:
 
     system: System
     dataflow: Dataflow
-    _positions: list[ActivityPosition] = field(default_factory=list)
     _incomplete: str = ""
     _triggers: dict[str, list[Cause]] = field(default_factory=dict)
 
@@ -54,13 +52,14 @@ class Activations:
             return
         for name in self.system.processes:
             try:
-                self._positions += [position for position in self.dataflow.events.positions(name) if position.times > 0]
+                positions = self.dataflow.events.positions(name)
             except UnresolvedError as error:
                 self._incomplete = str(error)
-        for position in self._positions:
-            if isinstance(position.activity, Trigger):
-                causes = self._triggers.setdefault(position.activity.stimulus, [])
-                causes.append(Cause(position.process, position.times, position.activity.counter))
+                continue
+            for position in positions:
+                if isinstance(position.activity, Trigger) and position.times > 0:
+                    causes = self._triggers.setdefault(position.activity.stimulus, [])
+                    causes.append(Cause(position.process, position.times, position.activity.counter))
 
     def of(self, process: Process, output: Output = as_activated) -> EventModel:
         """The event model of the activations of a process.

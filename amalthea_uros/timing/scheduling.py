@@ -20,6 +20,10 @@ from amalthea_uros.timing.allocation import deciding_scheduler
 from amalthea_uros.timing.notes import Notes
 from amalthea_uros.units import Time
 
+#: The parameter of OSEK schedulers, which is mandatory in APP4MC; 0 was the value of a task without group when it was an attribute
+#: (`osekTaskGroup`, until 0.8.0).
+_GROUP, _NO_GROUP = "taskGroup", 0
+
 #: Policies that serve the highest priority first, as far as there is an analysis for them.
 _BY_PRIORITY = {Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN}
 #: Other names of policies, in lower case; since AMALTHEA 2.0 only the name identifies a policy.
@@ -219,6 +223,8 @@ class Scheduling:
             message = f"the policy {policy!r} of the scheduler {scheduler.name!r} cannot be analysed"
             self.notes.warning("ANA002", message, scheduler)
             raise NotSchedulableError(f"there is no analysis for the policy {policy} of its scheduler {scheduler.name!r}")
+        if policy == Policy.OSEK and parameters.of(scheduler, _GROUP) == _NO_GROUP:
+            self.notes.assume(f"task group {_NO_GROUP} of OSEK schedulers means that a task is in no group")
         return by_policy(scheduler, parameters, base)
 
     def _serves_one(self, scheduler: Scheduler) -> bool:
@@ -361,9 +367,8 @@ def _fixed_priority(_scheduler: Scheduler, parameters: _Parameters, base: Schedu
 
 
 def _osek(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
-    found, group = _fixed_priority(scheduler, parameters, base), parameters.of(scheduler, "taskGroup")
-    # The parameter is mandatory in APP4MC, and 0 was the value of a task without group when it was an attribute (`osekTaskGroup`).
-    return found if group in (None, 0) else replace(found, group=f"{scheduler.name}/{group}")
+    found, group = _fixed_priority(scheduler, parameters, base), parameters.of(scheduler, _GROUP)
+    return found if group in (None, _NO_GROUP) else replace(found, group=f"{scheduler.name}/{group}")
 
 
 def _round_robin(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:

@@ -147,7 +147,9 @@ class TestPolicies:
             ("high", 100, [ticks(2)], {"scheduler": "root", "priority": 2, "parameters": none}),
             ("low", 100, [ticks(10)], {"scheduler": "root", "priority": 1, "parameters": none}),
         ]
-        assert worst(system([root()], tasks)) == {"high": 2, "low": 12}
+        built = system([root()], tasks)
+        assert worst(built) == {"high": 2, "low": 12}
+        assert "task group 0 of OSEK schedulers means that a task is in no group" in analyze_system(built).assumptions
 
     def test_waiting_for_events_has_no_bound(self):
         built = system([root()], [("T", 10, [ticks(1), WaitEvent(events=("e",))], {"scheduler": "root", "priority": 1})])
