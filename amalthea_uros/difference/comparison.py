@@ -151,10 +151,7 @@ class _Comparison:
     # Comparison
 
     def versions(self) -> None:
-        old, new = (
-            ", ".join(sorted({document.migrated_from or document.version for document in model.documents}))
-            for model in self.models
-        )
+        old, new = (", ".join(sorted({document.file_version for document in model.documents})) for model in self.models)
         if old != new:
             old_root, new_root = (model.documents[0].root for model in self.models)
             self.change(old_root, new_root, VERSION_FEATURE, old, new)

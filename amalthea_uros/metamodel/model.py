@@ -66,6 +66,11 @@ class Document:
         object.__setattr__(root, "_document", self)
 
     @property
+    def file_version(self) -> str:
+        """The AMALTHEA version that the file has, also if the document was migrated while it was read."""
+        return self.migrated_from or self.version
+
+    @property
     def facts_version(self) -> str:
         """The version whose facts apply: that of the file, or the nearest older one."""
         return nearest_version(self.version)

@@ -27,6 +27,11 @@ _JAVA_DEFAULTS = {
 }
 
 
+def spelled(version: str) -> str:
+    """A version in a sentence: "AMALTHEA 0.7.2"; those of the ITEA project, which came before APP4MC, are "ITEA 1.3.0"."""
+    return version if version.startswith("ITEA ") else f"AMALTHEA {version}"
+
+
 @cache
 def version_key(version: str) -> tuple[int, ...]:
     """Sort key of a version such as "0.9.7"."""

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.xmi.migrate.notes import Kind as Kind
-from amalthea_uros.xmi.migrate.versions import spelled as spelled
 
 
 class FileState(StrEnum):

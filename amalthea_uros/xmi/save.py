@@ -9,6 +9,7 @@ from amalthea_uros._internal import files
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.model import Document, Model
+from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.xmi.files import ZIP_ENTRY, FileText, not_writable, write_text
 from amalthea_uros.xmi.load import SUFFIX, StrPath
 from amalthea_uros.xmi.migrate.versions import migrated_name
@@ -97,7 +98,7 @@ def _require_version(model: Model, version: str) -> None:
 
 def _not_over_the_old_file(document: Document, path: Path) -> Finding:
     message = (
-        f"the file has AMALTHEA {document.migrated_from}, but the model was migrated to {document.version} when it was loaded"
+        f"the file has {spelled(document.file_version)}, but the model was migrated to {document.version} when it was loaded"
     )
     advice = (
         f"Save it to another file, or replace this one with save(model, version={document.version!r}); "

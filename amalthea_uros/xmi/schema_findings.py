@@ -14,7 +14,7 @@ def schema_findings(document: Document) -> list[Finding]:
         return []
     try:
         # The file of a model that was migrated in memory still has its old version.
-        problems = validate(source.text.encode(), document.migrated_from or document.version)
+        problems = validate(source.text.encode(), document.file_version)
     except NoSchemaError as error:
         return [Finding("XSD000", Severity.WARNING, str(error), Location(path))]
     return [

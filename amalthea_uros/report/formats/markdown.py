@@ -17,8 +17,8 @@ def write(result: MigrationResult, stream: IO[str]) -> None:
 
 
 def _lines(result: MigrationResult) -> Iterator[str]:
+    from amalthea_uros.metamodel.versions import spelled
     from amalthea_uros.report.migration import steps, summary
-    from amalthea_uros.services.migration import spelled
 
     yield from (f"# Migration to {spelled(result.version)}", "", summary(result), "", "## Files", "")
     files = [(file.path, file.version or "unknown", file.state, file.target or "") for file in result.files]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.report.findings import joined
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.wording import counted
@@ -16,4 +17,4 @@ def write(result: FixResult, terminal: Terminal) -> None:
     for path in result.descriptions:
         terminal.line(f"{path}: a description is not repaired, only its author knows what is meant")
     for path, version in result.older:
-        terminal.line(f"{path}: a model of AMALTHEA {version} is not repaired; migrate it first: amuros migrate {path}")
+        terminal.line(f"{path}: a model of {spelled(version)} is not repaired; migrate it first: amuros migrate {path}")

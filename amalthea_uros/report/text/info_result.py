@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.metamodel.summary import ModelSummary
+from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.wording import counted
 from amalthea_uros.services.info import InfoResult
@@ -18,10 +19,9 @@ def write(result: InfoResult, terminal: Terminal) -> None:
     for document in summary.documents:
         size = f"{document.characters / 1000:,.1f} kB" + (", zipped" if document.compressed else "")
         path = terminal.style(document.path, "1")
-        version = f"AMALTHEA {document.version}"
+        version = spelled(document.version)
         if document.migrated_from is not None:
-            old = document.migrated_from
-            version = f"{old if old.startswith('ITEA') else f'AMALTHEA {old}'}, migrated to {document.version} in memory"
+            version = f"{spelled(document.migrated_from)}, migrated to {document.version} in memory"
         terminal.line(f"{path}: {version}, {document.objects:,} objects, {size}")
     if summary.unresolved:
         terminal.line(f"  {counted(summary.unresolved, 'unresolved reference')}")

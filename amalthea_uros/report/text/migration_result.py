@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.report.migration import steps, summary
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.migrate import MigrationResult
-from amalthea_uros.services.migration import spelled
 
 #: Longer examples, such as a whole element as text, are cut.
 _WIDTH = 60

@@ -14,7 +14,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.metamodel.versions import newest_version
+from amalthea_uros.metamodel.versions import newest_version, spelled
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.migrate.chain import migrate, version_of_content
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
@@ -22,7 +22,7 @@ from amalthea_uros.xmi.migrate.notes import Kind, Note, Notes
 from amalthea_uros.xmi.migrate.read_set import read_set
 from amalthea_uros.xmi.migrate.steps import DOWN
 from amalthea_uros.xmi.migrate.tree_reader import read_trees
-from amalthea_uros.xmi.migrate.versions import VERSIONS, is_known, is_older, position, spelled
+from amalthea_uros.xmi.migrate.versions import VERSIONS, is_known, is_older, position
 from amalthea_uros.xmi.migrate.write import tree_text
 from amalthea_uros.xmi.reader import ReadResult, read
 from amalthea_uros.xmi.references import resolve

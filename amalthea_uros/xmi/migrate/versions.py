@@ -55,11 +55,6 @@ def itea_package(namespace: str) -> str:
     return itea[2] if itea else ""
 
 
-def spelled(version: str) -> str:
-    """A version in a sentence: "AMALTHEA 0.7.2", "ITEA 1.3.0"."""
-    return version if version in ITEA else f"AMALTHEA {version}"
-
-
 def is_older(version: str) -> bool:
     """Whether models of a published version cannot be held by the classes without migration."""
     return version in _POSITIONS and _POSITIONS[version] < _POSITIONS[OLDEST_SUPPORTED]

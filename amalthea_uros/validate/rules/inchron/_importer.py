@@ -14,7 +14,7 @@ _METAMODELS = ("1.2.0", "2.0.0", "2.1.0", "2.2.0", _NEWEST)
 
 def metamodel_of(document: Document) -> str:
     """The version of the metamodel with which am2inc reads a file."""
-    return document.version if document.version in _METAMODELS else _NEWEST
+    return document.file_version if document.file_version in _METAMODELS else _NEWEST
 
 
 def metamodel(element: Element) -> str:

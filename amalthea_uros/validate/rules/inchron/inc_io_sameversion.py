@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Amalthea
+from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.inchron._importer import metamodel_of
@@ -16,7 +17,7 @@ def _check(element: Amalthea, context: Context) -> Iterator[str]:
     document = element.document
     if document in others and metamodel_of(document) != metamodel_of(first):
         other = repr(first.path.name) if first.path else "the first file"
-        yield f"the file uses AMALTHEA {document.version}, but {other} uses {first.version}"
+        yield f"the file uses {spelled(document.file_version)}, but {other} uses {first.file_version}"
 
 
 RULE = ModelRule(

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Amalthea
+from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
@@ -15,8 +16,8 @@ VERSIONS = ("1.2.0", "2.0.0", "2.1.0", "2.2.0", "3.0.0", "3.1.0", "3.2.0", "3.3.
 
 def _check(element: Amalthea, context: Context) -> Iterator[str]:
     document = element.document
-    if document is not None and document.version not in VERSIONS:
-        yield f"AMALTHEA {document.version} is not supported by am2inc"
+    if document is not None and document.file_version not in VERSIONS:
+        yield f"{spelled(document.file_version)} is not supported by am2inc"
 
 
 RULE = ModelRule(
