@@ -5,6 +5,7 @@ from __future__ import annotations
 import codecs
 import os
 import shutil
+import stat
 import tempfile
 from collections.abc import Collection, Mapping
 from contextlib import ExitStack, suppress
@@ -92,53 +93,35 @@ def write_bytes(path: Path, data: bytes) -> None:
     ------
     FileError : the file cannot be written; a former content is untouched.
     """
-    temporary = None
-    try:
-        target = path.resolve()  # a symbolic link remains one: the file that it points to is replaced
-        if target.exists() and not target.is_file() and not target.is_dir():
-            target.write_bytes(data)  # a device or a pipe must not become a file
-            return
-        mode = target.stat().st_mode & 0o777 if target.exists() else 0o666 & ~_umask()
-        descriptor, temporary = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
-        with os.fdopen(descriptor, "wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
-        Path(temporary).chmod(mode)
-        Path(temporary).replace(target)
-        temporary = None
-    except (OSError, ValueError) as error:
-        raise not_writable(path, error) from None
-    finally:
-        if temporary:
-            with suppress(OSError):
-                Path(temporary).unlink()
+    write_all({path: data})
 
 
 def write_all(contents: Mapping[Path, bytes], removed: Collection[Path] = ()) -> None:
-    """Write several files and remove others, all of that or nothing.
+    """Write several files and remove others, all of that or nothing; write to pipes and devices themselves, as the last thing.
 
     Raises
     ------
     FileError : a file cannot be written; all files are as they were.
     """
-    if len(contents) == 1 and not removed:
-        ((path, data),) = contents.items()
-        write_bytes(path, data)
-        return
     with ExitStack() as undo:
-        staged = [(path, _staged(path, data, undo)) for path, data in contents.items()]
-        former = {path: _copied(path, undo) for path in (*contents, *removed)}
-        for path, temporary in staged:
-            undo.callback(_restore, path, former[path])
+        streams = {path: data for path, data in contents.items() if _is_stream(path)}
+        staged = {path: _staged(path, data, undo) for path, data in contents.items() if path not in streams}
+        # A single change happens or not, and needs no way back.
+        is_single = len(contents) + len(removed) == 1
+        former = {} if is_single else {path: _copied(path, undo) for path in (*staged, *removed)}
+        for path in (*staged, *removed):
+            if path in former:
+                undo.callback(_restore, path, former[path])
             try:
-                temporary.replace(path.resolve())
+                if path in staged:
+                    staged[path].replace(path.resolve())  # a symbolic link remains one: the file that it points to is replaced
+                else:
+                    path.unlink(missing_ok=True)
             except OSError as error:
                 raise not_writable(path, error) from None
-        for path in removed:
-            undo.callback(_restore, path, former[path])
+        for path, data in streams.items():
             try:
-                path.unlink(missing_ok=True)
+                path.write_bytes(data)
             except OSError as error:
                 raise not_writable(path, error) from None
         undo.pop_all()
@@ -146,18 +129,34 @@ def write_all(contents: Mapping[Path, bytes], removed: Collection[Path] = ()) ->
             copy.unlink(missing_ok=True)
 
 
+def _is_stream(path: Path) -> bool:
+    """Whether a path is a pipe or a device, which must not become a file."""
+    mode = _mode(path)
+    return mode is not None and not stat.S_ISREG(mode) and not stat.S_ISDIR(mode)
+
+
+def _mode(path: Path) -> int | None:
+    """Kind and permissions of what is at a path, at the end of symbolic links; None if there is nothing."""
+    try:
+        return path.stat().st_mode
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError) as error:
+        raise not_writable(path, error) from None
+
+
 def _staged(path: Path, data: bytes, undo: ExitStack) -> Path:
     """A temporary file beside a file, with what is to be its content."""
+    mode = _mode(path)
+    if mode is not None and stat.S_ISDIR(mode):
+        raise FileError(path, "the file cannot be written: it is a directory")
     try:
-        if path.is_dir():
-            raise FileError(path, "the file cannot be written: it is a directory")
-        mode = path.stat().st_mode & 0o777 if path.exists() else 0o666 & ~_umask()
         temporary = _beside(path, undo)
         with temporary.open("wb") as stream:
             stream.write(data)
             stream.flush()
             os.fsync(stream.fileno())
-        temporary.chmod(mode)
+        temporary.chmod(0o666 & ~_umask() if mode is None else mode & 0o777)
     except (OSError, ValueError) as error:
         raise not_writable(path, error) from None
     return temporary

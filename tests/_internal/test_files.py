@@ -13,6 +13,7 @@ from amalthea_uros._internal.files import (
     marked_encoding,
     read_bytes,
     read_text,
+    write_all,
     write_bytes,
 )
 
@@ -90,3 +91,25 @@ def test_a_pipe_or_a_device_is_written_to_and_stays_what_it_is(tmp_path):
     assert os.read(reader, 100) == b"content"
     os.close(reader)
     assert pipe.is_fifo()
+
+
+def test_several_files_and_a_pipe_are_written_together(tmp_path):
+    pipe, kept = tmp_path / "pipe", tmp_path / "kept"
+    os.mkfifo(pipe)
+    kept.write_bytes(b"old")
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    write_all({pipe: b"content", kept: b"new", tmp_path / "other": b"more"})
+    assert os.read(reader, 100) == b"content"
+    os.close(reader)
+    assert pipe.is_fifo()
+    assert (kept.read_bytes(), (tmp_path / "other").read_bytes()) == (b"new", b"more")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["kept", "other", "pipe"]
+
+
+@pytest.mark.parametrize("others", [0, 1])
+def test_a_circle_of_symbolic_links_is_refused(tmp_path, others):
+    circle = tmp_path / "circle"
+    circle.symlink_to(circle)
+    with pytest.raises(FileError, match="levels of symbolic links"):
+        write_all({circle: b"new", **{tmp_path / str(number): b"" for number in range(others)}})
+    assert [path.name for path in tmp_path.iterdir()] == ["circle"]
