@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from importlib import import_module
+from io import StringIO
 
 import click
 
@@ -57,6 +59,8 @@ def cli() -> None:
 
 def run() -> None:
     """The command as a process of its own: it ends at once, because to free a large model object by object takes a fifth of a run."""
+    if sys.stderr is None:
+        sys.stderr = StringIO()  # closed by the caller, who wants no messages
     code = 0
     try:
         main()
@@ -65,19 +69,19 @@ def run() -> None:
             raise
         code = end.code
     try:
-        sys.stdout.flush()
-        sys.stderr.flush()
+        for stream in filter(None, (sys.stdout, sys.stderr)):
+            stream.flush()
     except OSError as error:
-        code = _not_written(error)
+        code = _failed(error)
     os._exit(code)
 
 
-def _not_written(error: OSError) -> int:
-    """Say why the output is not complete, by the descriptor, because the stream may be the one that failed; the exit code."""
+def _failed(error: OSError) -> int:
+    """Say what could not be read or written, by the descriptor, because the stream may be what failed; the exit code."""
     # The reader of our output is gone, as in `amuros info m.amxmi | head`; that needs no words.
     if not isinstance(error, BrokenPipeError):
-        file = f" {error.filename}" if error.filename else ""
-        os.write(2, f"amuros: the output cannot be written:{file} {error.strerror}\n".encode())
+        what = "the output cannot be written" if error.filename is None else str(error.filename)
+        os.write(2, f"amuros: {what}: {error.strerror or error}\n".encode(errors="replace"))
     return 2
 
 
@@ -86,6 +90,8 @@ def main() -> None:
     from amalthea_uros.errors import AmurosError, InvalidArgumentError
 
     try:
+        if sys.stdout is None:
+            raise OSError(errno.EBADF, "it is closed")
         cli()
     except AmurosError as error:
         from amalthea_uros.report.terminal import Terminal
@@ -96,4 +102,4 @@ def main() -> None:
         click.UsageError(str(error)).show()
         sys.exit(2)
     except OSError as error:
-        sys.exit(_not_written(error))
+        sys.exit(_failed(error))

@@ -130,12 +130,8 @@ class Source:
         index = self.index.get(element)
         if index is None:
             return None
-        offset = self.byte_starts[index]
-        if not self._is_ascii:
-            offset = self.character_offset(offset)
-        starts = self._line_starts
-        line = bisect_right(starts, offset)
-        return line, offset - starts[line - 1] + 1, self._lines.get(line) or self.line(line)
+        line, column = self.position(self.start(index))
+        return line, column, self.line(line)
 
     def position(self, offset: int) -> Position:
         """Line and column of an offset."""

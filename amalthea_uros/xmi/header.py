@@ -13,11 +13,11 @@ from amalthea_uros.metamodel.versions import (
     newest_version,
     version_key,
 )
+from amalthea_uros.xmi.migrate.versions import namespace_version
 
 XMI_NAMESPACE = "http://www.omg.org/XMI"
 XSI_NAMESPACE = "http://www.w3.org/2001/XMLSchema-instance"
 
-_ITEA_VERSION = re.compile(r"http://(?:www\.)?amalthea\.itea2\.org/model/([0-9.]+)").match
 _VERSION = re.compile(r"[0-9]{1,4}(\.[0-9]{1,4}){1,3}").fullmatch
 
 
@@ -73,8 +73,9 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
     prefix, _, local = name.rpartition(":")
     namespace = attributes.get(f"xmlns:{prefix}" if prefix else "xmlns", "")
     if "itea2.org/model" in namespace:
-        number = _ITEA_VERSION(namespace)
-        raise NotAModelError("XMI006", f"ITEA version {number[1] if number else namespace} of AMALTHEA is not known", _VERSIONS)
+        raise NotAModelError(
+            "XMI006", f"{namespace_version(namespace) or namespace} is no known version of AMALTHEA", _VERSIONS
+        )
     if local != "Amalthea" or not prefix or not namespace.startswith(NAMESPACE_PREFIX):
         within = f" in namespace {namespace}" if namespace else ""
         raise NotAModelError(

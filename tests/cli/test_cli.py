@@ -134,6 +134,19 @@ def test_output_that_cannot_be_written_is_said(arguments):
     assert run.stderr == "amuros: the output cannot be written: No space left on device\n"
 
 
+@pytest.mark.parametrize("arguments", [f"info {BRAKE}", "--help"])
+def test_closed_standard_output_is_said(arguments):
+    command = f"{sys.executable} -m amalthea_uros {arguments} >&-"
+    run = subprocess.run(command, shell=True, stderr=subprocess.PIPE, text=True, check=False)
+    assert run.returncode == 2
+    assert run.stderr == "amuros: the output cannot be written: it is closed\n"
+
+
+def test_closed_error_output_keeps_the_exit_code():
+    run = subprocess.run(f"{sys.executable} -m amalthea_uros info nothing.amxmi 2>&-", shell=True, check=False)
+    assert run.returncode == 2
+
+
 def test_a_zipped_model(brake):
     amalthea_uros.save(amalthea_uros.load(brake), compress=True)
     assert brake.read_bytes()[:2] == b"PK"

@@ -46,7 +46,7 @@ UNREADABLE = {
     "ITEA version": (
         b'<central:AMALTHEA xmlns:central="http://www.amalthea.itea2.org/model/1.0.0/central"/>',
         "XMI006",
-        "ITEA version 1.0.0",
+        "ITEA 1.0.0 is no known version",
     ),
     "damaged archive": (b"PK\x03\x04" + bytes(60), "XMI001", "damaged"),
 }

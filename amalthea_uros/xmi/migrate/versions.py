@@ -66,27 +66,37 @@ def migrated_name(name: str, target: str) -> str:
     return name + ".amxmi" if is_sub_model and position(target) >= position("ITEA 1.3.0") else name
 
 
-class _RootFound(Exception):  # noqa: N818 (no error: it ends the search)
-    """Stops the parser at the root element."""
+#: Characters that are parsed at once in search of the root.
+_PIECE = 10_000
 
-    def __init__(self, name: str, attributes: dict[str, str]) -> None:
-        super().__init__(name)
-        self.name, self.attributes = name, attributes
+
+class _Found(Exception):  # noqa: N818 (no error: it ends the search)
+    """Stops the parser at the root element, or at a document type declaration, which is refused elsewhere."""
+
+    def __init__(self, version: str) -> None:
+        super().__init__(version)
+        self.version = version
 
 
 def version_of(text: str) -> str:
     """The AMALTHEA version that a file declares, "" if its root is not that of a model, or if it cannot be read."""
     parser = expat.ParserCreate()
 
-    def start(name: str, attributes: dict[str, str]) -> None:
-        raise _RootFound(name, attributes)
+    def at_root(name: str, attributes: dict[str, str]) -> None:
+        prefix, mark, _ = name.rpartition(":")
+        raise _Found(namespace_version(attributes.get(f"xmlns{mark}{prefix}", "")))
 
-    parser.StartElementHandler = start
+    def at_doctype(*_declaration: object) -> None:
+        raise _Found("")
+
+    parser.StartElementHandler = at_root
+    parser.StartDoctypeDeclHandler = at_doctype
     try:
-        parser.Parse(text[:100_000], False)
-    except _RootFound as root:
-        prefix, mark, _ = root.name.rpartition(":")
-        return namespace_version(root.attributes.get(f"xmlns{mark}{prefix}", ""))
+        # The root is mostly near the start, but comments in front of it may have any length.
+        for start in range(0, len(text), _PIECE):
+            parser.Parse(text[start : start + _PIECE], False)
+    except _Found as found:
+        return found.version
     except expat.ExpatError:
         pass
     return ""
