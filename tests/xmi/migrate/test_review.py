@@ -6,6 +6,7 @@ from inline_models import of_kind, written
 from migration import migrated
 
 import amalthea_uros as amuros
+from amalthea_uros.perf.activities import Execute
 from amalthea_uros.xmi.migrate.notes import Kind
 
 # Clocks
@@ -71,6 +72,44 @@ def test_the_standard_deviation_is_divided_like_the_mean(tmp_path, target, offic
     assert [node.get("sd") for node in values] == expected
     assert {node.get("mean") for node in values} == {"50"}
     assert of_kind(notes, Kind.LOST) == []
+
+
+@pytest.mark.parametrize(("target", "official"), [("0.9.5", False), ("3.3.0", False), ("3.3.0", True)])
+def test_an_upper_bound_that_is_not_stated_is_unknown_beyond_the_official_conversions(tmp_path, target, official):
+    """Execution times of 0 would be a result, where the older model has a gap."""
+    uniform = """<value xsi:type="am:NeedDeviation"><deviation><lowerBound xsi:type="am:LongObject" value="6"/>
+        <distribution xsi:type="am:UniformDistribution"/></deviation></value>"""
+    default = f'<default key="Instructions">{uniform}</default>'
+    need = NEED.format(default=default, value=uniform)
+    hardware = CORES.format(definitions=DEFINITION.format("P") + DEFINITION.format("Q"))
+    rate = """<stimuliModel><stimuli xsi:type="am:VariableRateStimulus" name="V"><occurrencesPerStep>
+        <distribution xsi:type="am:UniformDistribution"/></occurrencesPerStep></stimuli></stimuliModel>"""
+    content = f'<swModel><runnables name="R">{need}</runnables></swModel>{hardware}{rate}'
+    models, notes = migrated(written(tmp_path, "0.9.2", content), target, official)
+    found = [node for tree in models.trees for node in tree.root.walk() if "lowerBound" in node.attributes]
+    is_known = target == "0.9.5" or official
+    assert [(node.get("lowerBound"), node.get("upperBound")) for node in found] == [
+        ("6", "0" * is_known),
+        *[("3", "0" * is_known)] * (1 if official else 2),
+        ("0.0", "0.0" * is_known),
+    ]
+    assert len(of_kind(notes, Kind.TO_CHECK)) == (0 if is_known else 4)
+
+
+def test_execution_times_without_upper_bound_are_no_execution_times(tmp_path):
+    deviation = (
+        '<value xsi:type="am:NeedDeviation"><deviation><distribution xsi:type="am:UniformDistribution"/></deviation></value>'
+    )
+    need = f'<runnableItems xsi:type="am:ExecutionNeed"><default key="Instructions">{deviation}</default></runnableItems>'
+    model = amuros.migrate(written(tmp_path, "0.9.2", f'<swModel><runnables name="R">{need}</runnables></swModel>')).model
+    extraction = amuros.extract(model)
+    assert not states_demand(extraction.system)
+    assert any("upperBound" in finding.message for finding in extraction.findings)
+
+
+def states_demand(system):
+    """Whether something in the runnables of a system has a known demand."""
+    return any(isinstance(item, Execute) for runnable in system.software.runnables for item in runnable.activities)
 
 
 # Hardware

@@ -9,7 +9,7 @@ from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.v0_9_3_ticks import Ticks
-from amalthea_uros.xmi.migrate.steps.v0_9_3_values import CONTINUOUS, TIME, deviation, number
+from amalthea_uros.xmi.migrate.steps.v0_9_3_values import CONTINUOUS, TIME, Values
 from amalthea_uros.xmi.migrate.steps.v0_9_parts import become, by_class
 
 
@@ -46,17 +46,19 @@ _STEP_LIMITS = ("maxIncreasePerStep", "maxDecreasePerStep")
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.9.2."""
     found = by_class(models, (*_DEVIATIONS, *_LATENCIES, "ExecutionNeed"))
-    ticks = Ticks(models, notes, official)
+    values = Values(models, notes, official)
+    ticks = Ticks(models, values, notes, official)
     ticks.convert_needs(found["ExecutionNeed"])
     ticks.convert_overheads(models.nodes("osOverheads"))
     models.rename_classes({"OsInstructions": "OsOverhead"})
     _rename_chunks(models, notes)
     for name in _LATENCIES:
         for node in found[name]:
-            _convert_latency(node, notes, official)
+            _convert_latency(node, values, notes)
+    sensible = Values(models, notes, official=False)
     for name, place in _DEVIATIONS.items():
         for node in found[name]:
-            _convert_deviations(node, place, notes, official)
+            _convert_deviations(node, place, sensible if name in _FAILING else values, notes)
     for node in found["VariableRateStimulus"]:
         _convert_step_limits(node, notes)
 
@@ -68,9 +70,8 @@ def _rename_chunks(models: ModelSet, notes: Notes) -> None:
             notes.renamed(node, message, node.get("chunkProcessingTicks"), "chunkProcessingInstructions")
 
 
-def _convert_latency(node: Node, notes: Notes, official: bool) -> None:
-    owner = node.parent or node
-    stated = number(node, node.tag, owner, notes, official)
+def _convert_latency(node: Node, values: Values, notes: Notes) -> None:
+    stated = values.number(node, node.tag, node.parent or node)
     if stated is None:
         node.remove()
         return
@@ -78,13 +79,15 @@ def _convert_latency(node: Node, notes: Notes, official: bool) -> None:
     notes.converted(node, "a latency has a class of its own for each distribution now", node.type)
 
 
-def _convert_deviations(node: Node, place: _Place, notes: Notes, official: bool) -> None:
+def _convert_deviations(node: Node, place: _Place, values: Values, notes: Notes) -> None:
     for part in node.all(place.part):
         if part.type:
             # Already in the newer form, where a class is always stated.
             part.tag = place.becomes
             continue
-        deviation(part, place.kind, place.becomes, node, notes, official and node.type not in _FAILING)
+        if not values.restate(part, place.kind, place.becomes, node):
+            part.remove()
+            continue
         notes.converted(part, "a deviation has a class of its own for each distribution now", part.type)
 
 

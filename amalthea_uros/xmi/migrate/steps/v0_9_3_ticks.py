@@ -11,7 +11,7 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
-from amalthea_uros.xmi.migrate.steps.v0_9_3_values import number
+from amalthea_uros.xmi.migrate.steps.v0_9_3_values import Values
 from amalthea_uros.xmi.migrate.steps.v0_9_parts import insert_after, keep_comments
 
 #: The key of needs that are instructions, and the category of the feature that says how many of them a cycle executes.
@@ -31,8 +31,9 @@ _OVERHEADS = ("apiOverhead", "isrCategory1Overhead", "isrCategory2Overhead")
 class Ticks:
     """Converts what is stated in instructions; knows how many of them each kind of processing unit executes per cycle."""
 
-    def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
+    def __init__(self, models: ModelSet, values: Values, notes: Notes, official: bool) -> None:
         self.models, self.notes, self.official = models, notes, official
+        self.values = values
         self.known: dict[Node, float | None] = {}
         # Also in files of newer versions: the features of definitions are the same in them.
         definitions = [node for tree in models.trees for node in tree.root.find("hwModel", "definitions")]
@@ -141,7 +142,7 @@ class Ticks:
     def stated(self, entry: Node, tag: str, owner: Node) -> Node | None:
         """The value of an entry in the newer form."""
         value = entry.child("value")
-        return number(value, tag, owner, self.notes, self.official) if value else None
+        return self.values.number(value, tag, owner) if value else None
 
     def fill(self, node: Node, default: Node | None, by_definition: list[tuple[Node, Node]]) -> None:
         """Give an item its default ticks, and those of definitions."""
@@ -186,6 +187,8 @@ class Ticks:
                 entry.refer("key", definition)
                 ticks = entry.add("value", default.type, like=default)
                 ticks.attributes = dict(default.attributes)
+                if default in self.values.unbounded:
+                    self.values.postpone_unbounded(ticks)
                 self.divide(ticks, rate)
 
     def divide(self, ticks: Node, rate: float) -> None:
@@ -232,7 +235,7 @@ class Ticks:
 
     def convert_overhead(self, part: Node) -> None:
         """The part stays, and gets its number as the default. Without a class the official converter fails."""
-        stated = number(part, "default", part, self.notes, self.official)
+        stated = self.values.number(part, "default", part)
         if stated and stated.type == "DiscreteValueConstant":
             stated.attributes.setdefault("value", "0")
         part.type = ""
