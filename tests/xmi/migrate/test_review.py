@@ -74,6 +74,38 @@ def test_the_standard_deviation_is_divided_like_the_mean(tmp_path, target, offic
     assert of_kind(notes, Kind.LOST) == []
 
 
+UNEVEN = """<value xsi:type="am:NeedDeviation"><deviation><lowerBound xsi:type="am:LongObject" value="1"/>
+    <upperBound xsi:type="am:LongObject" value="5"/><distribution xsi:type="am:GaussDistribution">
+    <mean xsi:type="am:LongObject" value="3"/></distribution></deviation></value>"""
+
+
+@pytest.mark.parametrize(
+    ("target", "official", "expected"),
+    [("3.3.0", False, ["1", "0 3 1.5"]), ("0.9.5", False, ["0", "0 2 1"]), ("3.3.0", True, ["0", "0 2 1"])],
+)
+def test_ticks_are_never_less_than_the_instructions_take(tmp_path, target, official, expected):
+    """Otherwise runnables of one instruction each would take no time on a core that executes two per cycle."""
+    needs = [NEED.format(default="", value=value) for value in ('<value xsi:type="am:NeedConstant" value="1"/>', UNEVEN)]
+    hardware = CORES.format(definitions=DEFINITION.format("P"))
+    content = f'<swModel><runnables name="R">{"".join(needs)}</runnables></swModel>{hardware}'
+    models, notes = migrated(written(tmp_path, "0.9.2", content), target, official)
+    values = [node for tree in models.trees for node in tree.root.walk() if node.type.startswith("DiscreteValue")]
+    names = ("value", "lowerBound", "upperBound", "mean")
+    assert [" ".join(node.get(name) for name in names if node.get(name)) for node in values] == expected
+    assert any("upperBound 2 -> 3" in detail for _, detail in of_kind(notes, Kind.CONVERTED)) == (expected[0] == "1")
+
+
+def test_decimals_are_divided_exactly(tmp_path):
+    """7 instructions at 0.7 per cycle are 10 ticks, although 0.7 as a binary number is a little less."""
+    hardware = CORES.format(definitions=DEFINITION.format("P")).replace("2.0", "0.7")
+    need = NEED.format(default="", value='<value xsi:type="am:NeedConstant" value="7"/>')
+    content = f'<swModel><runnables name="R">{need}</runnables></swModel>{hardware}'
+    models, _ = migrated(written(tmp_path, "0.9.2", content), "3.3.0")
+    assert [
+        node.get("value") for tree in models.trees for node in tree.root.walk() if node.type == "DiscreteValueConstant"
+    ] == ["10"]
+
+
 @pytest.mark.parametrize(("target", "official"), [("0.9.5", False), ("3.3.0", False), ("3.3.0", True)])
 def test_an_upper_bound_that_is_not_stated_is_unknown_beyond_the_official_conversions(tmp_path, target, official):
     """Execution times of 0 would be a result, where the older model has a gap."""
