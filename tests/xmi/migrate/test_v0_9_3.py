@@ -386,7 +386,10 @@ def test_chunks(same):
         return runnable(f'<runnableItems xsi:type="am:ChannelSend"><transmissionPolicy {attribute}="10"/></runnableItems>')
 
     notes = same(access("chunkProcessingInstructions"), access("chunkProcessingTicks"))
-    assert notes[-1].attribute == "chunkProcessingInstructions"
+    assert (notes[-1].kind, notes[-1].attribute) == (Kind.RENAMED, "chunkProcessingInstructions")
+    units = hardware(("P", "0.5"))
+    notes = same(access("chunkProcessingInstructions") + units, access("chunkProcessingTicks") + units)
+    assert [detail for _, detail in of_kind(notes, Kind.TO_CHECK)] == ["10"]
 
 
 def overheads(content, more=""):

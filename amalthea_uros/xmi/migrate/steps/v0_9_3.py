@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.v0_9_3_ticks import Ticks
 from amalthea_uros.xmi.migrate.steps.v0_9_3_values import CONTINUOUS, TIME, Values
@@ -51,7 +51,8 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     ticks.convert_needs(found["ExecutionNeed"])
     ticks.convert_overheads(models.nodes("osOverheads"))
     models.rename_classes({"OsInstructions": "OsOverhead"})
-    _rename_chunks(models, notes)
+    # Their ticks are the same on all cores, so that there is no place for a quotient.
+    _rename_chunks(models, Kind.TO_CHECK if ticks.rates else Kind.RENAMED, notes)
     for name in _LATENCIES:
         for node in found[name]:
             _convert_latency(node, values, notes)
@@ -63,11 +64,11 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
         _convert_step_limits(node, notes)
 
 
-def _rename_chunks(models: ModelSet, notes: Notes) -> None:
+def _rename_chunks(models: ModelSet, kind: Kind, notes: Notes) -> None:
     for node in models.nodes("transmissionPolicy"):
         if node.rename("chunkProcessingInstructions", "chunkProcessingTicks"):
             message = "instructions per chunk are ticks now, not divided by the instructions per cycle"
-            notes.renamed(node, message, node.get("chunkProcessingTicks"), "chunkProcessingInstructions")
+            notes.add(kind, node, message, node.get("chunkProcessingTicks"), "chunkProcessingInstructions")
 
 
 def _convert_latency(node: Node, values: Values, notes: Notes) -> None:
