@@ -11,6 +11,7 @@ from amalthea_uros.xmi.migrate.node import Node, proxy, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.hardware.clocks import frequency_of
 from amalthea_uros.xmi.migrate.steps.hardware.tools import copy_of
+from amalthea_uros.xmi.migrate.steps.numbers import whole_number
 
 _LATENCIES = {"R": ("readLatency",), "W": ("writeLatency",), "RW": ("readLatency", "writeLatency")}
 
@@ -138,7 +139,7 @@ class AccessPaths:
     def _sum_of(self, latencies: list[Node], path: Node) -> Node:
         if len(latencies) == 1:
             return latencies[0]
-        values = [_integer(latency.get("value")) for latency in latencies]
+        values = [whole_number(latency.get("value")) for latency in latencies]
         constants = [value for value in values if value is not None]
         if len(constants) == len(latencies):
             latencies[0].attributes["value"] = str(sum(constants))
@@ -168,14 +169,7 @@ class AccessPaths:
 
 def _scale(latency: Node, factor: Fraction) -> None:
     for node in latency.walk():
-        value = _integer(node.get("value"))
+        value = whole_number(node.get("value"))
         if value is not None:
             scaled = value * factor
             node.attributes["value"] = str(floor(scaled) if node.tag == "lowerBound" else ceil(scaled))
-
-
-def _integer(text: str) -> int | None:
-    try:
-        return int(text)
-    except ValueError:
-        return None

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
 
 from amalthea_uros.metamodel.naming import encode
+from amalthea_uros.units import FREQUENCY
+from amalthea_uros.xmi.data_types import format_double, parse_float
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, copy_of, hash_order
 
 _DOMAIN = Shape("quartzes", parts=frozenset({"defaultValue"}))
-_HERTZ = {"": 1, "_undefined_": 1, "Hz": 1, "kHz": 10**3, "MHz": 10**6, "GHz": 10**9}
+_HERTZ = {"": 1, "_undefined_": 1, **FREQUENCY.units}
 
 
 class Clocks:
@@ -103,7 +104,7 @@ class Clocks:
         if frequency is not None and "value" in frequency.attributes:
             factor, value = _number(ratio), _number(frequency.get("value"))
             if factor is not None and value is not None:
-                frequency.attributes["value"] = java_text(value * factor)
+                frequency.attributes["value"] = format_double(value * factor)
             elif not self.official:
                 # Without a number this is not the frequency of the quartz either.
                 self.notes.lost(made, "frequency behind a prescaler: not a number", f"{frequency.get('value')} x {ratio}")
@@ -121,20 +122,7 @@ def frequency_of(domain: Node | None) -> Fraction | None:
 
 def _number(text: str) -> float | None:
     try:
-        number = float(text)
+        number = parse_float(text)
     except ValueError:
         return None
     return number if isfinite(number) else None
-
-
-def java_text(value: float) -> str:
-    """A number as Java writes it: `2.0E8`.
-
-    >>> java_text(2e8), java_text(100.0), java_text(0.00025)
-    ('2.0E8', '100.0', '2.5E-4')
-    """
-    if value == 0 or 1e-3 <= abs(value) < 1e7:
-        return repr(value)
-    sign, digits, _ = Decimal(repr(value)).normalize().as_tuple()
-    mantissa = "".join(map(str, digits))
-    return f"{'-' if sign else ''}{mantissa[0]}.{mantissa[1:] or '0'}E{Decimal(repr(value)).adjusted()}"
