@@ -84,6 +84,13 @@ class TestClocks:
         assert module(root, "C").target("frequencyDomain") is module(root, "R").target("frequencyDomain")
         assert [node.name for node in root.find("hwModel", "domains")] == ["Q", "Q__2.0"]
 
+    @pytest.mark.parametrize("official", [False, True])
+    def test_a_domain_has_a_name_of_its_own(self, convert, official):
+        """Otherwise a reference by that name would mean the quartz that had it already, and its frequency."""
+        quartzes = QUARTZ + '<quartzes name="Q__0.5"><frequency value="7.0" unit="MHz"/></quartzes>'
+        root, _ = convert(self.prescaled('clockRatio="0.5"', quartzes), official=official)
+        assert domain_of(root) == ("Q__0.5" if official else "Q__0.5 2", "50.0", "MHz")
+
     def test_large_frequencies_are_written_as_java_does(self, convert):
         quartz = '<quartzes name="Q"><frequency value="2.0E8"/></quartzes>'
         root, _ = convert(self.prescaled('clockRatio="0.5"', quartz))

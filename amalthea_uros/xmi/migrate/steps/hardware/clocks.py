@@ -12,6 +12,7 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, copy_of, hash_order
+from amalthea_uros.xmi.migrate.steps.properties import free_key
 
 _DOMAIN = Shape("quartzes", parts=frozenset({"defaultValue"}))
 _HERTZ = {"": 1, "_undefined_": 1, **FREQUENCY.units}
@@ -29,6 +30,7 @@ class Clocks:
         self.notes = notes
         self.official = official
         self.domains: dict[tuple[Node, str], Node] = {}
+        self.names: set[str] = set()
 
     def convert_quartzes(self, models: ModelSet) -> None:
         """Make every quartz a frequency domain of its hardware model."""
@@ -39,6 +41,7 @@ class Clocks:
             for quartz in quartzes:
                 self.notes.converted(quartz, "quartz -> frequency domain")
                 self._convert_quartz(quartz)
+        self.names = {node.name for node in models.parts("hwModel", "domains")}
 
     def _is_convertible(self, quartz: Node) -> bool:
         if quartz.name or (not self.official and quartz.children):
@@ -97,7 +100,7 @@ class Clocks:
         if known is not None:
             return known
         made = self.domains[quartz, ratio] = copy_of(quartz)
-        made.attributes["name"] = f"{encode(quartz.name) if self.official else quartz.name}__{ratio}"
+        made.attributes["name"] = self._name(quartz, ratio)
         assert quartz.parent is not None
         quartz.parent.insert(made)
         frequency = made.child("defaultValue")
@@ -110,6 +113,14 @@ class Clocks:
                 self.notes.lost(made, "frequency behind a prescaler: not a number", f"{frequency.get('value')} x {ratio}")
                 frequency.remove()
         return made
+
+    def _name(self, quartz: Node, ratio: str) -> str:
+        """The name of the domain of a prescaler. References are names, so it must not be that of another domain."""
+        if self.official:
+            return f"{encode(quartz.name)}__{ratio}"
+        name = free_key(f"{quartz.name}__{ratio}", self.names)
+        self.names.add(name)
+        return name
 
 
 def frequency_of(domain: Node | None) -> Fraction | None:
