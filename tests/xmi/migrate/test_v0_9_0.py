@@ -365,6 +365,14 @@ class TestAccessPaths:
         root, _ = convert(on_chip(core, paths), official=True)
         assert self.costs(root)[0] == {"readLatency": "9", "writeLatency": "9"}
 
+    def test_latencies_without_quartz_are_assumed_to_be_in_cycles_of_the_core(self, convert):
+        content = on_chip('<cores name="C"/><memories name="R"/>', path(constant(9)))
+        for official in (False, True):
+            root, notes = convert(content, official=official)
+            assert self.costs(root) == [{"readLatency": "9", "writeLatency": "9"}]
+            assumed = [note.detail for note in notes if note.kind is Kind.DEFAULTED]
+            assert assumed == ([] if official else ["9"])
+
     def test_latencies_of_a_quartz_without_frequency(self, convert):
         more = 'quartz="P?type=Quartz"'
         content = on_chip(

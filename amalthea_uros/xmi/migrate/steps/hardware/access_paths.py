@@ -122,8 +122,9 @@ class AccessPaths:
                     )
                 if stated.get("transferSize", "0") != "0":
                     self.notes.lost(stated, "'transferSize' of latencies", stated.get("transferSize"), "transferSize")
+                latency = self.in_cycles_of(core, stated)
                 for tag in _LATENCIES.get(access, _LATENCIES["RW"]):
-                    costs[tag].append(self.in_cycles_of(core, stated))
+                    costs[tag].append(copy_of(latency))
             else:
                 self.notes.lost(stated, "latency without value", path.name)
 
@@ -153,7 +154,10 @@ class AccessPaths:
         """A copy of a latency in cycles of the core, which is what access elements state; it was in those of the quartz."""
         latency = copy_of(stated)
         quartz, domain = stated.target("quartz"), core.target("frequencyDomain")
-        if quartz is None or quartz is domain:
+        if quartz is None:
+            self.notes.defaulted(stated, "latency without quartz: taken as cycles of the core", stated.get("value"), "quartz")
+            return latency
+        if quartz is domain:
             return latency
         from_frequency, to_frequency = frequency_of(quartz), frequency_of(domain)
         if not from_frequency or not to_frequency:
