@@ -144,6 +144,16 @@ def states_demand(system):
     return any(isinstance(item, Execute) for runnable in system.software.runnables for item in runnable.activities)
 
 
+def test_a_jitter_without_bounds_is_unknown_and_not_none(tmp_path):
+    jitter = '<jitter><distribution xsi:type="am:WeibullParameters" kappa="1.0" lambda="2.0"/></jitter>'
+    stimulus = '<stimuli xsi:type="am:PeriodicStimulus" name="P"><recurrence value="10" unit="ms"/>{}</stimuli>'
+    kinds = []
+    for content in (stimulus.format(jitter), stimulus.format("")):
+        model = amuros.migrate(written(tmp_path, "0.9.2", f"<stimuliModel>{content}</stimuliModel>")).model
+        kinds += [type(found).__name__ for found in amuros.extract(model).system.stimuli.stimuli]
+    assert kinds == ["Custom", "Periodic"]
+
+
 # Hardware
 
 

@@ -95,7 +95,7 @@ class Values:
             if self.official:
                 self.notes.lost(node, _LOST, _summary(node))
                 return False
-            if not _keep_bounds(node, distribution, owner, self.notes):
+            if not _keep_bounds(node, distribution, kind, owner, self.notes):
                 return False
             form = _BOUNDARIES
         elif distribution is not None:
@@ -153,8 +153,8 @@ def _summary(node: Node) -> str:
     return " ".join(texts)
 
 
-def _keep_bounds(node: Node, distribution: Node | None, owner: Node, notes: Notes) -> bool:
-    """Keep what a deviation states without a distribution that has a successor; whether it states bounds."""
+def _keep_bounds(node: Node, distribution: Node | None, kind: str, owner: Node, notes: Notes) -> bool:
+    """Keep what a deviation states without a distribution that has a successor; whether there is something to keep."""
     if distribution is not None:
         stated = {name: text for name, text in distribution.attributes.items() if name in _WEIBULL_PARAMETERS}
         if stated:
@@ -164,6 +164,10 @@ def _keep_bounds(node: Node, distribution: Node | None, owner: Node, notes: Note
         _report_unknown(distribution, set(stated), notes)
     if node.child("lowerBound") or node.child("upperBound"):
         notes.converted(node, "a deviation without a distribution that has a successor: its bounds are Boundaries now")
+        return True
+    if kind == TIME and distribution is not None:
+        # Without it, a stimulus would have no jitter, instead of one of unknown size.
+        notes.to_check(node, "the bounds are mandatory, but were not stated: they are left open")
         return True
     notes.lost(node, "states neither a value nor bounds")
     return False
