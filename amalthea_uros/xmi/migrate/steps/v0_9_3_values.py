@@ -72,10 +72,7 @@ class Values:
         """
         _drop_statistics(node, self.notes)
         inner = node.child(DEVIATIONS.get(node.type, "deviation"))
-        if node.type in DEVIATIONS or (node.type not in CONSTANTS and inner is not None):
-            if inner is None:
-                self.notes.lost(node, "states neither a value nor bounds")
-                return None
+        if inner is not None:
             inner.remove()
             return inner if self.restate(inner, DISCRETE, tag, owner) else None
         attribute = CONSTANTS.get(node.type, "value")
