@@ -164,6 +164,13 @@ def test_needs_without_instructions_are_no_ticks(same):
         assert (message, "FLOP value=3") in of_kind(notes, Kind.LOST)
 
 
+def test_a_need_that_cannot_be_said_is_unknown_and_not_none(same):
+    given = runnable(need(extended("P", 3, "FLOP")))
+    notes = same(given, runnable(ticks()))
+    assert len(of_kind(notes, Kind.TO_CHECK)) == len(of_kind(notes, Kind.LOST)) == 1
+    same(given, runnable(""), official=True)
+
+
 def test_needs_in_groups_and_switches_are_found(same):
     def nest(items):
         inner = f'<items xsi:type="am:RunnableModeSwitch"><defaultEntry>{items}</defaultEntry></items>'

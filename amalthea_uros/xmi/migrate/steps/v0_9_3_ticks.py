@@ -96,8 +96,12 @@ class Ticks:
         if not instructions and not by_definition:
             if others:
                 self.keep_others(node, others)
-            else:
+            elif self.official:
                 emptied.append(node)
+            else:
+                # Without it, the runnable would take no time, instead of an unknown one.
+                node.type = "Ticks"
+                self.notes.to_check(node, "an execution need of which nothing is left is Ticks without a number now")
             return
         if others:
             following[node] = Node(node.tag, "ExecutionNeed", origin=node.origin)
