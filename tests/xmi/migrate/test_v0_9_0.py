@@ -388,6 +388,24 @@ class TestAccessPaths:
         root, _ = convert(on_chip('<cores name="C"/><memories name="R"/>', inner + outer))
         assert self.costs(root) == [{"readLatency": "5", "writeLatency": "2"}, {"readLatency": "15", "writeLatency": "12"}]
 
+    @pytest.mark.parametrize(("bounds", "expected"), [((4, 9), ["6", "11"]), ((4, None), ["6"]), ((None, None), [])])
+    def test_latencies_with_bounds_are_added_up_as_bounds(self, convert, bounds, expected):
+        stated = "".join(
+            f'<{name} xsi:type="am:LongObject" value="{value}"/>'
+            for name, value in zip(("lowerBound", "upperBound"), bounds, strict=True)
+            if value is not None
+        )
+        uniform = '<distribution xsi:type="am:UniformDistribution"/>'
+        deviation = (
+            f'<latencies xsi:type="am:LatencyDeviation" accessType="R"><deviation>{stated}{uniform}</deviation></latencies>'
+        )
+        content = on_chip('<cores name="C"/><memories name="R"/>', path(constant(2, "R") + deviation))
+        root, notes = convert(content)
+        (latency,) = module(root, "C").child("accessElements").children
+        assert (latency.tag, latency.type) == ("readLatency", "LatencyDeviation")
+        assert [node.get("value") for node in latency.find("cycles")[0].children] == expected
+        assert not lost(notes)
+
     def test_a_path_that_is_part_of_itself(self, convert):
         ref = '<latencies xsi:type="am:AccessPathRef" ref="{}?type=LatencyAccessPath"/>'
         paths = path(ref.format("b") + constant(1), name="a") + path(ref.format("a") + ref.format("x"), name="b")

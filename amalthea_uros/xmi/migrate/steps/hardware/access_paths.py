@@ -140,15 +140,19 @@ class AccessPaths:
     def _sum_of(self, latencies: list[Node], path: Node) -> Node:
         if len(latencies) == 1:
             return latencies[0]
-        values = [whole_number(latency.get("value")) for latency in latencies]
-        constants = [value for value in values if value is not None]
+        constants = [value for latency in latencies if (value := whole_number(latency.get("value"))) is not None]
         if len(constants) == len(latencies):
             latencies[0].attributes["value"] = str(sum(constants))
             self.notes.converted(path, "latencies of an access path: added up", " + ".join(map(str, constants)))
             return latencies[0]
-        first = next(latency for latency, value in zip(latencies, values, strict=True) if value is None)
-        self.notes.lost(path, "several latencies of an access path, not all of them constants: one is kept", path.name)
-        return first
+        made = Node("latencies", "LatencyDeviation", origin=path.origin)
+        deviation = made.add("deviation")
+        for name in ("lowerBound", "upperBound"):
+            bounds = [bound for latency in latencies if (bound := _bound(latency, name)) is not None]
+            if len(bounds) == len(latencies):
+                deviation.add(name, "LongObject", value=str(sum(bounds)))
+        self.notes.converted(path, "latencies of an access path: only their bounds are added up", path.name)
+        return made
 
     def in_cycles_of(self, core: Node, stated: Node) -> Node:
         """A copy of a latency in cycles of the core, which is what access elements state; it was in those of the quartz."""
@@ -169,6 +173,12 @@ class AccessPaths:
             _scale(latency, factor)
             self.notes.converted(stated, "latency in cycles of a quartz -> in cycles of the core", f"x {factor}", "quartz")
         return latency
+
+
+def _bound(latency: Node, name: str) -> int | None:
+    """A bound of a latency, which is the value of a constant one; None if it has none."""
+    stated = next(iter(latency.find("deviation", name)), latency)
+    return whole_number(stated.get("value"))
 
 
 def _scale(latency: Node, factor: Fraction) -> None:
