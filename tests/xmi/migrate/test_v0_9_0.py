@@ -123,6 +123,10 @@ class TestClocks:
         assert not module(root, "C").references
         assert "clock ratio of a prescaler without quartz" in lost(notes)
 
+    def test_the_prescaler_of_a_structure_is_lost_and_shown(self, convert):
+        _, notes = convert(on_chip('<prescaler clockRatio="2.0" quartz="Q?type=Quartz"/>'))
+        assert [note.detail for note in notes if note.kind is Kind.LOST] == ["clockRatio=2.0, quartz=Q"]
+
     def test_the_unit_is_stated_after_the_last_version_with_known_official_results(self, convert):
         quartz = '<quartzes name="Q"><frequency value="2.0E8"/></quartzes>'
         content = self.prescaled('clockRatio="0.5"', quartz).replace(
