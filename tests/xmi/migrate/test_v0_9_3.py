@@ -118,6 +118,15 @@ def test_impossible_instructions_per_cycle_divide_nothing(same, value):
     assert ("not a number of instructions per cycle, 1 is taken", value) in of_kind(notes, Kind.DEFAULTED)
 
 
+@pytest.mark.parametrize(("features", "missing"), [("Instructions/IPC_2.0", ["Instructions/IPC_2.0"]), ("FLOP/x", [])])
+def test_instructions_per_cycle_in_a_missing_file_are_reported(tmp_path, features, missing):
+    definition = f'<definitions xsi:type="am:ProcessingUnitDefinition" name="P" features="{features}?type=HwFeature"/>'
+    content = f"{runnable(need(default(10)))}<hwModel>{definition}</hwModel>"
+    _, notes = migrated(written(tmp_path, "0.9.2", content), "0.9.3")
+    message = "the number of instructions per cycle is in no file: 1 is taken"
+    assert of_kind(notes, Kind.DEFAULTED) == [(message, name) for name in missing]
+
+
 def test_what_is_no_number_stays(same):
     units = hardware(("P", "2.0"))
     notes = same(

@@ -47,12 +47,22 @@ class Ticks:
         self.rates = {node: rate for node in self.definitions if (rate := self.rate(node)) is not None and rate != 1}
 
     def rate(self, definition: Node) -> Fraction | None:
-        """Instructions per cycle, None if unknown. The official converter takes the first feature, too."""
+        """Instructions per cycle, None if unknown."""
         if definition not in self.known:
-            features = (feature for feature in definition.references.get("features", ()) if _is_rate(feature))
-            feature = next(features, None)
-            self.known[definition] = self.rate_of(feature) if feature else None
+            self.known[definition] = self.find_rate(definition)
         return self.known[definition]
+
+    def find_rate(self, definition: Node) -> Fraction | None:
+        """The instructions per cycle of the first feature that states them. The official converter takes the first one, too."""
+        features = definition.references.get("features", ())
+        feature = next(filter(_is_rate, features), None)
+        if feature is not None:
+            return self.rate_of(feature)
+        for missing in (each.get("path") for each in features):
+            if missing.startswith(f"{_INSTRUCTIONS}/"):
+                message = "the number of instructions per cycle is in no file: 1 is taken"
+                self.notes.defaulted(definition, message, missing, "features")
+        return None
 
     def rate_of(self, feature: Node) -> Fraction | None:
         """The value of a feature, None if it cannot be the number of instructions per cycle."""
