@@ -340,6 +340,10 @@ class TestAccessPaths:
         assert module(root, "C").children == []
         assert len([message for message in lost(notes) if "access path" in message]) == 3
 
+    def test_a_path_from_a_core_in_no_file(self, convert):
+        _, notes = convert(on_chip('<memories name="R"/>', path(constant(1), source="gone?type=Core")))
+        assert lost(notes) == {"access path from something in no file"}
+
     def test_official_refers_to_a_cache_as_memory(self, convert):
         content = on_chip('<cores name="C"/><memories name="L2" type="T?type=MemoryType"/>', path("", target="L2?type=Memory"))
         root, _ = convert(content.replace("<hwModel>", '<hwModel><memoryTypes name="T" type="CACHE"/>'), official=True)

@@ -39,6 +39,8 @@ class AccessPaths:
             core, target = path.target("source"), path.target("target")
             if path.type != "LatencyAccessPath":
                 self.notes.lost(path, "access path over hardware elements", path.name)
+            elif core is not None and core.is_proxy:
+                self.notes.lost(path, "access path from something in no file", path.name)
             elif core is None or core.type != "ProcessingUnit":
                 self.notes.lost(path, "access path from something other than a core", path.name)
             elif not self.official and (target is None or self._class_of(target) not in _DESTINATIONS):
