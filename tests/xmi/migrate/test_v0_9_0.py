@@ -1,20 +1,15 @@
 """0.8.3 -> 0.9.0: what the vectors do not show."""
 
 import pytest
-from migration import meaning, migrated, opened
+from migration import meaning, migrated, model, opened
 
 from amalthea_uros.xmi.migrate.notes import Kind
-
-HEAD = (
-    '<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/{version}" xmlns:xmi="http://www.omg.org/XMI"'
-    ' xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmi:version="2.0">'
-)
 
 QUARTZ = '<quartzes name="Q"><frequency value="100.0" unit="MHz"/></quartzes>'
 
 
 def write(path, content, version="0.8.3"):
-    path.write_text(f"{HEAD.format(version=version)}{content}</am:Amalthea>")
+    path.write_text(model(version, content), "utf-8")
     return path
 
 
@@ -561,7 +556,7 @@ class TestReferences:
         )[:4]
 
 
-def test_old_content_under_the_new_namespace_is_converted(tmp_path, convert):
+def test_old_content_under_the_new_namespace_is_converted(convert):
     content = on_chip('<cores name="C"/>', before='<coreTypes name="T" instructionsPerCycle="1"/>')
     root, _ = convert(content)
     again, _ = convert(content, version="0.9.0")
@@ -577,11 +572,11 @@ def test_new_content_stays(tmp_path):
         '<modules xsi:type="am:ProcessingUnit" name="C" definition="D?type=ProcessingUnitDefinition">'
         '<ports name="p" portType="initiator" priority="3"/><accessElements name="a">'
         '<readLatency xsi:type="am:LatencyConstant" cycles="2"/>'
-        "</accessElements></modules></structures></hwModel>{}"
+        "</accessElements></modules></structures></hwModel>"
         '<eventModel><events xsi:type="am:ProcessEvent" name="e" processingUnit="C?type=ProcessingUnit"/></eventModel>'
     )
-    models, _ = migrated([write(tmp_path / "a.amxmi", text.format(""), "0.8.3")], "0.9.0")
-    assert meaning(models) == meaning(opened(write(tmp_path / "b.amxmi", text.format(""), "0.9.0")))
+    models, _ = migrated([write(tmp_path / "a.amxmi", text, "0.8.3")], "0.9.0")
+    assert meaning(models) == meaning(opened(write(tmp_path / "b.amxmi", text, "0.9.0")))
     # A core type that is still old uses the category that is there.
     old = text.replace("<hwModel>", '<hwModel><coreTypes name="T" instructionsPerCycle="2"/>')
     models, _ = migrated([write(tmp_path / "a.amxmi", old.format(""), "0.9.0")], "0.9.0")
