@@ -139,6 +139,17 @@ def test_execution_times_without_upper_bound_are_no_execution_times(tmp_path):
     assert any("upperBound" in finding.message for finding in extraction.findings)
 
 
+def test_a_latency_without_upper_bound_is_unknown(tmp_path):
+    deviation = (
+        '<cycles><lowerBound xsi:type="am:LongObject" value="1"/><distribution xsi:type="am:UniformDistribution"/></cycles>'
+    )
+    definition = f"""<hwModel><definitions xsi:type="am:MemoryDefinition" name="M">
+        <accessLatency xsi:type="am:LatencyDeviation">{deviation}</accessLatency></definitions></hwModel>"""
+    models, _ = migrated(written(tmp_path, "0.9.2", definition), "3.3.0")
+    [latency] = models.parts("hwModel", "definitions", "accessLatency")
+    assert (latency.type, latency.attributes) == ("DiscreteValueUniformDistribution", {"lowerBound": "1"})
+
+
 def states_demand(system):
     """Whether something in the runnables of a system has a known demand."""
     return any(isinstance(item, Execute) for runnable in system.software.runnables for item in runnable.activities)

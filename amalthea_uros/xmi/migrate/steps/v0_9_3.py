@@ -10,7 +10,7 @@ from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.v0_9_3_ticks import Ticks
 from amalthea_uros.xmi.migrate.steps.v0_9_3_values import CONTINUOUS, TIME, Values
-from amalthea_uros.xmi.migrate.steps.v0_9_parts import become, by_class
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import by_class, keep_comments
 
 
 class _Place(NamedTuple):
@@ -72,12 +72,16 @@ def _rename_chunks(models: ModelSet, kind: Kind, notes: Notes) -> None:
 
 
 def _convert_latency(node: Node, values: Values, notes: Notes) -> None:
-    stated = values.number(node, node.tag, node.parent or node)
+    if node.parent is None:
+        # Only in damaged files.
+        return
+    stated = values.number(node, node.tag, node.parent)
     if stated is None:
         node.remove()
         return
-    become(node, stated)
-    notes.converted(node, "a latency has a class of its own for each distribution now", node.type)
+    node.replace_by(stated)
+    keep_comments(node, stated)
+    notes.converted(node, "a latency has a class of its own for each distribution now", stated.type)
 
 
 def _convert_deviations(node: Node, place: _Place, values: Values, notes: Notes) -> None:
