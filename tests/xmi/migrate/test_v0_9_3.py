@@ -486,3 +486,10 @@ def test_jitter_of_constraints_is_a_time(same):
 )
 def test_damaged_content_is_survived(tmp_path, content, official):
     migrated(written(tmp_path, "0.9.2", content), "0.9.3", official)
+
+
+@pytest.mark.parametrize("official", [False, True])
+def test_a_root_that_states_a_class_of_parts_is_survived(tmp_path, official):
+    (path,) = written(tmp_path, "0.9.2", "")
+    path.write_text(path.read_text("utf-8").replace("<am:Amalthea ", '<am:Amalthea xsi:type="am:LatencyConstant" '), "utf-8")
+    migrated([path], "0.9.3", official)
