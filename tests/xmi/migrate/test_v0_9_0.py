@@ -513,6 +513,27 @@ class TestReferences:
             assert [each is None for each in memories] == [official] * 3
             assert bool(lost(notes)) == official
 
+    @pytest.mark.parametrize("official", [False, True])
+    def test_references_to_memories_beside_those_to_caches(self, convert, official):
+        memories = '<memories name="e200z6"/><memories name="e200z0"/><memories name="L2" type="T?type=MemoryType"/>'
+        constraint = '<physicalSectionConstraints name="{}" memories="{}"/>'
+        names = "e200z6?type=Memory L2?type=Memory e200z0?type=Memory"
+        constraints = constraint.format("p", names) + constraint.format("q", "L2?type=Memory")
+        content = on_chip(memories, before='<memoryTypes name="T" type="CACHE"/>')
+        root, notes = convert(f"{content}<constraintsModel>{constraints}</constraintsModel>", official=official)
+        some, none = root.find("constraintsModel", "physicalSectionConstraints")
+        expected = ["e200z0", "e200z6"] if official else ["e200z6", "e200z0"]
+        assert [node.name for node in some.references["memories"]] == expected
+        assert "memories" not in none.references
+        details = [note.detail for note in notes if note.message == "'memories': caches cannot be referred to"]
+        assert details == ["L2", "L2"]
+
+    def test_other_limits_have_no_hardware_context(self, convert):
+        limit = '<requirements name="r"><limit xsi:type="am:TimeRequirementLimit" metric="ResponseTime"/></requirements>'
+        root, notes = convert(f"<constraintsModel>{limit}</constraintsModel>")
+        assert root.find("constraintsModel", "requirements", "limit")[0].get("metric") == "ResponseTime"
+        assert not notes
+
     def test_hardware_context(self, convert):
         limit = '<requirements name="r{0}"><limit xsi:type="am:CPUPercentageRequirementLimit" hardwareContext="{0}"/></requirements>'
         limits = limit.format("C?type=Core") + limit.format("E?type=ECU")
