@@ -108,7 +108,7 @@ def test_only_features_of_the_category_instructions_divide(same):
     )
 
 
-@pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "much", ""])
+@pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "NaN", "Infinity", "much", ""])
 def test_impossible_instructions_per_cycle_divide_nothing(same, value):
     units = hardware(("P", value))
     notes = same(
@@ -148,8 +148,9 @@ def test_bounds_and_mean_are_divided_the_standard_deviation_is_not(same):
     )
 
 
-def test_missing_hardware_is_reported(tmp_path):
-    _, notes = migrated(written(tmp_path, "0.9.2", runnable(need(default(1), extended("P", 8)))), "0.9.3")
+@pytest.mark.parametrize("other", ["", '<hwModel><definitions xsi:type="am:MemoryDefinition" name="M"/></hwModel>'])
+def test_missing_hardware_is_reported(tmp_path, other):
+    _, notes = migrated(written(tmp_path, "0.9.2", runnable(need(default(1), extended("P", 8))) + other), "0.9.3")
     assert of_kind(notes, Kind.DEFAULTED) == [
         ("no definition of a processing unit in the files: 1 instruction per cycle is taken", ""),
         ("the definition of a processing unit is in no file: 1 instruction per cycle is taken", ""),
