@@ -97,6 +97,13 @@ class TestClocks:
         assert module(root, "C").target("frequencyDomain").child("defaultValue") is None
         assert "frequency behind a prescaler: not a number" in lost(notes)
 
+    def test_a_negative_ratio_gives_no_frequency(self, convert):
+        root, notes = convert(self.prescaled('clockRatio="-0.5"'))
+        assert module(root, "C").target("frequencyDomain").child("defaultValue") is None
+        assert "frequency behind a prescaler: negative" in lost(notes)
+        root, _ = convert(self.prescaled('clockRatio="-0.5"'), official=True)
+        assert domain_of(root) == ("Q__-0.5", "-50.0", "MHz")
+
     @pytest.mark.parametrize("official", [False, True])
     def test_official_encodes_the_name_of_the_quartz(self, convert, official):
         content = on_chip('<cores name="C"><prescaler clockRatio="0.5" quartz="My+Q?type=Quartz"/></cores>').replace(

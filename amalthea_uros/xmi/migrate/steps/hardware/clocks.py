@@ -106,11 +106,12 @@ class Clocks:
         frequency = made.child("defaultValue")
         if frequency is not None and "value" in frequency.attributes:
             factor, value = _number(ratio), _number(frequency.get("value"))
-            if factor is not None and value is not None:
+            if factor is not None and value is not None and (self.official or factor > 0):
                 frequency.attributes["value"] = format_double(value * factor)
             elif not self.official:
-                # Without a number this is not the frequency of the quartz either.
-                self.notes.lost(made, "frequency behind a prescaler: not a number", f"{frequency.get('value')} x {ratio}")
+                # It is not the frequency of the quartz either.
+                words = "not a number" if factor is None or value is None else "negative"
+                self.notes.lost(made, f"frequency behind a prescaler: {words}", f"{frequency.get('value')} x {ratio}")
                 frequency.remove()
         return made
 
