@@ -90,6 +90,11 @@ def test_entries_of_definitions_are_divided_once(same):
     )
 
 
+def test_definitions_without_need_stay_without(same):
+    units = hardware(("P", "2.0"), ("Q", "4"))
+    same(runnable(need(extended("P", 90))) + units, runnable(ticks(of_definition("P", constant(45, "value")))) + units)
+
+
 def test_the_official_converter_does_not_divide_the_default(same):
     units = hardware(("P", "2.0"))
     same(runnable(need(default(101))) + units, runnable(ticks(constant(101))) + units, official=True)
@@ -477,6 +482,7 @@ def test_jitter_of_constraints_is_a_time(same):
             need(deviation('<lowerBound/><upperBound/><distribution xsi:type="am:GaussDistribution"><mean/></distribution>'))
         ),
         runnable('<runnableItems xsi:type="am:ExecutionNeed"/>'),
+        runnable(need(extended("P", 1).replace(' key="P?type=ProcessingUnitDefinition"', ""))),
         runnable(need("<default key='Instructions'><value/></default>")),
         '<hwModel><definitions xsi:type="am:ProcessingUnitDefinition" features="_gone Instructions/x?type=HwFeature"/></hwModel>'
         + runnable(need(default(3), extended("_gone", 2))),
