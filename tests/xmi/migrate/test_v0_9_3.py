@@ -441,6 +441,19 @@ def test_overheads_are_ticks_of_each_definition(same):
     given = '<apiOverhead><apiSetEvent xsi:type="am:InstructionsConstant" value="9"/></apiOverhead>'
     result = constant(9) + of_definition("P", constant(4, "value"))
     same(overheads(given) + units, overheads(f"<apiOverhead><apiSetEvent>{result}</apiSetEvent></apiOverhead>") + units)
+    plain = f"<apiOverhead><apiSetEvent>{constant(9)}</apiSetEvent></apiOverhead>"
+    same(overheads(given) + units, overheads(plain) + units, official=True)
+    nothing = '<apiOverhead><apiSetEvent xsi:type="am:InstructionsDeviation"/></apiOverhead>'
+    same(overheads(nothing) + units, overheads("<apiOverhead><apiSetEvent/></apiOverhead>") + units)
+
+
+@pytest.mark.parametrize("kind", ["", ' xsi:type="am:InstructionsDeviation"'])
+def test_overheads_with_bounds_beside_custom_properties(same, kind):
+    bounds = bound("lowerBound", 1) + bound("upperBound", 4) + '<distribution xsi:type="am:UniformDistribution"/>'
+    own = text_property("k", "v")
+    given = f"<apiOverhead>{own}<apiSetEvent{kind}>{own}<deviation>{bounds}</deviation></apiSetEvent></apiOverhead>"
+    uniform = '<default xsi:type="am:DiscreteValueUniformDistribution" lowerBound="1" upperBound="4"/>'
+    same(overheads(given), overheads(f"<apiOverhead>{own}<apiSetEvent>{own}{uniform}</apiSetEvent></apiOverhead>"))
 
 
 def test_references_to_overheads_follow_also_into_files_that_are_missing(same):
