@@ -327,6 +327,35 @@ def test_bounds_are_kept_where_no_distribution_is_stated(same):
     same(stimulus(given), stimulus(""), official=True)
 
 
+@pytest.mark.parametrize("name", ["lowerBound", "upperBound"])
+def test_one_bound_is_enough_to_be_kept(same, name):
+    periodic = '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="S">{}</stimuli></stimuliModel>'
+    given = periodic.format(f"<jitter>{bound(name, 20, 'Time')}</jitter>")
+    same(given, periodic.format(f'<jitter xsi:type="am:TimeBoundaries"><{name} value="20"/></jitter>'))
+    notes = same(periodic.format("<jitter/>"), periodic.format(""))
+    assert of_kind(notes, Kind.LOST) == [("states neither a value nor bounds", "")]
+
+
+@pytest.mark.parametrize(
+    ("distribution", "known"), [("BetaDistribution", {"alpha": "1.0"}), ("WeibullParameters", {"kappa": "1.0"})]
+)
+def test_unknown_attributes_of_distributions_are_lost(tmp_path, distribution, known):
+    stated = " ".join(f'{name}="{text}"' for name, text in {**known, "odd": "2"}.items())
+    given = bound("lowerBound", 1) + bound("upperBound", 2) + f'<distribution xsi:type="am:{distribution}" {stated}/>'
+    models, notes = migrated(written(tmp_path, "0.9.2", runnable(need(deviation(given)))), "0.9.3")
+    assert of_kind(notes, Kind.LOST) == [("not an attribute of this class", "odd='2'")]
+    assert not any("odd" in text for node in models.walk() for text in (*node.attributes, *node.attributes.values()))
+
+
+def test_comments_inside_deviations_stay(tmp_path):
+    given = (
+        f"<!-- a -->{bound('lowerBound', 1)}{bound('upperBound', 2)}<!-- b --><distribution xsi:type='am:UniformDistribution'/>"
+    )
+    models, _ = migrated(written(tmp_path, "0.9.2", runnable(need(deviation(given)))), "0.9.3")
+    (found,) = models.parts("swModel", "runnables", "runnableItems", "default")
+    assert sorted(found.comments or ()) == ["<!-- a -->", "<!-- b -->"]
+
+
 def test_the_official_converter_states_every_bound_of_a_time(same):
     def stimulus(content):
         return f'<stimuliModel><stimuli xsi:type="am:RelativePeriodicStimulus" name="S">{content}</stimuli></stimuliModel>'
