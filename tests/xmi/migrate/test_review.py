@@ -6,6 +6,7 @@ from inline_models import of_kind, written
 from migration import migrated
 
 import amalthea_uros as amuros
+from amalthea_uros.perf.activities import Execute
 from amalthea_uros.xmi.migrate.notes import Kind
 
 # Clocks
@@ -71,6 +72,97 @@ def test_the_standard_deviation_is_divided_like_the_mean(tmp_path, target, offic
     assert [node.get("sd") for node in values] == expected
     assert {node.get("mean") for node in values} == {"50"}
     assert of_kind(notes, Kind.LOST) == []
+
+
+UNEVEN = """<value xsi:type="am:NeedDeviation"><deviation><lowerBound xsi:type="am:LongObject" value="1"/>
+    <upperBound xsi:type="am:LongObject" value="5"/><distribution xsi:type="am:GaussDistribution">
+    <mean xsi:type="am:LongObject" value="3"/></distribution></deviation></value>"""
+
+
+@pytest.mark.parametrize(
+    ("target", "official", "expected"),
+    [("3.3.0", False, ["1", "0 3 1.5"]), ("0.9.5", False, ["0", "0 2 1"]), ("3.3.0", True, ["0", "0 2 1"])],
+)
+def test_ticks_are_never_less_than_the_instructions_take(tmp_path, target, official, expected):
+    """Otherwise runnables of one instruction each would take no time on a core that executes two per cycle."""
+    needs = [NEED.format(default="", value=value) for value in ('<value xsi:type="am:NeedConstant" value="1"/>', UNEVEN)]
+    hardware = CORES.format(definitions=DEFINITION.format("P"))
+    content = f'<swModel><runnables name="R">{"".join(needs)}</runnables></swModel>{hardware}'
+    models, notes = migrated(written(tmp_path, "0.9.2", content), target, official)
+    values = [node for tree in models.trees for node in tree.root.walk() if node.type.startswith("DiscreteValue")]
+    names = ("value", "lowerBound", "upperBound", "mean")
+    assert [" ".join(node.get(name) for name in names if node.get(name)) for node in values] == expected
+    assert any("upperBound 2 -> 3" in detail for _, detail in of_kind(notes, Kind.CONVERTED)) == (expected[0] == "1")
+
+
+def test_decimals_are_divided_exactly(tmp_path):
+    """7 instructions at 0.7 per cycle are 10 ticks, although 0.7 as a binary number is a little less."""
+    hardware = CORES.format(definitions=DEFINITION.format("P")).replace("2.0", "0.7")
+    need = NEED.format(default="", value='<value xsi:type="am:NeedConstant" value="7"/>')
+    content = f'<swModel><runnables name="R">{need}</runnables></swModel>{hardware}'
+    models, _ = migrated(written(tmp_path, "0.9.2", content), "3.3.0")
+    assert [
+        node.get("value") for tree in models.trees for node in tree.root.walk() if node.type == "DiscreteValueConstant"
+    ] == ["10"]
+
+
+@pytest.mark.parametrize(("target", "official"), [("0.9.5", False), ("3.3.0", False), ("3.3.0", True)])
+def test_an_upper_bound_that_is_not_stated_is_unknown_beyond_the_official_conversions(tmp_path, target, official):
+    """Execution times of 0 would be a result, where the older model has a gap."""
+    uniform = """<value xsi:type="am:NeedDeviation"><deviation><lowerBound xsi:type="am:LongObject" value="6"/>
+        <distribution xsi:type="am:UniformDistribution"/></deviation></value>"""
+    default = f'<default key="Instructions">{uniform}</default>'
+    need = NEED.format(default=default, value=uniform)
+    hardware = CORES.format(definitions=DEFINITION.format("P") + DEFINITION.format("Q"))
+    rate = """<stimuliModel><stimuli xsi:type="am:VariableRateStimulus" name="V"><occurrencesPerStep>
+        <distribution xsi:type="am:UniformDistribution"/></occurrencesPerStep></stimuli></stimuliModel>"""
+    content = f'<swModel><runnables name="R">{need}</runnables></swModel>{hardware}{rate}'
+    models, notes = migrated(written(tmp_path, "0.9.2", content), target, official)
+    found = [node for tree in models.trees for node in tree.root.walk() if "lowerBound" in node.attributes]
+    is_known = target == "0.9.5" or official
+    assert [(node.get("lowerBound"), node.get("upperBound")) for node in found] == [
+        ("6", "0" * is_known),
+        *[("3", "0" * is_known)] * (1 if official else 2),
+        ("0.0", "0.0" * is_known),
+    ]
+    assert len(of_kind(notes, Kind.TO_CHECK)) == (0 if is_known else 4)
+
+
+def test_execution_times_without_upper_bound_are_no_execution_times(tmp_path):
+    deviation = (
+        '<value xsi:type="am:NeedDeviation"><deviation><distribution xsi:type="am:UniformDistribution"/></deviation></value>'
+    )
+    need = f'<runnableItems xsi:type="am:ExecutionNeed"><default key="Instructions">{deviation}</default></runnableItems>'
+    model = amuros.migrate(written(tmp_path, "0.9.2", f'<swModel><runnables name="R">{need}</runnables></swModel>')).model
+    extraction = amuros.extract(model)
+    assert not states_demand(extraction.system)
+    assert any("upperBound" in finding.message for finding in extraction.findings)
+
+
+def test_a_latency_without_upper_bound_is_unknown(tmp_path):
+    deviation = (
+        '<cycles><lowerBound xsi:type="am:LongObject" value="1"/><distribution xsi:type="am:UniformDistribution"/></cycles>'
+    )
+    definition = f"""<hwModel><definitions xsi:type="am:MemoryDefinition" name="M">
+        <accessLatency xsi:type="am:LatencyDeviation">{deviation}</accessLatency></definitions></hwModel>"""
+    models, _ = migrated(written(tmp_path, "0.9.2", definition), "3.3.0")
+    [latency] = models.parts("hwModel", "definitions", "accessLatency")
+    assert (latency.type, latency.attributes) == ("DiscreteValueUniformDistribution", {"lowerBound": "1"})
+
+
+def states_demand(system):
+    """Whether something in the runnables of a system has a known demand."""
+    return any(isinstance(item, Execute) for runnable in system.software.runnables for item in runnable.activities)
+
+
+def test_a_jitter_without_bounds_is_unknown_and_not_none(tmp_path):
+    jitter = '<jitter><distribution xsi:type="am:WeibullParameters" kappa="1.0" lambda="2.0"/></jitter>'
+    stimulus = '<stimuli xsi:type="am:PeriodicStimulus" name="P"><recurrence value="10" unit="ms"/>{}</stimuli>'
+    kinds = []
+    for content in (stimulus.format(jitter), stimulus.format("")):
+        model = amuros.migrate(written(tmp_path, "0.9.2", f"<stimuliModel>{content}</stimuliModel>")).model
+        kinds += [type(found).__name__ for found in amuros.extract(model).system.stimuli.stimuli]
+    assert kinds == ["Custom", "Periodic"]
 
 
 # Hardware

@@ -1,20 +1,15 @@
 """0.8.3 -> 0.9.0: what the vectors do not show."""
 
 import pytest
-from migration import meaning, migrated, opened
+from migration import meaning, migrated, model, opened
 
 from amalthea_uros.xmi.migrate.notes import Kind
-
-HEAD = (
-    '<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/{version}" xmlns:xmi="http://www.omg.org/XMI"'
-    ' xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmi:version="2.0">'
-)
 
 QUARTZ = '<quartzes name="Q"><frequency value="100.0" unit="MHz"/></quartzes>'
 
 
 def write(path, content, version="0.8.3"):
-    path.write_text(f"{HEAD.format(version=version)}{content}</am:Amalthea>")
+    path.write_text(model(version, content), "utf-8")
     return path
 
 
@@ -84,6 +79,13 @@ class TestClocks:
         assert module(root, "C").target("frequencyDomain") is module(root, "R").target("frequencyDomain")
         assert [node.name for node in root.find("hwModel", "domains")] == ["Q", "Q__2.0"]
 
+    @pytest.mark.parametrize("official", [False, True])
+    def test_a_domain_has_a_name_of_its_own(self, convert, official):
+        """Otherwise a reference by that name would mean the quartz that had it already, and its frequency."""
+        quartzes = QUARTZ + '<quartzes name="Q__0.5"><frequency value="7.0" unit="MHz"/></quartzes>'
+        root, _ = convert(self.prescaled('clockRatio="0.5"', quartzes), official=official)
+        assert domain_of(root) == ("Q__0.5" if official else "Q__0.5 2", "50.0", "MHz")
+
     def test_large_frequencies_are_written_as_java_does(self, convert):
         quartz = '<quartzes name="Q"><frequency value="2.0E8"/></quartzes>'
         root, _ = convert(self.prescaled('clockRatio="0.5"', quartz))
@@ -94,6 +96,13 @@ class TestClocks:
         root, notes = convert(self.prescaled('clockRatio="0.5"', quartz))
         assert module(root, "C").target("frequencyDomain").child("defaultValue") is None
         assert "frequency behind a prescaler: not a number" in lost(notes)
+
+    def test_a_negative_ratio_gives_no_frequency(self, convert):
+        root, notes = convert(self.prescaled('clockRatio="-0.5"'))
+        assert module(root, "C").target("frequencyDomain").child("defaultValue") is None
+        assert "frequency behind a prescaler: negative" in lost(notes)
+        root, _ = convert(self.prescaled('clockRatio="-0.5"'), official=True)
+        assert domain_of(root) == ("Q__-0.5", "-50.0", "MHz")
 
     @pytest.mark.parametrize("official", [False, True])
     def test_official_encodes_the_name_of_the_quartz(self, convert, official):
@@ -115,6 +124,10 @@ class TestClocks:
         root, notes = convert(on_chip('<cores name="C"><prescaler clockRatio="0.5"/></cores>'))
         assert not module(root, "C").references
         assert "clock ratio of a prescaler without quartz" in lost(notes)
+
+    def test_the_prescaler_of_a_structure_is_lost_and_shown(self, convert):
+        _, notes = convert(on_chip('<prescaler clockRatio="2.0" quartz="Q?type=Quartz"/>'))
+        assert [note.detail for note in notes if note.kind is Kind.LOST] == ["clockRatio=2.0, quartz=Q"]
 
     def test_the_unit_is_stated_after_the_last_version_with_known_official_results(self, convert):
         quartz = '<quartzes name="Q"><frequency value="2.0E8"/></quartzes>'
@@ -329,6 +342,10 @@ class TestAccessPaths:
         assert module(root, "C").children == []
         assert len([message for message in lost(notes) if "access path" in message]) == 3
 
+    def test_a_path_from_a_core_in_no_file(self, convert):
+        _, notes = convert(on_chip('<memories name="R"/>', path(constant(1), source="gone?type=Core")))
+        assert lost(notes) == {"access path from something in no file"}
+
     def test_official_refers_to_a_cache_as_memory(self, convert):
         content = on_chip('<cores name="C"/><memories name="L2" type="T?type=MemoryType"/>', path("", target="L2?type=Memory"))
         root, _ = convert(content.replace("<hwModel>", '<hwModel><memoryTypes name="T" type="CACHE"/>'), official=True)
@@ -358,6 +375,14 @@ class TestAccessPaths:
         root, _ = convert(on_chip(core, paths), official=True)
         assert self.costs(root)[0] == {"readLatency": "9", "writeLatency": "9"}
 
+    def test_latencies_without_quartz_are_assumed_to_be_in_cycles_of_the_core(self, convert):
+        content = on_chip('<cores name="C"/><memories name="R"/>', path(constant(9)))
+        for official in (False, True):
+            root, notes = convert(content, official=official)
+            assert self.costs(root) == [{"readLatency": "9", "writeLatency": "9"}]
+            assumed = [note.detail for note in notes if note.kind is Kind.DEFAULTED]
+            assert assumed == ([] if official else ["9"])
+
     def test_latencies_of_a_quartz_without_frequency(self, convert):
         more = 'quartz="P?type=Quartz"'
         content = on_chip(
@@ -372,6 +397,24 @@ class TestAccessPaths:
         outer = path('<latencies xsi:type="am:AccessPathRef" ref="inner?type=LatencyAccessPath"/>' + constant(10), name="outer")
         root, _ = convert(on_chip('<cores name="C"/><memories name="R"/>', inner + outer))
         assert self.costs(root) == [{"readLatency": "5", "writeLatency": "2"}, {"readLatency": "15", "writeLatency": "12"}]
+
+    @pytest.mark.parametrize(("bounds", "expected"), [((4, 9), ["6", "11"]), ((4, None), ["6"]), ((None, None), [])])
+    def test_latencies_with_bounds_are_added_up_as_bounds(self, convert, bounds, expected):
+        stated = "".join(
+            f'<{name} xsi:type="am:LongObject" value="{value}"/>'
+            for name, value in zip(("lowerBound", "upperBound"), bounds, strict=True)
+            if value is not None
+        )
+        uniform = '<distribution xsi:type="am:UniformDistribution"/>'
+        deviation = (
+            f'<latencies xsi:type="am:LatencyDeviation" accessType="R"><deviation>{stated}{uniform}</deviation></latencies>'
+        )
+        content = on_chip('<cores name="C"/><memories name="R"/>', path(constant(2, "R") + deviation))
+        root, notes = convert(content)
+        (latency,) = module(root, "C").child("accessElements").children
+        assert (latency.tag, latency.type) == ("readLatency", "LatencyDeviation")
+        assert [node.get("value") for node in latency.find("cycles")[0].children] == expected
+        assert not lost(notes)
 
     def test_a_path_that_is_part_of_itself(self, convert):
         ref = '<latencies xsi:type="am:AccessPathRef" ref="{}?type=LatencyAccessPath"/>'
@@ -475,7 +518,29 @@ class TestReferences:
             memories.append(root.find("mappingModel", "physicalSectionMapping")[0].target("memory"))
             # The official converter only knows memories that it has converted.
             assert [each is None for each in memories] == [official] * 3
+            assert all("in no file" in message for message in lost(notes))
             assert bool(lost(notes)) == official
+
+    @pytest.mark.parametrize("official", [False, True])
+    def test_references_to_memories_beside_those_to_caches(self, convert, official):
+        memories = '<memories name="e200z6"/><memories name="e200z0"/><memories name="L2" type="T?type=MemoryType"/>'
+        constraint = '<physicalSectionConstraints name="{}" memories="{}"/>'
+        names = "e200z6?type=Memory L2?type=Memory e200z0?type=Memory"
+        constraints = constraint.format("p", names) + constraint.format("q", "L2?type=Memory")
+        content = on_chip(memories, before='<memoryTypes name="T" type="CACHE"/>')
+        root, notes = convert(f"{content}<constraintsModel>{constraints}</constraintsModel>", official=official)
+        some, none = root.find("constraintsModel", "physicalSectionConstraints")
+        expected = ["e200z0", "e200z6"] if official else ["e200z6", "e200z0"]
+        assert [node.name for node in some.references["memories"]] == expected
+        assert "memories" not in none.references
+        details = [note.detail for note in notes if note.message.startswith("'memories': caches")]
+        assert details == ["L2", "L2"]
+
+    def test_other_limits_have_no_hardware_context(self, convert):
+        limit = '<requirements name="r"><limit xsi:type="am:TimeRequirementLimit" metric="ResponseTime"/></requirements>'
+        root, notes = convert(f"<constraintsModel>{limit}</constraintsModel>")
+        assert root.find("constraintsModel", "requirements", "limit")[0].get("metric") == "ResponseTime"
+        assert not notes
 
     def test_hardware_context(self, convert):
         limit = '<requirements name="r{0}"><limit xsi:type="am:CPUPercentageRequirementLimit" hardwareContext="{0}"/></requirements>'
@@ -520,7 +585,7 @@ class TestReferences:
         )[:4]
 
 
-def test_old_content_under_the_new_namespace_is_converted(tmp_path, convert):
+def test_old_content_under_the_new_namespace_is_converted(convert):
     content = on_chip('<cores name="C"/>', before='<coreTypes name="T" instructionsPerCycle="1"/>')
     root, _ = convert(content)
     again, _ = convert(content, version="0.9.0")
@@ -536,11 +601,11 @@ def test_new_content_stays(tmp_path):
         '<modules xsi:type="am:ProcessingUnit" name="C" definition="D?type=ProcessingUnitDefinition">'
         '<ports name="p" portType="initiator" priority="3"/><accessElements name="a">'
         '<readLatency xsi:type="am:LatencyConstant" cycles="2"/>'
-        "</accessElements></modules></structures></hwModel>{}"
+        "</accessElements></modules></structures></hwModel>"
         '<eventModel><events xsi:type="am:ProcessEvent" name="e" processingUnit="C?type=ProcessingUnit"/></eventModel>'
     )
-    models, _ = migrated([write(tmp_path / "a.amxmi", text.format(""), "0.8.3")], "0.9.0")
-    assert meaning(models) == meaning(opened(write(tmp_path / "b.amxmi", text.format(""), "0.9.0")))
+    models, _ = migrated([write(tmp_path / "a.amxmi", text, "0.8.3")], "0.9.0")
+    assert meaning(models) == meaning(opened(write(tmp_path / "b.amxmi", text, "0.9.0")))
     # A core type that is still old uses the category that is there.
     old = text.replace("<hwModel>", '<hwModel><coreTypes name="T" instructionsPerCycle="2"/>')
     models, _ = migrated([write(tmp_path / "a.amxmi", old.format(""), "0.9.0")], "0.9.0")

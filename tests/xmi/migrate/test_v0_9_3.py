@@ -90,6 +90,11 @@ def test_entries_of_definitions_are_divided_once(same):
     )
 
 
+def test_definitions_without_need_stay_without(same):
+    units = hardware(("P", "2.0"), ("Q", "4"))
+    same(runnable(need(extended("P", 90))) + units, runnable(ticks(of_definition("P", constant(45, "value")))) + units)
+
+
 def test_the_official_converter_does_not_divide_the_default(same):
     units = hardware(("P", "2.0"))
     same(runnable(need(default(101))) + units, runnable(ticks(constant(101))) + units, official=True)
@@ -108,7 +113,7 @@ def test_only_features_of_the_category_instructions_divide(same):
     )
 
 
-@pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "much", ""])
+@pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "NaN", "Infinity", "much", ""])
 def test_impossible_instructions_per_cycle_divide_nothing(same, value):
     units = hardware(("P", value))
     notes = same(
@@ -116,6 +121,15 @@ def test_impossible_instructions_per_cycle_divide_nothing(same, value):
         runnable(ticks(constant(10), of_definition("P", constant(8, "value")))) + units,
     )
     assert ("not a number of instructions per cycle, 1 is taken", value) in of_kind(notes, Kind.DEFAULTED)
+
+
+@pytest.mark.parametrize(("features", "missing"), [("Instructions/IPC_2.0", ["Instructions/IPC_2.0"]), ("FLOP/x", [])])
+def test_instructions_per_cycle_in_a_missing_file_are_reported(tmp_path, features, missing):
+    definition = f'<definitions xsi:type="am:ProcessingUnitDefinition" name="P" features="{features}?type=HwFeature"/>'
+    content = f"{runnable(need(default(10)))}<hwModel>{definition}</hwModel>"
+    _, notes = migrated(written(tmp_path, "0.9.2", content), "0.9.3")
+    message = "the number of instructions per cycle is in no file: 1 is taken"
+    assert of_kind(notes, Kind.DEFAULTED) == [(message, name) for name in missing]
 
 
 def test_what_is_no_number_stays(same):
@@ -139,8 +153,9 @@ def test_bounds_and_mean_are_divided_the_standard_deviation_is_not(same):
     )
 
 
-def test_missing_hardware_is_reported(tmp_path):
-    _, notes = migrated(written(tmp_path, "0.9.2", runnable(need(default(1), extended("P", 8)))), "0.9.3")
+@pytest.mark.parametrize("other", ["", '<hwModel><definitions xsi:type="am:MemoryDefinition" name="M"/></hwModel>'])
+def test_missing_hardware_is_reported(tmp_path, other):
+    _, notes = migrated(written(tmp_path, "0.9.2", runnable(need(default(1), extended("P", 8))) + other), "0.9.3")
     assert of_kind(notes, Kind.DEFAULTED) == [
         ("no definition of a processing unit in the files: 1 instruction per cycle is taken", ""),
         ("the definition of a processing unit is in no file: 1 instruction per cycle is taken", ""),
@@ -162,6 +177,13 @@ def test_needs_without_instructions_are_no_ticks(same):
         notes = same(runnable(need(default(7, "FLOP"), extended("P", 3, "FLOP"))), runnable(kept), official=official)
         message = "execution needs of definitions have no keys other than instructions any more"
         assert (message, "FLOP value=3") in of_kind(notes, Kind.LOST)
+
+
+def test_a_need_that_cannot_be_said_is_unknown_and_not_none(same):
+    given = runnable(need(extended("P", 3, "FLOP")))
+    notes = same(given, runnable(ticks()))
+    assert len(of_kind(notes, Kind.TO_CHECK)) == len(of_kind(notes, Kind.LOST)) == 1
+    same(given, runnable(""), official=True)
 
 
 def test_needs_in_groups_and_switches_are_found(same):
@@ -305,6 +327,35 @@ def test_bounds_are_kept_where_no_distribution_is_stated(same):
     same(stimulus(given), stimulus(""), official=True)
 
 
+@pytest.mark.parametrize("name", ["lowerBound", "upperBound"])
+def test_one_bound_is_enough_to_be_kept(same, name):
+    periodic = '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="S">{}</stimuli></stimuliModel>'
+    given = periodic.format(f"<jitter>{bound(name, 20, 'Time')}</jitter>")
+    same(given, periodic.format(f'<jitter xsi:type="am:TimeBoundaries"><{name} value="20"/></jitter>'))
+    notes = same(periodic.format("<jitter/>"), periodic.format(""))
+    assert of_kind(notes, Kind.LOST) == [("states neither a value nor bounds", "")]
+
+
+@pytest.mark.parametrize(
+    ("distribution", "known"), [("BetaDistribution", {"alpha": "1.0"}), ("WeibullParameters", {"kappa": "1.0"})]
+)
+def test_unknown_attributes_of_distributions_are_lost(tmp_path, distribution, known):
+    stated = " ".join(f'{name}="{text}"' for name, text in {**known, "odd": "2"}.items())
+    given = bound("lowerBound", 1) + bound("upperBound", 2) + f'<distribution xsi:type="am:{distribution}" {stated}/>'
+    models, notes = migrated(written(tmp_path, "0.9.2", runnable(need(deviation(given)))), "0.9.3")
+    assert of_kind(notes, Kind.LOST) == [("not an attribute of this class", "odd='2'")]
+    assert not any("odd" in text for node in models.walk() for text in (*node.attributes, *node.attributes.values()))
+
+
+def test_comments_inside_deviations_stay(tmp_path):
+    given = (
+        f"<!-- a -->{bound('lowerBound', 1)}{bound('upperBound', 2)}<!-- b --><distribution xsi:type='am:UniformDistribution'/>"
+    )
+    models, _ = migrated(written(tmp_path, "0.9.2", runnable(need(deviation(given)))), "0.9.3")
+    (found,) = models.parts("swModel", "runnables", "runnableItems", "default")
+    assert sorted(found.comments or ()) == ["<!-- a -->", "<!-- b -->"]
+
+
 def test_the_official_converter_states_every_bound_of_a_time(same):
     def stimulus(content):
         return f'<stimuliModel><stimuli xsi:type="am:RelativePeriodicStimulus" name="S">{content}</stimuli></stimuliModel>'
@@ -386,7 +437,10 @@ def test_chunks(same):
         return runnable(f'<runnableItems xsi:type="am:ChannelSend"><transmissionPolicy {attribute}="10"/></runnableItems>')
 
     notes = same(access("chunkProcessingInstructions"), access("chunkProcessingTicks"))
-    assert notes[-1].attribute == "chunkProcessingInstructions"
+    assert (notes[-1].kind, notes[-1].attribute) == (Kind.RENAMED, "chunkProcessingInstructions")
+    units = hardware(("P", "0.5"))
+    notes = same(access("chunkProcessingInstructions") + units, access("chunkProcessingTicks") + units)
+    assert [detail for _, detail in of_kind(notes, Kind.TO_CHECK)] == ["10"]
 
 
 def overheads(content, more=""):
@@ -416,6 +470,19 @@ def test_overheads_are_ticks_of_each_definition(same):
     given = '<apiOverhead><apiSetEvent xsi:type="am:InstructionsConstant" value="9"/></apiOverhead>'
     result = constant(9) + of_definition("P", constant(4, "value"))
     same(overheads(given) + units, overheads(f"<apiOverhead><apiSetEvent>{result}</apiSetEvent></apiOverhead>") + units)
+    plain = f"<apiOverhead><apiSetEvent>{constant(9)}</apiSetEvent></apiOverhead>"
+    same(overheads(given) + units, overheads(plain) + units, official=True)
+    nothing = '<apiOverhead><apiSetEvent xsi:type="am:InstructionsDeviation"/></apiOverhead>'
+    same(overheads(nothing) + units, overheads("<apiOverhead><apiSetEvent/></apiOverhead>") + units)
+
+
+@pytest.mark.parametrize("kind", ["", ' xsi:type="am:InstructionsDeviation"'])
+def test_overheads_with_bounds_beside_custom_properties(same, kind):
+    bounds = bound("lowerBound", 1) + bound("upperBound", 4) + '<distribution xsi:type="am:UniformDistribution"/>'
+    own = text_property("k", "v")
+    given = f"<apiOverhead>{own}<apiSetEvent{kind}>{own}<deviation>{bounds}</deviation></apiSetEvent></apiOverhead>"
+    uniform = '<default xsi:type="am:DiscreteValueUniformDistribution" lowerBound="1" upperBound="4"/>'
+    same(overheads(given), overheads(f"<apiOverhead>{own}<apiSetEvent>{own}{uniform}</apiSetEvent></apiOverhead>"))
 
 
 def test_references_to_overheads_follow_also_into_files_that_are_missing(same):
@@ -457,6 +524,7 @@ def test_jitter_of_constraints_is_a_time(same):
             need(deviation('<lowerBound/><upperBound/><distribution xsi:type="am:GaussDistribution"><mean/></distribution>'))
         ),
         runnable('<runnableItems xsi:type="am:ExecutionNeed"/>'),
+        runnable(need(extended("P", 1).replace(' key="P?type=ProcessingUnitDefinition"', ""))),
         runnable(need("<default key='Instructions'><value/></default>")),
         '<hwModel><definitions xsi:type="am:ProcessingUnitDefinition" features="_gone Instructions/x?type=HwFeature"/></hwModel>'
         + runnable(need(default(3), extended("_gone", 2))),
@@ -467,3 +535,10 @@ def test_jitter_of_constraints_is_a_time(same):
 )
 def test_damaged_content_is_survived(tmp_path, content, official):
     migrated(written(tmp_path, "0.9.2", content), "0.9.3", official)
+
+
+@pytest.mark.parametrize("official", [False, True])
+def test_a_root_that_states_a_class_of_parts_is_survived(tmp_path, official):
+    (path,) = written(tmp_path, "0.9.2", "")
+    path.write_text(path.read_text("utf-8").replace("<am:Amalthea ", '<am:Amalthea xsi:type="am:LatencyConstant" '), "utf-8")
+    migrated([path], "0.9.3", official)

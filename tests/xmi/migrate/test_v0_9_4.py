@@ -148,6 +148,8 @@ def test_a_label_without_initial_value_has_the_only_mode_of_its_uses(same):
     notes = same(given, model(with_mode, items, old=False))
     message = "a mode label without initial value has the mode of its uses"
     assert of_kind(notes, Kind.DEFAULTED) == [(message, "m 1")]
+    message = "mode label without initial value: its mode, which is mandatory now, is not known"
+    assert of_kind(notes, Kind.TO_CHECK) == [(message, "m 1, n"), (message, "")]
     without = with_mode.replace(' mode="m+1?type=EnumMode"', "")
     same(given, model(without, items, old=False), official=True)
 

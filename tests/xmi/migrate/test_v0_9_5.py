@@ -100,6 +100,13 @@ def test_steps_without_a_counter_keep_it_as_text(same, name):
     assert of_kind(notes, Kind.KEPT) == [(f"{name} has no counter any more", "prescaler=2 offset=1")]
 
 
+@pytest.mark.parametrize("tag", ["tasks", "isrs"])
+def test_the_official_converter_leaves_counters_where_they_are(same, tag):
+    given = process(tag, sequence('name="s"', '<calls xsi:type="am:SchedulePoint"><counter prescaler="2"/></calls>'))
+    result = process(tag, group('name="s"', '<items xsi:type="am:SchedulePoint"><counter prescaler="2"/></items>'))
+    same(given, given if tag == "isrs" else result, official=True)
+
+
 def test_items_of_runnables_keep_their_order_and_the_rest_of_the_runnable(same):
     same(
         '<swModel><runnables name="R" service="true">'

@@ -43,6 +43,19 @@ def test_parallel_chains_with_a_latency_constraint_are_to_be_checked(models):
     assert models.messages(Kind.TO_CHECK) == []
 
 
+@pytest.mark.parametrize("scope", ["c", "outer", "outermost"])
+def test_parallel_chains_are_to_be_checked_also_as_parts_of_chains_with_a_latency_constraint(models, scope):
+    constraint = f'<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="l" scope="{scope}?type=EventChain"/>'
+    segment = '<segments xsi:type="am:EventChainReference" eventChain="{}?type=EventChain"/>'
+    strands = '<strands xsi:type="am:EventChainReference" eventChain="x?type=EventChain"/>'
+    inner = f'<segments xsi:type="am:EventChainContainer"><eventChain {ENDS}>{segment.format("c")}</eventChain></segments>'
+    chain = f"""<eventChains name="c" {ENDS}>{strands}</eventChains><eventChains name="x" {ENDS}>{segment.format("x")}</eventChains>
+        <eventChains name="outer" {ENDS}>{inner}</eventChains>
+        <eventChains name="outermost" {ENDS}>{segment.format("outer")}</eventChains>"""
+    models.migrate("0.9.5", "0.9.7", chains(chain + constraint))
+    assert ["latency constraint" in message for message in models.messages(Kind.TO_CHECK)] == [True]
+
+
 def test_chains_without_ends_are_to_be_checked_once(models):
     models.migrate("0.9.5", "0.9.7", chains('<eventChains name="c"/>'))
     assert len(models.messages(Kind.TO_CHECK)) == 2

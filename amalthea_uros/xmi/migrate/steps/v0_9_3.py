@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.v0_9_3_ticks import Ticks
-from amalthea_uros.xmi.migrate.steps.v0_9_3_values import CONTINUOUS, TIME, deviation, number
-from amalthea_uros.xmi.migrate.steps.v0_9_parts import become, by_class
+from amalthea_uros.xmi.migrate.steps.v0_9_3_values import CONTINUOUS, TIME, Values
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import by_class, keep_comments
 
 
 class _Place(NamedTuple):
@@ -46,45 +46,53 @@ _STEP_LIMITS = ("maxIncreasePerStep", "maxDecreasePerStep")
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.9.2."""
     found = by_class(models, (*_DEVIATIONS, *_LATENCIES, "ExecutionNeed"))
-    ticks = Ticks(models, notes, official)
+    values = Values(models, notes, official)
+    ticks = Ticks(models, values, notes, official)
     ticks.convert_needs(found["ExecutionNeed"])
     ticks.convert_overheads(models.nodes("osOverheads"))
     models.rename_classes({"OsInstructions": "OsOverhead"})
-    _rename_chunks(models, notes)
+    # Their ticks are the same on all cores, so that there is no place for a quotient.
+    _rename_chunks(models, Kind.TO_CHECK if ticks.rates else Kind.RENAMED, notes)
     for name in _LATENCIES:
         for node in found[name]:
-            _convert_latency(node, notes, official)
+            _convert_latency(node, values, notes)
+    sensible = Values(models, notes, official=False)
     for name, place in _DEVIATIONS.items():
         for node in found[name]:
-            _convert_deviations(node, place, notes, official)
+            _convert_deviations(node, place, sensible if name in _FAILING else values, notes)
     for node in found["VariableRateStimulus"]:
         _convert_step_limits(node, notes)
 
 
-def _rename_chunks(models: ModelSet, notes: Notes) -> None:
+def _rename_chunks(models: ModelSet, kind: Kind, notes: Notes) -> None:
     for node in models.nodes("transmissionPolicy"):
         if node.rename("chunkProcessingInstructions", "chunkProcessingTicks"):
             message = "instructions per chunk are ticks now, not divided by the instructions per cycle"
-            notes.renamed(node, message, node.get("chunkProcessingTicks"), "chunkProcessingInstructions")
+            notes.add(kind, node, message, node.get("chunkProcessingTicks"), "chunkProcessingInstructions")
 
 
-def _convert_latency(node: Node, notes: Notes, official: bool) -> None:
-    owner = node.parent or node
-    stated = number(node, node.tag, owner, notes, official)
+def _convert_latency(node: Node, values: Values, notes: Notes) -> None:
+    if node.parent is None:
+        # Only in damaged files.
+        return
+    stated = values.number(node, node.tag, node.parent)
     if stated is None:
         node.remove()
         return
-    become(node, stated)
-    notes.converted(node, "a latency has a class of its own for each distribution now", node.type)
+    node.replace_by(stated)
+    keep_comments(node, stated)
+    notes.converted(node, "a latency has a class of its own for each distribution now", stated.type)
 
 
-def _convert_deviations(node: Node, place: _Place, notes: Notes, official: bool) -> None:
+def _convert_deviations(node: Node, place: _Place, values: Values, notes: Notes) -> None:
     for part in node.all(place.part):
         if part.type:
             # Already in the newer form, where a class is always stated.
             part.tag = place.becomes
             continue
-        deviation(part, place.kind, place.becomes, node, notes, official and node.type not in _FAILING)
+        if not values.restate(part, place.kind, place.becomes, node):
+            part.remove()
+            continue
         notes.converted(part, "a deviation has a class of its own for each distribution now", part.type)
 
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from fractions import Fraction
 from functools import partial
 
+from amalthea_uros.xmi.data_types import parse_float
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
-from amalthea_uros.xmi.migrate.steps.v0_9_3_values import number
+from amalthea_uros.xmi.migrate.steps.numbers import whole_number
+from amalthea_uros.xmi.migrate.steps.v0_9_3_values import Values
 from amalthea_uros.xmi.migrate.steps.v0_9_parts import insert_after, keep_comments
 
 #: The key of needs that are instructions, and the category of the feature that says how many of them a cycle executes.
@@ -20,10 +23,12 @@ _INSTRUCTIONS = "Instructions"
 #: What is measured in instructions, and what the official converter divides.
 _DIVIDED = ("value", "lowerBound", "upperBound", "mean", "average")
 
-#: The standard deviation is measured in instructions, too, but the official converter leaves it as it is.
+#: Also measured in instructions, but the official converter leaves it as it is.
 _DEVIATION = "sd"
 
-_DIVIDED_DEVIATION = "standard deviation of ticks: divided by the instructions per cycle of the definition"
+_DIVIDED_EXACTLY = (
+    "instructions are divided by the instructions per cycle without cutting off fractions, also standard deviations"
+)
 
 _OVERHEADS = ("apiOverhead", "isrCategory1Overhead", "isrCategory2Overhead")
 
@@ -31,31 +36,43 @@ _OVERHEADS = ("apiOverhead", "isrCategory1Overhead", "isrCategory2Overhead")
 class Ticks:
     """Converts what is stated in instructions; knows how many of them each kind of processing unit executes per cycle."""
 
-    def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
+    def __init__(self, models: ModelSet, values: Values, notes: Notes, official: bool) -> None:
         self.models, self.notes, self.official = models, notes, official
-        self.known: dict[Node, float | None] = {}
+        self.values = values
+        self.known: dict[Node, Fraction | None] = {}
         # Also in files of newer versions: the features of definitions are the same in them.
         definitions = [node for tree in models.trees for node in tree.root.find("hwModel", "definitions")]
         self.definitions = [node for node in definitions if node.type == "ProcessingUnitDefinition"]
         #: Definitions on which an instruction does not take one cycle.
         self.rates = {node: rate for node in self.definitions if (rate := self.rate(node)) is not None and rate != 1}
 
-    def rate(self, definition: Node) -> float | None:
-        """Instructions per cycle, None if unknown. The official converter takes the first feature, too."""
+    def rate(self, definition: Node) -> Fraction | None:
+        """Instructions per cycle, None if unknown."""
         if definition not in self.known:
-            features = (feature for feature in definition.references.get("features", ()) if _is_rate(feature))
-            feature = next(features, None)
-            self.known[definition] = self.rate_of(feature) if feature else None
+            self.known[definition] = self.find_rate(definition)
         return self.known[definition]
 
-    def rate_of(self, feature: Node) -> float | None:
+    def find_rate(self, definition: Node) -> Fraction | None:
+        """The instructions per cycle of the first feature that states them. The official converter takes the first one, too."""
+        features = definition.references.get("features", ())
+        feature = next(filter(_is_rate, features), None)
+        if feature is not None:
+            return self.rate_of(feature)
+        for missing in (each.get("path") for each in features):
+            if missing.startswith(f"{_INSTRUCTIONS}/"):
+                message = "the number of instructions per cycle is in no file: 1 is taken"
+                self.notes.defaulted(definition, message, missing, "features")
+        return None
+
+    def rate_of(self, feature: Node) -> Fraction | None:
         """The value of a feature, None if it cannot be the number of instructions per cycle."""
         try:
-            rate = float(feature.get("value", "0"))
+            rate = parse_float(feature.get("value", "0"))
         except ValueError:
             rate = 0.0
         if math.isfinite(rate) and rate > 0:
-            return rate
+            # The decimal that is written: 7 instructions at 0.7 per cycle are 10 ticks, not a little more.
+            return Fraction(repr(rate))
         self.notes.defaulted(feature, "not a number of instructions per cycle, 1 is taken", feature.get("value"), "value")
         return None
 
@@ -89,8 +106,12 @@ class Ticks:
         if not instructions and not by_definition:
             if others:
                 self.keep_others(node, others)
-            else:
+            elif self.official:
                 emptied.append(node)
+            else:
+                # Without it, the runnable would take no time, instead of an unknown one.
+                node.type = "Ticks"
+                self.notes.to_check(node, "an execution need of which nothing is left is Ticks without a number now")
             return
         if others:
             following[node] = Node(node.tag, "ExecutionNeed", origin=node.origin)
@@ -141,7 +162,7 @@ class Ticks:
     def stated(self, entry: Node, tag: str, owner: Node) -> Node | None:
         """The value of an entry in the newer form."""
         value = entry.child("value")
-        return number(value, tag, owner, self.notes, self.official) if value else None
+        return self.values.number(value, tag, owner) if value else None
 
     def fill(self, node: Node, default: Node | None, by_definition: list[tuple[Node, Node]]) -> None:
         """Give an item its default ticks, and those of definitions."""
@@ -186,38 +207,40 @@ class Ticks:
                 entry.refer("key", definition)
                 ticks = entry.add("value", default.type, like=default)
                 ticks.attributes = dict(default.attributes)
+                if default in self.values.unbounded:
+                    self.values.postpone_unbounded(ticks)
                 self.divide(ticks, rate)
 
-    def divide(self, ticks: Node, rate: float) -> None:
+    def divide(self, ticks: Node, rate: Fraction) -> None:
         """Divide by the instructions per cycle; fractions are cut off, as the official converter does."""
         shown = []
-        for name in _DIVIDED:
+        exact = {}
+        for name in _DIVIDED if self.official else (*_DIVIDED, _DEVIATION):
             text = ticks.attributes.get(name)
             if text is None:
                 continue
             try:
-                divided = str(int(float(text) / rate))
+                quotient, cut = _quotient(text, rate), str(int(float(text) / float(rate)))
             except (ValueError, OverflowError):
                 self.notes.lost(ticks, "not a number, so not divided by the instructions per cycle", text, name)
                 continue
-            ticks.attributes[name] = divided
-            shown.append(f"{name} {text} / {rate:g} = {divided}")
+            if name != _DEVIATION:
+                ticks.attributes[name] = cut
+                shown.append(f"{name} {text} / {float(rate):g} = {cut}")
+            if name == _DEVIATION or quotient.denominator != 1:
+                exact[name] = _rounded(name, quotient)
         if shown:
             message = "instructions are ticks now: divided by the instructions per cycle of the definition"
             self.notes.converted(ticks, message, ", ".join(shown))
-        if _DEVIATION in ticks.attributes and not self.official:
-            self.postpone_deviation(ticks, rate)
+        if exact and not self.official:
+            self.postpone_exact(ticks, exact)
 
-    def postpone_deviation(self, ticks: Node, rate: float) -> None:
-        """Divide the standard deviation as soon as the content goes beyond what the official converter makes of it."""
-        try:
-            divided = repr(float(ticks.attributes[_DEVIATION]) / rate)
-        except ValueError:
-            return
-        divide = partial(ticks.attributes.__setitem__, _DEVIATION, divided)
-        detail = f"{ticks.attributes[_DEVIATION]} / {rate:g} = {divided}"
+    def postpone_exact(self, ticks: Node, exact: dict[str, str]) -> None:
+        """Divide exactly as soon as the content goes beyond what the official converter makes of it: nothing takes less time."""
+        state = partial(ticks.attributes.update, exact)
+        detail = ", ".join(f"{name} {ticks.attributes[name]} -> {text}" for name, text in exact.items())
         self.models.postponed.append(
-            Postponed(BEYOND_CONVERTERS, divide, Kind.CONVERTED, ticks, _DIVIDED_DEVIATION, detail, is_kept=True)
+            Postponed(BEYOND_CONVERTERS, state, Kind.CONVERTED, ticks, _DIVIDED_EXACTLY, detail, is_kept=True)
         )
 
     # Overheads of operating systems
@@ -232,7 +255,7 @@ class Ticks:
 
     def convert_overhead(self, part: Node) -> None:
         """The part stays, and gets its number as the default. Without a class the official converter fails."""
-        stated = number(part, "default", part, self.notes, self.official)
+        stated = self.values.number(part, "default", part)
         if stated and stated.type == "DiscreteValueConstant":
             stated.attributes.setdefault("value", "0")
         part.type = ""
@@ -243,6 +266,28 @@ class Ticks:
         self.notes.converted(part, "instructions of the operating system are ticks now")
         if stated and not self.official:
             self.add_definitions(part, stated)
+
+
+def _quotient(text: str, rate: Fraction) -> Fraction:
+    """Some instructions divided by those per cycle.
+
+    Raises
+    ------
+    ValueError, OverflowError : the text is no number.
+    """
+    whole = whole_number(text)
+    return (Fraction(float(text)) if whole is None else whole) / rate
+
+
+def _rounded(name: str, ticks: Fraction) -> str:
+    """Ticks as an attribute: bounds are whole numbers, and rounded so that they enclose the exact ones."""
+    match name:
+        case "mean" | "average" | "sd":
+            return repr(float(ticks))
+        case "lowerBound":
+            return str(math.floor(ticks))
+        case _:
+            return str(math.ceil(ticks))
 
 
 def _is_rate(feature: Node) -> bool:

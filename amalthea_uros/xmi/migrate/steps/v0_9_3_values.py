@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
+from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.postponed import Postponed
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
 from amalthea_uros.xmi.migrate.steps.properties import add_property
 from amalthea_uros.xmi.migrate.steps.v0_9_parts import keep_comments
 
@@ -18,6 +22,8 @@ CONSTANTS = {"NeedConstant": "value", "InstructionsConstant": "value", "LatencyC
 DEVIATIONS = {"NeedDeviation": "deviation", "InstructionsDeviation": "deviation", "LatencyDeviation": "cycles"}
 
 _LOST = "a deviation without a distribution that has a successor is lost"
+
+_UNBOUNDED = "the upper bound is mandatory, but was not stated: it is left open, instead of 0 as up to 0.9.5"
 
 
 class _Form(NamedTuple):
@@ -38,35 +44,95 @@ _FORMS = {
     "WeibullEstimators": _Form("WeibullEstimatorsDistribution", ("pRemainPromille",), {"mean": "average"}),
 }
 
-_BOUNDS = {"lowerBound": "lowerBound", "upperBound": "upperBound"}
+_UPPER = "upperBound"
+_BOUNDS = {"lowerBound": "lowerBound", _UPPER: _UPPER}
 _ZEROS = {DISCRETE: "0", CONTINUOUS: "0.0"}
 _WEIBULL_PARAMETERS = ("kappa", "lambda")
 
 
-def number(node: Node, tag: str, owner: Node, notes: Notes, official: bool) -> Node | None:
-    """A need, a number of instructions or a latency in the newer form, as a new part without container; None if nothing is left.
+class Values:
+    """Converts constants and deviations.
 
-    Parameters
+    Attributes
     ----------
-    tag : that of the new part
-    owner : the nearest object that can have custom properties
+    unbounded : numbers of which the older model states no upper bound, and that have the bound 0 for now
     """
-    _drop_statistics(node, notes)
-    inner = node.child(DEVIATIONS.get(node.type, "deviation"))
-    if node.type in DEVIATIONS or (node.type not in CONSTANTS and inner is not None):
-        if inner is None:
-            notes.lost(node, "states neither a value nor bounds")
+
+    def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
+        self.models, self.notes, self.official = models, notes, official
+        self.unbounded: set[Node] = set()
+
+    def number(self, node: Node, tag: str, owner: Node) -> Node | None:
+        """A need, a number of instructions or a latency in the newer form, as a new part without container; None if nothing is left.
+
+        Parameters
+        ----------
+        tag : that of the new part
+        owner : the nearest object that can have custom properties
+        """
+        _drop_statistics(node, self.notes)
+        inner = node.child(DEVIATIONS.get(node.type, "deviation"))
+        if inner is not None:
+            inner.remove()
+            return inner if self.restate(inner, DISCRETE, tag, owner) else None
+        attribute = CONSTANTS.get(node.type, "value")
+        if node.type not in CONSTANTS and attribute not in node.attributes:
+            self.notes.lost(node, "states neither a value nor bounds")
             return None
-        inner.remove()
-        return inner if _restate(inner, DISCRETE, tag, owner, notes, official) else None
-    attribute = CONSTANTS.get(node.type, "value")
-    if node.type not in CONSTANTS and attribute not in node.attributes:
-        notes.lost(node, "states neither a value nor bounds")
-        return None
-    made = Node(tag, "DiscreteValueConstant", origin=node.origin)
-    if attribute in node.attributes:
-        made.attributes["value"] = node.attributes[attribute]
-    return made
+        made = Node(tag, "DiscreteValueConstant", origin=node.origin)
+        if attribute in node.attributes:
+            made.attributes["value"] = node.attributes[attribute]
+        return made
+
+    def restate(self, node: Node, kind: str, tag: str, owner: Node) -> bool:
+        """Give a deviation the class of its distribution, and the parameters of it; whether a value is left."""
+        distribution = node.child("distribution")
+        form = _FORMS.get(distribution.type) if distribution is not None else None
+        if form is None:
+            if self.official:
+                self.notes.lost(node, _LOST, _summary(node))
+                return False
+            if not _keep_bounds(node, distribution, kind, owner, self.notes):
+                return False
+            form = _BOUNDARIES
+        elif distribution is not None:
+            _take_attributes(node, distribution, form, self.notes)
+        _take_parameters(node, distribution, kind, form, self.notes)
+        node.tag, node.type = tag, kind + form.suffix
+        self.default_bounds(node, kind, form)
+        return True
+
+    def default_bounds(self, node: Node, kind: str, form: _Form) -> None:
+        """A missing bound of a number is 0, which is also the default of the newer version.
+
+        The official converter also makes bounds of 0 where a Gauss distribution is not cut off, and times without a default.
+        """
+        if not self.official and (kind == TIME or form.suffix == "GaussDistribution"):
+            return
+        for name in _BOUNDS:
+            if kind == TIME:
+                bound = node.child_or_new(name)
+                if "value" in bound.attributes:
+                    continue
+                bound.attributes["value"] = "0"
+            elif name in node.attributes:
+                continue
+            else:
+                node.attributes[name] = _ZEROS[kind]
+                if name == _UPPER and not self.official:
+                    self.postpone_unbounded(node)
+            self.notes.defaulted(node, "a bound that is not stated is 0", name, name)
+
+    def postpone_unbounded(self, node: Node) -> None:
+        """Leave the upper bound open as soon as the content goes beyond what the official converter makes of it.
+
+        With 0, something that may take any time, or occur any number of times, would be taken for something that never does.
+        """
+        self.unbounded.add(node)
+        drop = partial(node.drop, _UPPER)
+        self.models.postponed.append(
+            Postponed(BEYOND_CONVERTERS, drop, Kind.TO_CHECK, node, _UNBOUNDED, attribute=_UPPER, is_kept=True)
+        )
 
 
 def _drop_statistics(node: Node, notes: Notes) -> None:
@@ -84,33 +150,8 @@ def _summary(node: Node) -> str:
     return " ".join(texts)
 
 
-def deviation(node: Node, kind: str, tag: str, owner: Node, notes: Notes, official: bool) -> None:
-    """Convert a part that is a deviation itself, such as the jitter of a stimulus; it is removed if nothing is left."""
-    if not _restate(node, kind, tag, owner, notes, official):
-        node.remove()
-
-
-def _restate(node: Node, kind: str, tag: str, owner: Node, notes: Notes, official: bool) -> bool:
-    """Give a deviation the class of its distribution, and the parameters of it; whether a value is left."""
-    distribution = node.child("distribution")
-    form = _FORMS.get(distribution.type) if distribution is not None else None
-    if form is None:
-        if official:
-            notes.lost(node, _LOST, _summary(node))
-            return False
-        if not _keep_bounds(node, distribution, owner, notes):
-            return False
-        form = _BOUNDARIES
-    elif distribution is not None:
-        _take_attributes(node, distribution, form, notes)
-    _take_parameters(node, distribution, kind, form, notes)
-    node.tag, node.type = tag, kind + form.suffix
-    _default_bounds(node, kind, form, notes, official)
-    return True
-
-
-def _keep_bounds(node: Node, distribution: Node | None, owner: Node, notes: Notes) -> bool:
-    """Keep what a deviation states without a distribution that has a successor; whether it states bounds."""
+def _keep_bounds(node: Node, distribution: Node | None, kind: str, owner: Node, notes: Notes) -> bool:
+    """Keep what a deviation states without a distribution that has a successor; whether there is something to keep."""
     if distribution is not None:
         stated = {name: text for name, text in distribution.attributes.items() if name in _WEIBULL_PARAMETERS}
         if stated:
@@ -120,6 +161,10 @@ def _keep_bounds(node: Node, distribution: Node | None, owner: Node, notes: Note
         _report_unknown(distribution, set(stated), notes)
     if node.child("lowerBound") or node.child("upperBound"):
         notes.converted(node, "a deviation without a distribution that has a successor: its bounds are Boundaries now")
+        return True
+    if kind == TIME and distribution is not None:
+        # Without it, a stimulus would have no jitter, instead of one of unknown size.
+        notes.to_check(node, "the bounds are mandatory, but were not stated: they are left open")
         return True
     notes.lost(node, "states neither a value nor bounds")
     return False
@@ -165,23 +210,3 @@ def _take_number(node: Node, part: Node, name: str, notes: Notes) -> None:
         node.attributes[name] = part.attributes["value"]
     if "unit" in part.attributes:
         notes.lost(part, "the unit of a number without dimension", part.attributes["unit"], "unit")
-
-
-def _default_bounds(node: Node, kind: str, form: _Form, notes: Notes, official: bool) -> None:
-    """A missing bound of a number is 0, which is also the default of the newer version.
-
-    The official converter also makes bounds of 0 where a Gauss distribution is not cut off, and times without a default.
-    """
-    if not official and (kind == TIME or form.suffix == "GaussDistribution"):
-        return
-    for name in _BOUNDS:
-        if kind == TIME:
-            bound = node.child_or_new(name)
-            if "value" in bound.attributes:
-                continue
-            bound.attributes["value"] = "0"
-        elif name in node.attributes:
-            continue
-        else:
-            node.attributes[name] = _ZEROS[kind]
-        notes.defaulted(node, "a bound that is not stated is 0", name, name)

@@ -8,6 +8,7 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, proxy
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.properties import add_property
+from amalthea_uros.xmi.migrate.steps.v0_7_tools import names_of
 from amalthea_uros.xmi.migrate.steps.v0_9_parts import by_class
 
 _CLASSES = {
@@ -76,7 +77,10 @@ class Modes:
             self.notes.moved(node, "the mode of a mode label is stated again", stated[0].name, "mode")
         elif len(used) == 1:
             node.refer("mode", *used)
-            self.notes.defaulted(node, "a mode label without initial value has the mode of its uses", used[0].name, "mode")
+            self.notes.defaulted(node, "a mode label without initial value has the mode of its uses", names_of(used), "mode")
+        else:
+            message = "mode label without initial value: its mode, which is mandatory now, is not known"
+            self.notes.to_check(node, message, names_of(used), "mode")
 
     def convert_access(self, node: Node) -> None:
         """`write` is called `set`."""

@@ -35,9 +35,10 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
             if _is_converted(node, official):
                 node.type = new
                 notes.renamed(node, f"{old} is {new} now")
-    for name in _WITHOUT_COUNTER:
-        for node in found[name]:
-            _keep_counter(node, notes)
+    if not official:
+        for name in _WITHOUT_COUNTER:
+            for node in found[name]:
+                _keep_counter(node, notes)
     for node in models.parts("swModel", "runnables"):
         _make_graph(node, notes)
     convert_clocks(models, notes, official)

@@ -39,7 +39,7 @@ def convert_event_chains(models: ModelSet, notes: Notes) -> None:
             kind = "segments" if segments else "strands"
             _name_items(chain, kind)
             notes.converted(chain, f"{kind} of the event chain are now items of type {_ITEM_TYPES[kind]}")
-        if strands and _outermost(chain) in constrained:
+        if strands and not constrained.isdisjoint((chain, _outermost(chain))):
             notes.to_check(
                 chain,
                 "parallel event chain with a latency constraint: one completed item is enough unless minItemsCompleted is set",
@@ -55,12 +55,25 @@ def _check_event_chains(models: ModelSet, notes: Notes) -> None:
 
 
 def _constrained_chains(models: ModelSet) -> set[Node]:
-    return {
+    """The chains with a latency constraint, and those that are parts of them by reference."""
+    waiting = [
         chain
         for constraint in models.nodes("timingConstraints")
         if constraint.type == "EventChainLatencyConstraint"
         for chain in constraint.references.get("scope", ())
-    }
+    ]
+    found: set[Node] = set()
+    while waiting:
+        chain = waiting.pop()
+        if chain not in found:
+            found.add(chain)
+            waiting += [
+                part
+                for item in chain.walk()
+                if item.type == "EventChainReference"
+                for part in item.references.get("eventChain", ())
+            ]
+    return found
 
 
 def _outermost(chain: Node) -> Node:

@@ -15,14 +15,6 @@ def keep_comments(dissolved: Node, owner: Node) -> None:
         dissolved.comments = None
 
 
-def become(node: Node, other: Node) -> None:
-    """Take class, attributes, references and parts of another node, which goes away."""
-    node.type, node.attributes, node.references = other.type, other.attributes, other.references
-    node.set_children([])
-    node.take(other.children)
-    keep_comments(other, node)
-
-
 def insert_after(following: dict[Node, Node]) -> None:
     """Put nodes after others, in time linear in the number of siblings."""
     for holder in {node.parent: None for node in following if node.parent is not None}:

@@ -11,6 +11,7 @@ from amalthea_uros.xmi.migrate.node import Node, proxy, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.hardware.clocks import frequency_of
 from amalthea_uros.xmi.migrate.steps.hardware.tools import copy_of
+from amalthea_uros.xmi.migrate.steps.numbers import whole_number
 
 _LATENCIES = {"R": ("readLatency",), "W": ("writeLatency",), "RW": ("readLatency", "writeLatency")}
 
@@ -38,6 +39,8 @@ class AccessPaths:
             core, target = path.target("source"), path.target("target")
             if path.type != "LatencyAccessPath":
                 self.notes.lost(path, "access path over hardware elements", path.name)
+            elif core is not None and core.is_proxy:
+                self.notes.lost(path, "access path from something in no file", path.name)
             elif core is None or core.type != "ProcessingUnit":
                 self.notes.lost(path, "access path from something other than a core", path.name)
             elif not self.official and (target is None or self._class_of(target) not in _DESTINATIONS):
@@ -121,8 +124,9 @@ class AccessPaths:
                     )
                 if stated.get("transferSize", "0") != "0":
                     self.notes.lost(stated, "'transferSize' of latencies", stated.get("transferSize"), "transferSize")
+                latency = self.in_cycles_of(core, stated)
                 for tag in _LATENCIES.get(access, _LATENCIES["RW"]):
-                    costs[tag].append(self.in_cycles_of(core, stated))
+                    costs[tag].append(copy_of(latency))
             else:
                 self.notes.lost(stated, "latency without value", path.name)
 
@@ -138,21 +142,28 @@ class AccessPaths:
     def _sum_of(self, latencies: list[Node], path: Node) -> Node:
         if len(latencies) == 1:
             return latencies[0]
-        values = [_integer(latency.get("value")) for latency in latencies]
-        constants = [value for value in values if value is not None]
+        constants = [value for latency in latencies if (value := whole_number(latency.get("value"))) is not None]
         if len(constants) == len(latencies):
             latencies[0].attributes["value"] = str(sum(constants))
             self.notes.converted(path, "latencies of an access path: added up", " + ".join(map(str, constants)))
             return latencies[0]
-        first = next(latency for latency, value in zip(latencies, values, strict=True) if value is None)
-        self.notes.lost(path, "several latencies of an access path, not all of them constants: one is kept", path.name)
-        return first
+        made = Node("latencies", "LatencyDeviation", origin=path.origin)
+        deviation = made.add("deviation")
+        for name in ("lowerBound", "upperBound"):
+            bounds = [bound for latency in latencies if (bound := _bound(latency, name)) is not None]
+            if len(bounds) == len(latencies):
+                deviation.add(name, "LongObject", value=str(sum(bounds)))
+        self.notes.converted(path, "latencies of an access path: only their bounds are added up", path.name)
+        return made
 
     def in_cycles_of(self, core: Node, stated: Node) -> Node:
         """A copy of a latency in cycles of the core, which is what access elements state; it was in those of the quartz."""
         latency = copy_of(stated)
         quartz, domain = stated.target("quartz"), core.target("frequencyDomain")
-        if quartz is None or quartz is domain:
+        if quartz is None:
+            self.notes.defaulted(stated, "latency without quartz: taken as cycles of the core", stated.get("value"), "quartz")
+            return latency
+        if quartz is domain:
             return latency
         from_frequency, to_frequency = frequency_of(quartz), frequency_of(domain)
         if not from_frequency or not to_frequency:
@@ -166,16 +177,15 @@ class AccessPaths:
         return latency
 
 
+def _bound(latency: Node, name: str) -> int | None:
+    """A bound of a latency, which is the value of a constant one; None if it has none."""
+    stated = next(iter(latency.find("deviation", name)), latency)
+    return whole_number(stated.get("value"))
+
+
 def _scale(latency: Node, factor: Fraction) -> None:
     for node in latency.walk():
-        value = _integer(node.get("value"))
+        value = whole_number(node.get("value"))
         if value is not None:
             scaled = value * factor
             node.attributes["value"] = str(floor(scaled) if node.tag == "lowerBound" else ceil(scaled))
-
-
-def _integer(text: str) -> int | None:
-    try:
-        return int(text)
-    except ValueError:
-        return None

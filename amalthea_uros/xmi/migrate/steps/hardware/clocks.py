@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
 
 from amalthea_uros.metamodel.naming import encode
+from amalthea_uros.units import FREQUENCY
+from amalthea_uros.xmi.data_types import format_double, parse_float
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, copy_of, hash_order
+from amalthea_uros.xmi.migrate.steps.properties import free_key
 
 _DOMAIN = Shape("quartzes", parts=frozenset({"defaultValue"}))
-_HERTZ = {"": 1, "_undefined_": 1, "Hz": 1, "kHz": 10**3, "MHz": 10**6, "GHz": 10**9}
+_HERTZ = {"": 1, "_undefined_": 1, **FREQUENCY.units}
 
 
 class Clocks:
@@ -28,6 +30,7 @@ class Clocks:
         self.notes = notes
         self.official = official
         self.domains: dict[tuple[Node, str], Node] = {}
+        self.names: set[str] = set()
 
     def convert_quartzes(self, models: ModelSet) -> None:
         """Make every quartz a frequency domain of its hardware model."""
@@ -38,6 +41,7 @@ class Clocks:
             for quartz in quartzes:
                 self.notes.converted(quartz, "quartz -> frequency domain")
                 self._convert_quartz(quartz)
+        self.names = {node.name for node in models.parts("hwModel", "domains")}
 
     def _is_convertible(self, quartz: Node) -> bool:
         if quartz.name or (not self.official and quartz.children):
@@ -96,19 +100,28 @@ class Clocks:
         if known is not None:
             return known
         made = self.domains[quartz, ratio] = copy_of(quartz)
-        made.attributes["name"] = f"{encode(quartz.name) if self.official else quartz.name}__{ratio}"
+        made.attributes["name"] = self._name(quartz, ratio)
         assert quartz.parent is not None
         quartz.parent.insert(made)
         frequency = made.child("defaultValue")
         if frequency is not None and "value" in frequency.attributes:
             factor, value = _number(ratio), _number(frequency.get("value"))
-            if factor is not None and value is not None:
-                frequency.attributes["value"] = java_text(value * factor)
+            if factor is not None and value is not None and (self.official or factor > 0):
+                frequency.attributes["value"] = format_double(value * factor)
             elif not self.official:
-                # Without a number this is not the frequency of the quartz either.
-                self.notes.lost(made, "frequency behind a prescaler: not a number", f"{frequency.get('value')} x {ratio}")
+                # It is not the frequency of the quartz either.
+                words = "not a number" if factor is None or value is None else "negative"
+                self.notes.lost(made, f"frequency behind a prescaler: {words}", f"{frequency.get('value')} x {ratio}")
                 frequency.remove()
         return made
+
+    def _name(self, quartz: Node, ratio: str) -> str:
+        """The name of the domain of a prescaler. References are names, so it must not be that of another domain."""
+        if self.official:
+            return f"{encode(quartz.name)}__{ratio}"
+        name = free_key(f"{quartz.name}__{ratio}", self.names)
+        self.names.add(name)
+        return name
 
 
 def frequency_of(domain: Node | None) -> Fraction | None:
@@ -121,20 +134,7 @@ def frequency_of(domain: Node | None) -> Fraction | None:
 
 def _number(text: str) -> float | None:
     try:
-        number = float(text)
+        number = parse_float(text)
     except ValueError:
         return None
     return number if isfinite(number) else None
-
-
-def java_text(value: float) -> str:
-    """A number as Java writes it: `2.0E8`.
-
-    >>> java_text(2e8), java_text(100.0), java_text(0.00025)
-    ('2.0E8', '100.0', '2.5E-4')
-    """
-    if value == 0 or 1e-3 <= abs(value) < 1e7:
-        return repr(value)
-    sign, digits, _ = Decimal(repr(value)).normalize().as_tuple()
-    mantissa = "".join(map(str, digits))
-    return f"{'-' if sign else ''}{mantissa[0]}.{mantissa[1:] or '0'}E{Decimal(repr(value)).adjusted()}"

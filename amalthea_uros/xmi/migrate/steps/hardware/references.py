@@ -92,9 +92,10 @@ class References:
             return
         lost = {target: None for target in targets if (self.official if target.is_proxy else self._becomes_cache(target))}
         if lost:
+            words = "caches and memories in no file are not referred to" if self.official else "caches cannot be referred to"
             self.notes.lost(
                 node,
-                f"{name!r}: caches cannot be referred to",
+                f"{name!r}: {words}",
                 ", ".join(target.name or target.get("path") for target in lost),
                 name,
             )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from amalthea_uros.metamodel.naming import encode
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, names_of
 
 #: Values by which EMF states that nothing is stated.
 _NOTHING = frozenset({"", "0", "0.0", "0x0", "false", "_undefined_"})
@@ -39,10 +40,10 @@ class Shape:
         for key, targets in list(node.references.items()):
             if key not in self.references | shared:
                 del node.references[key]
-                notes.lost(node, f"{key!r} of {self.words}", ", ".join(target.name for target in targets), key)
+                notes.lost(node, f"{key!r} of {self.words}", names_of(targets), key)
         superfluous = [part for part in node.children if part.tag not in self.parts | shared]
         for part in superfluous:
-            notes.lost(part, f"{part.tag!r} of {self.words}", part.name or part.get("key"))
+            notes.lost(part, f"{part.tag!r} of {self.words}", part.name or part.get("key") or content_of(part))
         remove_all(superfluous)
 
 
