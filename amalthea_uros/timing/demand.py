@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from math import ceil, floor
+from math import ceil, floor, inf
 
 from amalthea_uros._internal.graphs import bottom_up
 from amalthea_uros.perf.activities import (
@@ -44,6 +44,7 @@ from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import Isr, Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.clocks import frequency_of
 from amalthea_uros.timing.counters import CallSites, UncountableError, first_effect, is_always
 from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH, ActivityPosition, TooComplexError, positions
 from amalthea_uros.timing.limits import LIMIT
@@ -95,8 +96,7 @@ class DemandModel:
         """The clock frequency of a core; None if it is unknown."""
         if core in self.settings.frequencies:
             return self.settings.frequencies[core]
-        clock = self.system.clocks.get(self.system.cores[core].clock or "")
-        return clock.frequency if clock is not None and clock.frequency else None
+        return frequency_of(self.system.cores[core].clock, self.system)
 
     def of_process(self, process: Process, core: str) -> MultiframeDemand:
         """Demand of the jobs of a process on a core, in its time base.
@@ -342,7 +342,9 @@ class DemandModel:
         """Ticks per unit of an execution need: the value of the feature, or its inverse for instructions per cycle."""
         kind = next((t for t in self.system.hardware.core_types if t.name == self.system.cores[core].type), None)
         for feature in kind.features if kind else ():
-            if feature.category == need and feature.value > 0:
+            if feature.category == need:
+                if not 0 < feature.value < inf:
+                    raise UnknownDemandError(f"{feature.name!r} of the type of the core {core!r} is not positive and finite")
                 is_rate = feature.name.startswith("IPC")
                 return 1 / Fraction(feature.value) if is_rate else Fraction(feature.value)
         if need == "Instructions":

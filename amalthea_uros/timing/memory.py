@@ -18,6 +18,7 @@ from amalthea_uros.perf.distributions import Distribution, highest, lowest
 from amalthea_uros.perf.hardware import Access, Cache, Connection, Interconnect, Latency, Memory
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.clocks import frequency_of
 from amalthea_uros.timing.means import mean
 from amalthea_uros.timing.multiframe import Frame
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
@@ -112,15 +113,16 @@ class MemoryAccess:
         return total
 
     def _clock(self, name: str | None) -> Frequency | None:
-        clock = self.system.clocks.get(name or "")
-        return clock.frequency if clock is not None else None
+        return frequency_of(name, self.system)
 
 
 def _latency(latency: Latency, kind: AccessKind, frequency: Frequency | None, size: int | None, where: str) -> Times:
     cycles = latency.read if kind is AccessKind.READ else latency.write
     if cycles is None and latency.rate:
-        if size is None:
-            raise UnknownDemandError(f"the size of data that pass {where!r} is unknown")
+        if size is None or size < 0:
+            raise UnknownDemandError(f"the size of data that pass {where!r} is {'unknown' if size is None else 'negative'}")
+        if latency.rate < 0:
+            raise UnknownDemandError(f"the data rate of {where!r} is negative")
         time = Fraction(size * SECOND, latency.rate)
         return (time, time, time)
     return _cycles(cycles, frequency, where)

@@ -49,3 +49,10 @@ class Settings:
             if given is not None and not isinstance(given, kind):
                 members = ", ".join(f"{kind.__name__}.{member.name}" for member in kind)
                 raise TypeError(f"unknown {name} {given!r}; expected one of {members}")
+        for what, number in [("scale", self.scale), *self.frequencies.items()]:
+            if number <= 0:
+                raise ValueError(f"{what}: {number} is not positive")
+        at_least_0: list[tuple[str, Fraction | int]] = [("growth", self.growth), *self.factors.items(), *self.phases.items()]
+        for what, value in at_least_0:
+            if value < 0:
+                raise ValueError(f"{what}: {value} is negative")

@@ -22,7 +22,7 @@ TEXT = """
   <structures name="ECU">
     <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
   </structures>
-  <domains xsi:type="am:FrequencyDomain" name="clock"><defaultValue value="1" unit="MHz"/></domains>
+  <domains xsi:type="am:FrequencyDomain" name="clock"><defaultValue value="{frequency}" unit="MHz"/></domains>
 </hwModel>
 <osModel>
   <operatingSystems name="OS"><taskSchedulers name="O" definition="FPP?type=SchedulerDefinition"/></operatingSystems>
@@ -75,11 +75,14 @@ HUGE = "99999999999999999999"
         ({"period": HUGE}, None),
         ({"early": f"-{HUGE}"}, None),
         ({"early": HUGE}, None),
+        # Neither can a clock run backwards, nor a core take a negative time for an instruction.
+        ({"frequency": "-1"}, None),
+        ({"frequency": "0"}, None),
     ],
 )
 def test_a_value_that_makes_no_sense(values, worst, tmp_path):
     path = tmp_path / "model.amxmi"
-    usual = {"prescaler": "1", "ticks": CONSTANT.format("3"), "period": "10", "early": "0"}
+    usual = {"prescaler": "1", "ticks": CONSTANT.format("3"), "period": "10", "early": "0", "frequency": "1"}
     path.write_text(MODEL.format(TEXT.format(**usual | values)))
     analysis = analyze_system(extract(load(path)).system)
     (task, _) = analysis.processes

@@ -320,9 +320,11 @@ class TestCosts:
             ({"accesses": ()}, "the core 'core' has no access element for the memory 'global'"),
             ({"clock": None}, "the clock frequency of 'bus' is unknown"),
             ({"latency": hardware.Latency(rate=8)}, "the size of data that pass 'bus' is unknown"),
+            ({"latency": hardware.Latency(rate=8), "size": -8}, "the size of data that pass 'bus' is negative"),
+            ({"latency": hardware.Latency(rate=-8), "size": 8}, "the data rate of 'bus' is negative"),
             ({"latency": hardware.Latency(read=Gauss(mean=1.0, deviation=1.0))}, "the memory latency of 'bus' has no bounds"),
         ],
-        ids=["no memory", "no access", "no clock", "no size", "no bounds"],
+        ids=["no memory", "no access", "no clock", "no size", "negative size", "negative rate", "no bounds"],
     )
     def test_an_access_of_unknown_latency_takes_an_unknown_time(self, change, reason):
         built = self.with_memory(LabelAccess(label="far", kind=AccessKind.READ), ticks(1))
@@ -336,7 +338,7 @@ class TestCosts:
         built = replace(
             built,
             hardware=replace(built.hardware, structures=(structure,)),
-            software=replace(built.software, labels=(Label(name="far"),)),
+            software=replace(built.software, labels=(Label(name="far", size=change.get("size")),)),
             mapping=change.get("mapping", built.mapping),
         )
         assert worst(built, Settings(memory=Memory.EXPLICIT)) == {"T": reason}
