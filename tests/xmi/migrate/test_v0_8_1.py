@@ -198,6 +198,19 @@ def test_activations(same, official):
     )
 
 
+def test_the_keys_of_custom_properties_stay_unique(same):
+    model = (
+        f'<swModel><activations xsi:type="am:PeriodicActivation" name="P">{text_property("deadline", "x")}{{}}</activations>'
+    )
+    model += "</swModel>"
+    same(
+        model.format('<deadline value="3" unit="ms"/>'),
+        model.format(
+            '<customProperties key="deadline 2"><value xsi:type="am:TimeObject" value="3" unit="ms"/></customProperties>'
+        ),
+    )
+
+
 def test_the_activation_of_a_process_prototype_keeps_its_name(same):
     model = '<swModel><processPrototypes name="P" activation="A?type=SingleActivation"/>'
     model += '<activations xsi:type="am:SingleActivation" name="A"/></swModel>'
@@ -229,6 +242,17 @@ def test_scheduling_units(same, tag, official):
         official,
     )
     assert of_kind(notes, Kind.LOST) == [("interrupt controller of a scheduling unit", "C?type=InterruptController")]
+
+
+def test_a_custom_property_without_value_of_a_scheduling_unit_moves_like_others(same):
+    key = "SchedulingHWUnit_CustomProperty__k"
+    same(
+        SYSTEM.format(
+            '<taskSchedulers name="S"><schedulingUnit xsi:type="am:SchedulingHWUnit"><customProperties key="k"/></schedulingUnit>'
+            "</taskSchedulers>"
+        ),
+        SYSTEM.format(f'<taskSchedulers name="S"><customProperties key="{key}"/></taskSchedulers>'),
+    )
 
 
 def test_parameters_of_a_scheduler_in_its_algorithm(same):
