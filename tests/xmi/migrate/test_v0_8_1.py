@@ -126,6 +126,30 @@ def test_process_prototypes_have_priorities_and_custom_properties_come_first(fil
     assert [child.get("key") for child in prototype.all("customProperties")] == ["k", "priority"]
 
 
+@pytest.mark.parametrize(("attribute", "parameter"), [("priority", "priority"), ("osekTaskGroup", "taskGroup")])
+def test_a_custom_property_that_was_there_is_not_taken_for_what_the_task_states(files, attribute, parameter):
+    models, notes = migrated(
+        files(
+            "0.8.0",
+            f'<swModel><tasks name="T" {attribute}="5">{text_property(attribute, 7)}</tasks></swModel><osModel>'
+            '<operatingSystems name="O"><taskSchedulers name="S"><schedulingAlgorithm xsi:type="am:OSEK"/></taskSchedulers>'
+            "</operatingSystems></osModel><mappingModel>"
+            '<taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/></mappingModel>',
+        ),
+        "2.0.0",
+    )
+    (stated,) = models.parts("mappingModel", "taskAllocation", "schedulingParameters")
+    assert (stated.target("key").name, stated.child("value").get("value")) == (parameter, "5")
+    (kept,) = models.parts("swModel", "tasks", "customProperties")
+    assert (kept.get("key"), kept.child("value").get("value")) == (f"{attribute} 2", "7")
+    assert f"{attribute} 2" in dict(reversed(pair) for pair in of_kind(notes, Kind.RENAMED))
+
+
+def test_officially_the_custom_property_of_a_task_keeps_its_key(same):
+    model = f'<swModel><tasks name="T"{{}}>{text_property("priority", 7)}{{}}</tasks></swModel>'
+    same(model.format(' priority="5"', ""), model.format("", text_property("priority", 5)), official=True)
+
+
 # Stimuli
 
 CALLS = '<callGraph><graphEntries xsi:type="am:CallSequence"><calls xsi:type="am:{}"{}</graphEntries></callGraph>'

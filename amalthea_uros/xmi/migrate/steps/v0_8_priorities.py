@@ -95,8 +95,14 @@ def _move_task_group(task: Node, notes: Notes, official: bool) -> None:
 
 def _state(process: Node, key: str, text: str, notes: Notes, official: bool) -> None:
     """Add a custom property that the step to 2.0.0 finds by its key: of another one of that key it would take the value."""
-    if property_text(property_of(process, key)) == text:
+    present = property_of(process, key)
+    if property_text(present) == text:
         return
+    if present is not None and not official:
+        present.attributes["key"] = free_key(key, keys_of(process))
+        notes.renamed(
+            present, f"custom property {key!r} gets another key: it is what the process states itself", present.get("key")
+        )
     put_property(process, key, text_value(text, process))
 
 
