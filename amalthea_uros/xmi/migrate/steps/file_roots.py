@@ -70,12 +70,13 @@ _EVENTS = (
     "ProcessEvent",
     "RunnableEvent",
     "SemaphoreEvent",
+    "StimulusEvent",
 )
 
 #: The same for objects that state their class by `xsi:type`.
 _TYPED_PLACES: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("Bridge", "Bus", "CrossbarSwitch", "NetworkType"), ("hwModel", "networkTypes")),
-    **dict.fromkeys((*_STIMULI, "StimulusEvent", "Synthetic"), ("stimuliModel", "stimuli")),
+    **dict.fromkeys((*_STIMULI, "Synthetic"), ("stimuliModel", "stimuli")),
     **dict.fromkeys(("ClockMultiplierList", "ClockSinusFunction", "ClockTriangleFunction"), ("stimuliModel", "clocks")),
     **dict.fromkeys(_EVENTS, ("eventModel", "events")),
     "VendorOperatingSystem": _OPERATING_SYSTEM,
