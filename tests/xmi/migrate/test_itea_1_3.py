@@ -161,9 +161,38 @@ def test_officially_constraints_in_a_file_of_their_own_are_forgotten(tmp_path, o
         ("mapping:MappingModel", {"addressMappingType": "none"}),
     ],
 )
-def test_files_of_a_single_object(tmp_path, root, written):
-    models, _ = step(tmp_path, x__amxmi_hw=model("1.2.0", "", root))
+def test_officially_the_object_that_is_a_file_stays_the_root(tmp_path, root, written):
+    models, _ = step(tmp_path, official=True, x__amxmi_hw=model("1.2.0", "", root))
     assert models.trees[0].root.attributes == written
+
+
+@pytest.mark.parametrize(
+    ("root", "tag", "written"),
+    [
+        ("hw:ComplexPin", "ComplexPin", {"direction": "R", "type": "ANALOG"}),
+        ("hw:Bus", "networkTypes", {"busType": "CAN", "schedPolicy": "RROBIN"}),
+        ("hw:MemType", "memoryTypes", {"type": "RAM"}),
+        ("mapping:MappingModel", "MappingModel", {"addressMappingType": "none"}),
+        ("sw:Task", "tasks", {"preemption": "cooperative"}),
+    ],
+)
+def test_files_of_a_single_object(tmp_path, root, tag, written):
+    models, _ = step(tmp_path, x__amxmi_hw=model("1.2.0", "", root))
+    assert all_of(models, tag)[0].attributes == written
+
+
+def test_a_task_that_is_a_file_is_converted_like_others(tmp_path):
+    content = '<deadline value="3"/><callGraph><graphEntries xsi:type="sw:LabelSwitch"><entries value="1"/></graphEntries></callGraph>'
+    models, _ = step(tmp_path, t__amxmi_sw=model("1.2.0", content, "sw:Task", 'name="T"'))
+    task = only(models, "swModel", "tasks")
+    assert [part.tag for part in task.children] == ["callGraph"]
+    assert only(models, "constraintsModel", "requirements").target("process") is task
+    assert only(models, "swModel", "modes", "literals").name == "1"
+
+
+def test_a_stimulus_that_is_a_file_gets_its_units(tmp_path):
+    models, _ = step(tmp_path, s__amxmi_stimuli=model("1.2.0", '<recurrence value="3"/>', "stimuli:Periodic"))
+    assert only(models, "stimuliModel", "stimuli", "recurrence").get("unit") == "ps"
 
 
 def test_a_time_of_a_custom_property_gets_its_unit(tmp_path):
