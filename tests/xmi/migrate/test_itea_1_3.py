@@ -145,6 +145,13 @@ def test_officially_the_unit_of_a_limit_is_forgotten(tmp_path, official, unit):
     assert all_of(models, "limitValue")[0].get("unit") == unit
 
 
+@pytest.mark.parametrize(("official", "access"), [(False, "R"), (True, "")])
+def test_a_latency_without_kind_of_access_is_one_of_reading(tmp_path, official, access):
+    content = '<hwModel><accessPaths xsi:type="hw:LatencyAccessPath"><latencies xsi:type="hw:LatencyConstant"/></accessPaths></hwModel>'
+    models, _ = step(tmp_path, official, m__amxmi=content)
+    assert all_of(models, "latencies")[0].get("accessType") == access
+
+
 @pytest.mark.parametrize(("official", "order"), [(False, "successor"), (True, "")])
 def test_officially_constraints_in_a_file_of_their_own_are_forgotten(tmp_path, official, order):
     text = model("1.2.0", "<runnableSequencingConstraints/>", "constraints:ConstraintsModel")
