@@ -78,6 +78,11 @@ def test_members_in_other_files_get_their_section(up):
     assert ("LOST", "member of a section that is in no file of the set", "nowhere") in result.notes
 
 
+def test_a_member_of_another_kind_is_not_said_to_be_missing(up):
+    result = up('<swModel><sections name="s" labels="t?type=Task"/><tasks name="t"/></swModel>')
+    assert result.notes == [("LOST", "member of a section that is of another kind", "t")]
+
+
 def test_a_second_section_is_reported(up):
     result = up(
         '<swModel><sections name="a" labels="l?type=Label"/><sections name="b" labels="l?type=Label"/><labels name="l"/></swModel>'

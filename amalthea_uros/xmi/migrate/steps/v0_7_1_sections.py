@@ -29,7 +29,8 @@ def change_sections(models: ModelSet, notes: Notes, official: bool) -> None:
 
 def _place(member: Node, tag: str, section: Node, notes: Notes) -> None:
     if member.tag != tag:
-        notes.lost(section, "member of a section that is in no file of the set", names_of([member]))
+        why = "in no file of the set" if member.is_proxy else "of another kind"
+        notes.lost(section, f"member of a section that is {why}", names_of([member]))
         return
     placed = member.target("section")
     if placed is None:
