@@ -29,6 +29,19 @@ def test_labels_from_itea_files_have_a_boolean(up):
     )
 
 
+def test_two_mappings_of_a_section_to_one_memory_have_different_names(tmp_path):
+    mapping = '<mapping t="SectionMapping" section="s?type=Section" memory="m?type=Memory"/>'
+    result = migrate(
+        tmp_path,
+        "0.7.0",
+        "0.7.2",
+        '<swModel><sections name="s"/></swModel><hwModel><system name="h"><memories name="m"/></system></hwModel>'
+        f"<mappingModel>{mapping}{mapping}</mappingModel>",
+    )
+    found = result.models.parts("mappingModel", "physicalSectionMapping")
+    assert [made.name for made in found] == ["s_m", "s_m 2"]
+
+
 @pytest.mark.parametrize(
     ("levels", "level"),
     [
