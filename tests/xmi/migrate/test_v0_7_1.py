@@ -1,7 +1,7 @@
 """0.7.0 -> 0.7.1: what the pairs of models do not show."""
 
 import pytest
-from old_models import migrate
+from inline_models import migrate
 
 from amalthea_uros.xmi.migrate.steps.v0_7_1 import java_double
 
@@ -73,8 +73,8 @@ def test_members_in_other_files_get_their_section(up):
         '<runEntities href="amlt:/#nowhere?type=Runnable"/></sections></swModel>',
         '<swModel><labels name="l 1"/><runnables name="r"/></swModel>',
     )
-    assert "labels name='l 1' section -> a.amxmi/swModel.0/sections.0" in result.lines
-    assert "runnables name='r' section -> a.amxmi/swModel.0/sections.0" in result.lines
+    assert "labels name='l 1' section -> m0.amxmi/swModel.0/sections.0" in result.lines
+    assert "runnables name='r' section -> m0.amxmi/swModel.0/sections.0" in result.lines
     assert ("LOST", "member of a section that is in no file of the set", "nowhere") in result.notes
 
 

@@ -1,7 +1,7 @@
 """0.7.2 -> 0.8.0: what the pairs of models do not show."""
 
 import pytest
-from old_models import migrate
+from inline_models import migrate
 
 KEY = "hwConstraint (element removed during Migration of Model to 0.8.0 version)"
 

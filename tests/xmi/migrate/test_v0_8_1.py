@@ -1,15 +1,12 @@
 """0.8.0 -> 0.8.1, as far as the pairs of models do not show it."""
 
-import random
-import re
 from functools import partial
 
 import pytest
-from inline_models import check_step, of_kind, text_property, written
-from migration import meaning, migrated
+from inline_models import check_early, check_step, check_twice, damaged, of_kind, text_property, written
+from migration import migrated
 
-from amalthea_uros.xmi.migrate.chain import migrate
-from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.notes import Kind
 
 
 @pytest.fixture
@@ -393,30 +390,16 @@ EVERYTHING = (
 
 
 @pytest.mark.parametrize("version", ["0.8.1", "0.8.2"])
-def test_a_file_whose_namespace_was_raised_early_takes_the_step(files, version):
-    early, _ = migrated(files(version, EVERYTHING), "0.8.2")
-    proper, _ = migrated(files("0.8.0", EVERYTHING), "0.8.2")
-    assert meaning(early) == meaning(proper)
+def test_a_file_whose_namespace_was_raised_early_takes_the_step(tmp_path, version):
+    check_early(tmp_path, "0.8.0", version, "0.8.2", EVERYTHING)
 
 
-def test_the_step_leaves_alone_what_is_converted(files):
-    once, _ = migrated(files("0.8.0", EVERYTHING), "0.8.1")
-    expected = meaning(once)
-    once.trees[0].version = "0.8.0"
-    notes = Notes()
-    migrate(once, "0.8.1", notes, official=False)
-    assert meaning(once) == expected
-    assert notes.all == []
+def test_the_step_leaves_alone_what_is_converted(tmp_path):
+    check_twice(tmp_path, "0.8.0", "0.8.1", EVERYTHING)
 
 
 @pytest.mark.parametrize("official", [False, True])
 def test_damaged_files_are_migrated(files, official):
-    rng = random.Random(8)
-    pieces = re.findall(r' [\w:]+="[^"]*"', EVERYTHING)
     values = ["", "0", "x", "T?type=Task", "inner?type=EventChain", "gone?type=Periodic gone?type=Core"]
-    for _ in range(60):
-        text = EVERYTHING
-        for piece in rng.sample(pieces, 6):
-            name = piece.partition("=")[0]
-            text = text.replace(piece, rng.choice(["", f'{name}="{rng.choice(values)}"']), 1)
+    for text in damaged(EVERYTHING, values, seed=8):
         migrated(files("0.8.0", text), "0.8.3", official)
