@@ -276,6 +276,14 @@ def test_a_custom_property_without_value_of_a_scheduling_unit_moves_like_others(
     )
 
 
+def test_what_else_a_scheduling_unit_states_is_not_lost_silently(same):
+    unit = '<schedulingUnit xsi:type="am:SchedulingHWUnit" priority="0" x="1"><y z="2"/></schedulingUnit>'
+    notes = same(
+        SYSTEM.format(f'<taskSchedulers name="S">{unit}</taskSchedulers>'), SYSTEM.format('<taskSchedulers name="S"/>')
+    )
+    assert of_kind(notes, Kind.LOST) == [("other content of a scheduling unit", "x=1, y (z=2)")]
+
+
 def test_parameters_of_a_scheduler_in_its_algorithm(same):
     model = SYSTEM.format(
         '<taskSchedulers name="S"><schedulingAlgorithm xsi:type="am:UserSpecificSchedulingAlgorithm"><{0} key="a" value="1"/>'

@@ -7,6 +7,7 @@ from amalthea_uros.xmi.migrate.names import reference_text
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.properties import add_property, add_value, move_properties
+from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of
 
 _HARDWARE, _SOFTWARE = "SchedulingHWUnit", "SchedulingSWUnit"
 
@@ -55,7 +56,8 @@ def _dissolve(unit: Node, scheduler: Node, notes: Notes) -> None:
         scheduler.add("computationItems", "RunnableInstructions", like=instructions).insert(instructions)
         notes.moved(instructions, "instructions of a scheduling unit -> computationItems of the scheduler")
     _keep_priority(unit, scheduler, "priority", f"{_SOFTWARE}___priority", notes)
-    controller = unit.target("interruptController")
-    if controller is not None:
+    for controller in unit.references.pop("interruptController", ()):
         notes.lost(unit, "interrupt controller of a scheduling unit", reference_text(controller), "interruptController")
+    if rest := content_of(unit):
+        notes.lost(unit, "other content of a scheduling unit", rest)
     unit.remove()
