@@ -54,6 +54,14 @@ def test_priority_0_of_a_task_is_kept_for_the_allocation_that_states_none(same):
     )
 
 
+def test_priority_0_of_an_isr_is_kept_for_the_allocation_that_states_none(same):
+    mapping = '<mappingModel><isrAllocation isr="I?type=ISR"/><isrAllocation isr="I?type=ISR" priority="3"/></mappingModel>'
+    same(
+        f'<swModel><isrs name="I" priority="0"/></swModel>{mapping}',
+        f'<swModel><isrs name="I">{text_property("priority", 0)}</isrs></swModel>{mapping}',
+    )
+
+
 def test_the_official_converter_loses_priority_0(same):
     notes = same(
         TWO_TASKS.format('priority="0"', 'priority="2"', '<taskAllocation task="B?type=Task" priority="0"/>'),

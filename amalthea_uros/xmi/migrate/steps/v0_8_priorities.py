@@ -54,18 +54,20 @@ def _move_of_allocations(models: ModelSet, notes: Notes, official: bool) -> set[
 
 
 def _replace_defaults_of_isr_allocations(models: ModelSet, notes: Notes) -> set[Node]:
-    """The ISRs of which an allocation states a priority; it stays an attribute there, also in the newest version."""
+    """The ISRs of which every allocation states a priority; it stays an attribute there, also in the newest version."""
     allocated: set[Node] = set()
+    unstated: set[Node | None] = set()
     for allocation in models.parts("mappingModel", "isrAllocation"):
         isr = allocation.target("isr")
         if isr is None or _KEY not in allocation.attributes:
+            unstated.add(isr)
             continue
         own = _own(isr)
         if allocation.attributes[_KEY] == "0" and own not in ("", "0"):
             allocation.attributes[_KEY] = own
             notes.converted(allocation, "priority 0, the old default, replaced: the priority of the ISR applies", own, _KEY)
         allocated.add(isr)
-    return allocated
+    return allocated - unstated
 
 
 def _move_of_process(process: Node, is_allocated: bool, notes: Notes, official: bool) -> None:
