@@ -62,6 +62,33 @@ def test_priority_0_of_an_isr_is_kept_for_the_allocation_that_states_none(same):
     )
 
 
+def test_priority_0_of_an_allocation_stays_where_the_isr_states_none(same):
+    model = '<swModel><isrs name="I"/></swModel><mappingModel><isrAllocation isr="I?type=ISR" priority="0"/>'
+    model += '<isrAllocation priority="0"/></mappingModel>'
+    same(model, model)
+
+
+def test_a_custom_property_that_says_the_same_is_enough(same):
+    model = f'<swModel><tasks name="T"{{}}>{text_property("priority", 5)}{text_property("osekTaskGroup", 2)}</tasks></swModel>'
+    same(model.format(' priority="5" osekTaskGroup="2"'), model.format(""))
+
+
+def test_what_becomes_of_priorities_and_groups_is_noted(files):
+    content = '<swModel><tasks name="A" priority="5" osekTaskGroup="0"/><tasks name="B" priority="0" osekTaskGroup="2"/>'
+    content += '<isrs name="I" priority="9"/></swModel><mappingModel><taskAllocation task="B?type=Task" priority="3"/>'
+    content += '<isrAllocation isr="I?type=ISR" priority="0"/></mappingModel>'
+    _, notes = migrated(files("0.8.0", content), "0.8.1")
+    assert [(note.kind.name, note.message, note.detail) for note in notes] == [
+        ("MOVED", "priority of a task allocation -> schedulingParameters", "3"),
+        ("CONVERTED", "priority 0, the old default, replaced: the priority of the ISR applies", "9"),
+        ("KEPT", "priority of a process", "5"),
+        ("CONVERTED", "priority 0, the old default, left out: the priority of the allocation applies", ""),
+        ("KEPT", "priority of a process", "9"),
+        ("CONVERTED", "OSEK task group 0, the old default, left out", ""),
+        ("KEPT", "OSEK task group", "2"),
+    ]
+
+
 def test_the_official_converter_loses_priority_0(same):
     notes = same(
         TWO_TASKS.format('priority="0"', 'priority="2"', '<taskAllocation task="B?type=Task" priority="0"/>'),
