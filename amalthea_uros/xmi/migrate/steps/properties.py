@@ -32,7 +32,7 @@ def put_property(holder: Node, key: str, value: Node) -> Node:
 
 
 def add_value(holder: Node, key: str, value: Node) -> Node:
-    """The same, but a key that is there already gets a number, because keys are unique."""
+    """A new custom property with a value; a key that is there already gets a number, because keys are unique."""
     return put_property(holder, free_key(key, keys_of(holder)), value)
 
 

@@ -1,4 +1,4 @@
-"""What the steps from 0.7.0 to 0.8.0 have in common."""
+"""What the steps from 0.7.0 to 0.8.1 have in common."""
 
 from __future__ import annotations
 
