@@ -115,6 +115,23 @@ def test_files_refer_to_each_other_by_position(tmp_path):
     assert made.target("process").name == "I"
 
 
+@pytest.mark.parametrize(
+    ("kind", "official", "tag"),
+    [
+        ('xsi:type="mapping:RunnableAllocation"', False, "runnableAllocation"),
+        ('xsi:type="mapping:RunnableAllocation"', True, "runnableAllocation"),
+        ("", False, "runnableAllocation"),
+        ("", True, "executableAllocation"),
+    ],
+)
+def test_allocations_of_runnables(tmp_path, kind, official, tag):
+    content = f"""<swModel><runnables xmi:id="_r" name="R"/></swModel><mappingModel>
+        <executableAllocation {kind} entity="_r"/></mappingModel>"""
+    models, _ = step(tmp_path, official, m__amxmi=content)
+    [made] = only(models, "mappingModel").children
+    assert (made.tag, made.target("entity").name) == (tag, "R")
+
+
 def test_the_scheduler_of_an_isr_in_a_missing_file_is_lost(tmp_path):
     content = f"""{SOFTWARE}<mappingModel><executableAllocation xsi:type="mapping:ProcessAllocation" process="_i1">
         <scheduler href="os.amxmi#_s"/></executableAllocation></mappingModel>"""

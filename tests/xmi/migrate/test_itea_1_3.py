@@ -287,6 +287,14 @@ def test_a_label_switch_is_a_mode_switch(tmp_path, process):
     assert "lost" not in {note.kind for note in notes}
 
 
+def test_other_entries_of_a_call_graph_stay(tmp_path):
+    content = '<swModel><tasks name="P"><callGraph><graphEntries xsi:type="sw:CallSequence"><entries value="2"/></graphEntries>'
+    models, notes = step(tmp_path, m__amxmi=f"{content}</callGraph></tasks></swModel>")
+    assert [entry.type for entry in all_of(models, "graphEntries")] == ["sw:CallSequence"]
+    assert all_of(models, "modes") == []
+    assert {note.kind for note in notes} == {"defaulted"}
+
+
 def test_switches_in_several_files_share_the_mode_label_of_a_label(tmp_path):
     other = """<swModel><tasks name="P"><callGraph><graphEntries xsi:type="sw:LabelSwitch"><label href="a.amxmi#_l"/>
         <entries value="9"/></graphEntries></callGraph></tasks></swModel>"""

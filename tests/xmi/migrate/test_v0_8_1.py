@@ -399,6 +399,17 @@ def test_a_chain_in_no_file_may_be_an_outer_one(same):
     same(model.format(reference), model.format(text_property("eventChain", "amlt:/#b?type=EventChain")), official=True)
 
 
+def test_references_to_inner_chains_are_noted(files):
+    model = OUTER.format("segments", "SubEventChain") + '<eventChains name="c"><strands xsi:type="am:EventChainReference" '
+    model += 'eventChain="inner?type=EventChain"/></eventChains>'
+    model += '<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="l" scope="inner?type=EventChain"/>'
+    _, notes = migrated(files("0.8.0", f"<constraintsModel>{model}</constraintsModel>"), "0.8.1")
+    assert of_kind(notes, Kind.KEPT) == [
+        ("reference to an inner event chain", "inner?type=EventChain"),
+        ("scope: reference to an inner event chain", "inner?type=EventChain"),
+    ]
+
+
 @pytest.mark.parametrize("official", [False, True])
 def test_the_name_of_an_inner_chain_means_the_outer_one_that_shares_it(files, official):
     model = '<constraintsModel><eventChains name="a"><segments xsi:type="am:SubEventChain"><eventChain name="b"/></segments>'

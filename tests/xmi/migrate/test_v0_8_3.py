@@ -134,6 +134,18 @@ def test_labels_and_literals_of_other_files(same):
     assert of_kind(notes, Kind.LOST) == [("mode label of another file", "L?type=ModeLabel")]
 
 
+def test_labels_and_literals_that_are_no_references_are_lost(same):
+    task = '<tasks name="T"><callGraph><graphEntries xsi:type="am:ModeSwitch"{}</graphEntries></callGraph></tasks>'
+    notes = same(
+        MODES.format(task.format(' valueProvider="L"><entries values="a"/>')),
+        MODES.format(task.format("><entries><condition/></entries>")),
+    )
+    assert of_kind(notes, Kind.LOST) == [
+        ("mode label of a switch that is not a reference", "L"),
+        ("mode literal of a switch that is not a reference", "a"),
+    ]
+
+
 @pytest.mark.parametrize("official", [False, True])
 def test_an_entry_without_literals_is_never_taken(same, official):
     task = '<tasks name="T"><callGraph><graphEntries xsi:type="am:ModeSwitch"{}</graphEntries></callGraph></tasks>'
