@@ -311,6 +311,28 @@ def test_a_custom_property_without_value_of_a_scheduling_unit_moves_like_others(
     )
 
 
+def test_what_becomes_of_scheduling_units_is_noted(files):
+    schedulers = f'<taskSchedulers name="S" scheduleUnitPriority="0"><schedulingUnit priority="3">{text_property("k", "v")}'
+    schedulers += '<instructions xsi:type="am:InstructionsConstant" value="1"/></schedulingUnit></taskSchedulers>'
+    schedulers += (
+        f'<taskSchedulers name="H"><schedulingUnit>{text_property("k", "v")}<delay value="1" unit="ns"/></schedulingUnit>'
+    )
+    models, notes = migrated(files("0.8.0", SYSTEM.format(f"{schedulers}</taskSchedulers>")), "0.8.1")
+    keys = [[each.get("key") for each in found.all("customProperties")] for found in models.nodes("taskSchedulers")]
+    assert keys == [
+        ["SchedulingSWUnit_CustomProperty__k", "SchedulingSWUnit___priority"],
+        ["SchedulingHWUnit_CustomProperty__k", "SchedulingHWUnit___delay"],
+    ]
+    assert [(note.kind.name, note.message, note.detail) for note in notes] == [
+        ("CONVERTED", "scheduleUnitPriority 0, the old default, left out", ""),
+        ("MOVED", "custom property of a scheduling unit -> scheduler", "SchedulingSWUnit_CustomProperty__k"),
+        ("MOVED", "instructions of a scheduling unit -> computationItems of the scheduler", ""),
+        ("KEPT", "priority of a scheduling unit", "3"),
+        ("MOVED", "custom property of a scheduling unit -> scheduler", "SchedulingHWUnit_CustomProperty__k"),
+        ("KEPT", "delay of a scheduling unit", "1ns"),
+    ]
+
+
 def test_what_else_a_scheduling_unit_states_is_not_lost_silently(same):
     unit = '<schedulingUnit xsi:type="am:SchedulingHWUnit" priority="0" x="1"><y z="2"/></schedulingUnit>'
     notes = same(
