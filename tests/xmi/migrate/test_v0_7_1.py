@@ -243,6 +243,33 @@ def test_scopes_that_differ_and_groupings_are_lost(up):
     ) == ["scopes of single runnables in a sequencing constraint"]
 
 
+SCOPED = """
+<swModel><runnables name="a"/><processPrototypes name="p"/><processPrototypes name="q"/></swModel>
+<constraintsModel><runnableSequencingConstraints name="s"{}><runnableGroups><entries runnable="a?type=Runnable"{}/></runnableGroups>
+</runnableSequencingConstraints></constraintsModel>
+"""
+
+
+def test_the_scope_of_a_constraint_is_not_widened(up):
+    scope = ' processScope="{}?type=ProcessPrototype"'
+    result = up(SCOPED.format(scope.format("q"), scope.format("p")))
+    assert "runnableSequencingConstraints name='s' processScope -> /swModel.0/processPrototypes.1" in result.lines
+    assert ("LOST", "scopes of single runnables in a sequencing constraint", "p") in result.notes
+    result = up(SCOPED.format("", scope.format("p")))
+    assert ("MOVED", "processScope of all entries -> processScope of the constraint", "p") in result.notes
+
+
+def test_of_an_entry_without_scope_nothing_is_lost_but_what_is_not_known(up):
+    assert up(SCOPED.format("", "")).of("LOST") == []
+    assert ("LOST", "content of an entry of a group of runnables", "x=1") in up(SCOPED.format("", ' x="1"')).notes
+
+
+def test_the_stated_mapping_of_a_delay_constraint_stays(up):
+    content = '<constraintsModel><timingConstraints t="DelayConstraint"{}/></constraintsModel>'
+    assert up(content.format(' mappingType="OneToOne"')).notes == []
+    assert up(content.format("")).of("DEFAULTED") == ["mappingType of a delay constraint: Reaction is what 0.7.0 meant"]
+
+
 def test_a_file_of_the_next_version_with_old_constraints_takes_the_step_and_keeps_the_rest(up):
     new = (
         '<hwModel><memoryTypes name="m"><size value="1" unit="kB"/></memoryTypes></hwModel><swModel>'
