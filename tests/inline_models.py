@@ -1,17 +1,45 @@
-"""Small models of old versions inside tests of migration steps."""
+"""Small models of APP4MC inside tests, and what migrations make of them."""
+
+import random
+import re
 
 from migration import meaning, migrated, model, opened
 
+from amalthea_uros.xmi.migrate.chain import migrate as take_on
+from amalthea_uros.xmi.migrate.notes import Notes
 
-def written(folder, version, *contents):
+# Files
+
+
+def written(folder, version, *contents, root="Amalthea"):
     """Write files of a version into a new folder, each with some content of the root."""
     folder = folder / str(len(list(folder.iterdir())))
     folder.mkdir()
     paths = []
     for number, content in enumerate(contents):
         paths.append(folder / f"m{number}.amxmi")
-        paths[-1].write_text(model(version, content), "utf-8")
+        paths[-1].write_text(model(version, content, root), "utf-8")
     return paths
+
+
+def text_property(key, value):
+    """A custom property with a text."""
+    return f'<customProperties key="{key}"><value xsi:type="am:StringObject" value="{value}"/></customProperties>'
+
+
+def damaged(content, values, seed):
+    """Copies of a content, in each of which six attributes are missing or have one of some values instead."""
+    rng = random.Random(seed)
+    pieces = re.findall(r' [\w:]+="[^"]*"', content)
+    for _ in range(60):
+        text = content
+        for piece in rng.sample(pieces, 6):
+            name = piece.partition("=")[0]
+            text = text.replace(piece, rng.choice(["", f'{name}="{rng.choice(values)}"']), 1)
+        yield text
+
+
+# Checks
 
 
 def check_step(folder, source, target, before, after, official=False):
@@ -22,11 +50,85 @@ def check_step(folder, source, target, before, after, official=False):
     return notes
 
 
-def text_property(key, value):
-    """A custom property with a text."""
-    return f'<customProperties key="{key}"><value xsi:type="am:StringObject" value="{value}"/></customProperties>'
+def check_early(folder, source, declared, target, content):
+    """Assert that a file that declares a later version than it has, becomes what it becomes otherwise."""
+    early, _ = migrated(written(folder, declared, content), target)
+    proper, _ = migrated(written(folder, source, content), target)
+    assert meaning(early) == meaning(proper)
+
+
+def check_twice(folder, source, target, content):
+    """Assert that a step changes nothing when it is taken once more, and notes nothing."""
+    models, _ = migrated(written(folder, source, content), target)
+    expected = meaning(models)
+    models.trees[0].version = source
+    notes = Notes()
+    take_on(models, target, notes, official=False)
+    assert meaning(models) == expected
+    assert notes.all == []
 
 
 def of_kind(notes, kind):
     """Message and detail of the notes of a kind."""
     return [(note.message, note.detail) for note in notes if note.kind is kind]
+
+
+# Results
+
+
+class Migrated:
+    """The result of a migration.
+
+    Attributes
+    ----------
+    text : what the files mean afterwards
+    lines : the lines of that, without indentation
+    notes : kind, message and detail of each note
+    """
+
+    def __init__(self, models, notes):
+        self.models = models
+        self.text = "\n".join(meaning(models))
+        self.lines = [" ".join(line.split()) for line in self.text.splitlines()]
+        self.notes = [(note.kind.name, note.message, note.detail) for note in notes]
+
+    def of(self, kind):
+        """The messages of a kind."""
+        return [message for found, message, _ in self.notes if found == kind]
+
+
+def migrate(folder, source, target, *contents, official=False, root="Amalthea"):
+    """Migrate the contents of one or more files."""
+    return Migrated(*migrated(written(folder, source, *contents, root=root), target, official))
+
+
+class InlineModels:
+    """Writes models into a folder and migrates them.
+
+    Attributes
+    ----------
+    notes : of the last migration
+    """
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.notes = []
+
+    def files(self, where, version, *contents):
+        """Write files into a folder of that name."""
+        folder = self.folder / where
+        folder.mkdir(exist_ok=True)
+        return written(folder, version, *contents)
+
+    def migrate(self, source, target, *contents, official=False):
+        """The meaning of files after migration."""
+        models, self.notes = migrated(self.files("before", source, *contents), target, official)
+        return meaning(models)
+
+    def read(self, version, *contents):
+        """The meaning of files as they are."""
+        return meaning(opened(*self.files("expected", version, *contents)))
+
+    def messages(self, kind):
+        """What was noted of one kind."""
+        return [note.message for note in self.notes if note.kind == kind]

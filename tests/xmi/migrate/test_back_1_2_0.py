@@ -1,7 +1,7 @@
 """2.0.0 -> 1.2.0, and what the step up restores."""
 
 import pytest
-from inline_migration import InlineModels
+from inline_models import InlineModels
 from migration import meaning, migrated, opened
 
 from amalthea_uros.xmi.migrate.notes import Kind

@@ -15,6 +15,7 @@ from amalthea_uros.xmi.migrate.notes import Kind
         ("hw:Bus", ("hwModel", "networkTypes"), "Bus"),
         ("hw:MemType", ("hwModel", "memoryTypes"), ""),
         ("stimuli:Single", ("stimuliModel", "stimuli"), "Single"),
+        ("events:StimulusEvent", ("eventModel", "events"), "StimulusEvent"),
         ("hw:Quartz", ("hwModel", "system", "quartzes"), ""),
         ("hw:Core", ("hwModel", "system", "ecus", "microcontrollers", "cores"), ""),
     ],

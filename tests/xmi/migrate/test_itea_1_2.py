@@ -44,6 +44,12 @@ def accesses(kind, content, tag="runnableItems"):
     return f'<swModel><runnables name="R">{inside}</runnables></swModel>'
 
 
+def test_the_statistic_of_anything_else_stays(tmp_path):
+    models, notes = step(tmp_path, m__amxmi=accesses("", STATISTICS).replace("LabelAccess", "RunnableCall"))
+    assert len(all_of(models, "statistic")[0].children) == 4
+    assert notes == []
+
+
 @pytest.mark.parametrize("tag", ["runnableItems", "runnableItem"])
 @pytest.mark.parametrize(
     ("kind", "value", "misses"), [("", "1", "3"), ('access="read"', "1", "3"), ('access="write"', "2", "4")]
@@ -107,6 +113,41 @@ def test_files_refer_to_each_other_by_position(tmp_path):
     assert made.type == "mapping:ISRAllocation"
     assert made.target("scheduler").root.tag == "OSModel"
     assert made.target("process").name == "I"
+
+
+@pytest.mark.parametrize(
+    ("kind", "official", "tag"),
+    [
+        ('xsi:type="mapping:RunnableAllocation"', False, "runnableAllocation"),
+        ('xsi:type="mapping:RunnableAllocation"', True, "runnableAllocation"),
+        ("", False, "runnableAllocation"),
+        ("", True, "executableAllocation"),
+    ],
+)
+def test_allocations_of_runnables(tmp_path, kind, official, tag):
+    content = f"""<swModel><runnables xmi:id="_r" name="R"/></swModel><mappingModel>
+        <executableAllocation {kind} entity="_r"/></mappingModel>"""
+    models, _ = step(tmp_path, official, m__amxmi=content)
+    [made] = only(models, "mappingModel").children
+    assert (made.tag, made.target("entity").name) == (tag, "R")
+
+
+def test_the_scheduler_of_an_isr_in_a_missing_file_is_lost(tmp_path):
+    content = f"""{SOFTWARE}<mappingModel><executableAllocation xsi:type="mapping:ProcessAllocation" process="_i1">
+        <scheduler href="os.amxmi#_s"/></executableAllocation></mappingModel>"""
+    models, notes = step(tmp_path, m__amxmi=content)
+    [made] = all_of(models, "processAllocation")
+    assert (made.type, made.references.keys()) == ("mapping:ISRAllocation", {"process"})
+    assert messages(notes, "lost") == ["scheduler of an ISR: it is in no file, and ISRs have interrupt controllers now"]
+
+
+def test_the_interrupt_controller_of_an_early_file_stays(tmp_path):
+    system = '<osModel><operatingSystems><interruptControllers xmi:id="_c" name="C"/></operatingSystems></osModel>'
+    allocations = allocation('process="_i1" scheduler="_c"')
+    models, notes = step(tmp_path, m__amxmi=f"{SOFTWARE}{system}<mappingModel>{allocations}</mappingModel>")
+    [controller] = all_of(models, "interruptControllers")
+    assert all_of(models, "processAllocation")[0].target("scheduler") is controller
+    assert messages(notes, "lost") == []
 
 
 def test_the_class_of_a_process_in_a_missing_file_is_that_of_the_reference(tmp_path):

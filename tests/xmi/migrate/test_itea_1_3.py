@@ -145,6 +145,13 @@ def test_officially_the_unit_of_a_limit_is_forgotten(tmp_path, official, unit):
     assert all_of(models, "limitValue")[0].get("unit") == unit
 
 
+@pytest.mark.parametrize(("official", "access"), [(False, "R"), (True, "")])
+def test_a_latency_without_kind_of_access_is_one_of_reading(tmp_path, official, access):
+    content = '<hwModel><accessPaths xsi:type="hw:LatencyAccessPath"><latencies xsi:type="hw:LatencyConstant"/></accessPaths></hwModel>'
+    models, _ = step(tmp_path, official, m__amxmi=content)
+    assert all_of(models, "latencies")[0].get("accessType") == access
+
+
 @pytest.mark.parametrize(("official", "order"), [(False, "successor"), (True, "")])
 def test_officially_constraints_in_a_file_of_their_own_are_forgotten(tmp_path, official, order):
     text = model("1.2.0", "<runnableSequencingConstraints/>", "constraints:ConstraintsModel")
@@ -161,9 +168,38 @@ def test_officially_constraints_in_a_file_of_their_own_are_forgotten(tmp_path, o
         ("mapping:MappingModel", {"addressMappingType": "none"}),
     ],
 )
-def test_files_of_a_single_object(tmp_path, root, written):
-    models, _ = step(tmp_path, x__amxmi_hw=model("1.2.0", "", root))
+def test_officially_the_object_that_is_a_file_stays_the_root(tmp_path, root, written):
+    models, _ = step(tmp_path, official=True, x__amxmi_hw=model("1.2.0", "", root))
     assert models.trees[0].root.attributes == written
+
+
+@pytest.mark.parametrize(
+    ("root", "tag", "written"),
+    [
+        ("hw:ComplexPin", "ComplexPin", {"direction": "R", "type": "ANALOG"}),
+        ("hw:Bus", "networkTypes", {"busType": "CAN", "schedPolicy": "RROBIN"}),
+        ("hw:MemType", "memoryTypes", {"type": "RAM"}),
+        ("mapping:MappingModel", "MappingModel", {"addressMappingType": "none"}),
+        ("sw:Task", "tasks", {"preemption": "cooperative"}),
+    ],
+)
+def test_files_of_a_single_object(tmp_path, root, tag, written):
+    models, _ = step(tmp_path, x__amxmi_hw=model("1.2.0", "", root))
+    assert all_of(models, tag)[0].attributes == written
+
+
+def test_a_task_that_is_a_file_is_converted_like_others(tmp_path):
+    content = '<deadline value="3"/><callGraph><graphEntries xsi:type="sw:LabelSwitch"><entries value="1"/></graphEntries></callGraph>'
+    models, _ = step(tmp_path, t__amxmi_sw=model("1.2.0", content, "sw:Task", 'name="T"'))
+    task = only(models, "swModel", "tasks")
+    assert [part.tag for part in task.children] == ["callGraph"]
+    assert only(models, "constraintsModel", "requirements").target("process") is task
+    assert only(models, "swModel", "modes", "literals").name == "1"
+
+
+def test_a_stimulus_that_is_a_file_gets_its_units(tmp_path):
+    models, _ = step(tmp_path, s__amxmi_stimuli=model("1.2.0", '<recurrence value="3"/>', "stimuli:Periodic"))
+    assert only(models, "stimuliModel", "stimuli", "recurrence").get("unit") == "ps"
 
 
 def test_a_time_of_a_custom_property_gets_its_unit(tmp_path):
@@ -249,6 +285,14 @@ def test_a_label_switch_is_a_mode_switch(tmp_path, process):
     assert [entry.target("value").name for entry in switch.children] == ["2", "0", "2"]
     assert [label.name for label in all_of(models, "labels")] == ["L 1"]
     assert "lost" not in {note.kind for note in notes}
+
+
+def test_other_entries_of_a_call_graph_stay(tmp_path):
+    content = '<swModel><tasks name="P"><callGraph><graphEntries xsi:type="sw:CallSequence"><entries value="2"/></graphEntries>'
+    models, notes = step(tmp_path, m__amxmi=f"{content}</callGraph></tasks></swModel>")
+    assert [entry.type for entry in all_of(models, "graphEntries")] == ["sw:CallSequence"]
+    assert all_of(models, "modes") == []
+    assert {note.kind for note in notes} == {"defaulted"}
 
 
 def test_switches_in_several_files_share_the_mode_label_of_a_label(tmp_path):

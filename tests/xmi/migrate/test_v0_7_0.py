@@ -193,6 +193,13 @@ def test_attributes_come_before_features(tmp_path):
     assert [made.get("key") for made in all_of(models, "customProperties")] == ["old", "attribute#a", "feature#f"]
 
 
+@pytest.mark.parametrize(("official", "second"), [(False, "attribute#a 2"), (True, "attribute#a")])
+def test_attributes_of_one_name_stay_apart(tmp_path, official, second):
+    values = '<attribute xsi:type="hw:IntValue" name="a"/><attribute xsi:type="hw:StrValue" name="a"/>'
+    models, _ = step(tmp_path, official, m__amxmi=hardware(values))
+    assert [made.get("key") for made in all_of(models, "customProperties")] == ["old", "attribute#a", second]
+
+
 @pytest.mark.parametrize(("official", "left"), [(False, 0), (True, 1)])
 def test_officially_hardware_types_of_property_constraints_are_forgotten(tmp_path, official, left):
     content = """<propertyConstraintsModel><coreTypeDefinitions><attribute xsi:type="hw:IntValue" name="a"/></coreTypeDefinitions>

@@ -1,7 +1,7 @@
 """0.7.0 -> 0.7.1: what the pairs of models do not show."""
 
 import pytest
-from old_models import migrate
+from inline_models import migrate
 
 from amalthea_uros.xmi.migrate.steps.v0_7_1 import java_double
 
@@ -73,9 +73,14 @@ def test_members_in_other_files_get_their_section(up):
         '<runEntities href="amlt:/#nowhere?type=Runnable"/></sections></swModel>',
         '<swModel><labels name="l 1"/><runnables name="r"/></swModel>',
     )
-    assert "labels name='l 1' section -> a.amxmi/swModel.0/sections.0" in result.lines
-    assert "runnables name='r' section -> a.amxmi/swModel.0/sections.0" in result.lines
+    assert "labels name='l 1' section -> m0.amxmi/swModel.0/sections.0" in result.lines
+    assert "runnables name='r' section -> m0.amxmi/swModel.0/sections.0" in result.lines
     assert ("LOST", "member of a section that is in no file of the set", "nowhere") in result.notes
+
+
+def test_a_member_of_another_kind_is_not_said_to_be_missing(up):
+    result = up('<swModel><sections name="s" labels="t?type=Task"/><tasks name="t"/></swModel>')
+    assert result.notes == [("LOST", "member of a section that is of another kind", "t")]
 
 
 def test_a_second_section_is_reported(up):
@@ -224,6 +229,7 @@ SEQUENCE = """
 def test_groups_refer_to_runnables(up):
     result = up(SEQUENCE.format(grouping="allOfThem", scope=' processScope="p?type=ProcessPrototype"'))
     assert "runnableGroups runnables -> /swModel.0/runnables.0 /swModel.0/runnables.1" in result.lines
+    assert not any(line.startswith("entries") for line in result.lines)
     assert "runnableSequencingConstraints name='s' processScope -> /swModel.0/processPrototypes.0" in result.lines
     assert result.of("LOST") == []
 
@@ -235,6 +241,33 @@ def test_scopes_that_differ_and_groupings_are_lost(up):
     assert up(SEQUENCE.format(grouping="allOfThem", scope=' processScope="p?type=ProcessPrototype"'), official=True).of(
         "LOST"
     ) == ["scopes of single runnables in a sequencing constraint"]
+
+
+SCOPED = """
+<swModel><runnables name="a"/><processPrototypes name="p"/><processPrototypes name="q"/></swModel>
+<constraintsModel><runnableSequencingConstraints name="s"{}><runnableGroups><entries runnable="a?type=Runnable"{}/></runnableGroups>
+</runnableSequencingConstraints></constraintsModel>
+"""
+
+
+def test_the_scope_of_a_constraint_is_not_widened(up):
+    scope = ' processScope="{}?type=ProcessPrototype"'
+    result = up(SCOPED.format(scope.format("q"), scope.format("p")))
+    assert "runnableSequencingConstraints name='s' processScope -> /swModel.0/processPrototypes.1" in result.lines
+    assert ("LOST", "scopes of single runnables in a sequencing constraint", "p") in result.notes
+    result = up(SCOPED.format("", scope.format("p")))
+    assert ("MOVED", "processScope of all entries -> processScope of the constraint", "p") in result.notes
+
+
+def test_of_an_entry_without_scope_nothing_is_lost_but_what_is_not_known(up):
+    assert up(SCOPED.format("", "")).of("LOST") == []
+    assert ("LOST", "content of an entry of a group of runnables", "x=1") in up(SCOPED.format("", ' x="1"')).notes
+
+
+def test_the_stated_mapping_of_a_delay_constraint_stays(up):
+    content = '<constraintsModel><timingConstraints t="DelayConstraint"{}/></constraintsModel>'
+    assert up(content.format(' mappingType="OneToOne"')).notes == []
+    assert up(content.format("")).of("DEFAULTED") == ["mappingType of a delay constraint: Reaction is what 0.7.0 meant"]
 
 
 def test_a_file_of_the_next_version_with_old_constraints_takes_the_step_and_keeps_the_rest(up):

@@ -1,7 +1,7 @@
 """0.7.1 -> 0.7.2: what the pairs of models do not show."""
 
 import pytest
-from old_models import migrate
+from inline_models import migrate
 
 
 @pytest.fixture
@@ -27,6 +27,19 @@ def test_labels_from_itea_files_have_a_boolean(up):
         "labels dataStability='true' name='a'"
         in up('<swModel><labels name="a" buffered="true"/></swModel>', official=True).lines
     )
+
+
+def test_two_mappings_of_a_section_to_one_memory_have_different_names(tmp_path):
+    mapping = '<mapping t="SectionMapping" section="s?type=Section" memory="m?type=Memory"/>'
+    result = migrate(
+        tmp_path,
+        "0.7.0",
+        "0.7.2",
+        '<swModel><sections name="s"/></swModel><hwModel><system name="h"><memories name="m"/></system></hwModel>'
+        f"<mappingModel>{mapping}{mapping}</mappingModel>",
+    )
+    found = result.models.parts("mappingModel", "physicalSectionMapping")
+    assert [made.name for made in found] == ["s_m", "s_m 2"]
 
 
 @pytest.mark.parametrize(
@@ -258,7 +271,7 @@ def test_the_official_converter_keeps_tags_of_one_name_apart(up):
 
 def test_every_file_keeps_its_tags(up):
     result = up('<hwModel><tags name="t"/></hwModel>', '<swModel><runnables name="r" tags="t?type=Tag"/></swModel>')
-    assert "runnables name='r' tags -> a.amxmi/commonElements.0/tags.0" in result.lines
+    assert "runnables name='r' tags -> m0.amxmi/commonElements.0/tags.0" in result.lines
 
 
 EVENTS = """
@@ -336,10 +349,10 @@ def test_known_hardware_of_constraints_is_referred_to(up):
     </microcontrollers></ecus></system></hwModel>
     """
     result = up(CONDITIONS.format(core="c"), hardware)
-    core = "b.amxmi/hwModel.0/system.0/ecus.0/microcontrollers.0/cores.0"
+    core = "m1.amxmi/hwModel.0/system.0/ecus.0/microcontrollers.0/cores.0"
     assert f"coreAllocation core -> {core}" in result.lines
     assert f"firstConstraint [HwCoreProperty] core -> {core}" in result.lines
-    assert "hwConstraint [HwMemoryProperty] memory -> b.amxmi/hwModel.0/system.0/memories.0" in result.lines
+    assert "hwConstraint [HwMemoryProperty] memory -> m1.amxmi/hwModel.0/system.0/memories.0" in result.lines
     assert result.text.count("migration_gen") == 0
     assert len(result.of("LOST")) == 2  # the number of instructions of the type, and what the core contains
 
@@ -347,7 +360,7 @@ def test_known_hardware_of_constraints_is_referred_to(up):
 def test_new_cores_are_apart_from_those_of_the_system(up):
     hardware = '<hwModel><system name="s"><ecus name="e"><microcontrollers name="m"/></ecus></system></hwModel>'
     result = up(CONDITIONS.format(core="c"), hardware)
-    assert "coreAllocation core -> b.amxmi/hwModel.0/system.0/ecus.1/microcontrollers.0/cores.0" in result.lines
+    assert "coreAllocation core -> m1.amxmi/hwModel.0/system.0/ecus.1/microcontrollers.0/cores.0" in result.lines
     assert "hwModel" not in result.text.split("== 0.7.2")[1].replace("/hwModel", "")
 
 

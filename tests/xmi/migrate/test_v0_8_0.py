@@ -1,7 +1,7 @@
 """0.7.2 -> 0.8.0: what the pairs of models do not show."""
 
 import pytest
-from old_models import migrate
+from inline_models import migrate
 
 KEY = "hwConstraint (element removed during Migration of Model to 0.8.0 version)"
 
@@ -84,6 +84,14 @@ def test_a_mode_without_initial_value_is_set_aside_for_later_versions(up):
     assert official.of("LOST") == ["mode of a mode label without initial value"]
 
 
+def test_a_mode_that_is_not_that_of_the_initial_value_is_lost(up):
+    literal = '<modes name="m"><literals name="a"/></modes><modes name="n"/>'
+    result = up(f'<swModel>{literal}<modeLabels name="x" mode="n?type=Mode" initialValue="m/a?type=ModeLiteral"/></swModel>')
+    assert result.notes == [("LOST", "mode of a mode label: that of its initial value is another one", "n")]
+    result = up('<swModel><modeLabels name="x" mode="n?type=Mode" initialValue="n/a?type=ModeLiteral"/></swModel>')
+    assert result.of("LOST") == []
+
+
 CONSISTENCY = (
     '<osModel><osDataConsistency mode="automaticProtection"><dataStability level="process"/></osDataConsistency>{}</osModel>'
 )
@@ -113,6 +121,12 @@ def test_consistency_without_operating_system_is_lost(up):
         "mode=automaticProtection, dataStability (level=process)",
     )
     assert up("<osModel><osDataConsistency/></osModel>").notes == []
+
+
+def test_consistency_that_no_operating_system_takes_is_lost(up):
+    result = up(CONSISTENCY.format('<operatingSystems name="a"><osDataConsistency mode="noProtection"/></operatingSystems>'))
+    assert result.lines[2:] == ["osModel", "operatingSystems name='a'", "osDataConsistency mode='noProtection'"]
+    assert [note[:2] for note in result.notes] == [("LOST", "osDataConsistency: every operating system has its own")]
 
 
 @pytest.mark.parametrize("official", [False, True])

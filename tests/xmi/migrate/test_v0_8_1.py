@@ -1,15 +1,12 @@
 """0.8.0 -> 0.8.1, as far as the pairs of models do not show it."""
 
-import random
-import re
 from functools import partial
 
 import pytest
-from inline_models import check_step, of_kind, text_property, written
-from migration import meaning, migrated
+from inline_models import check_early, check_step, check_twice, damaged, of_kind, text_property, written
+from migration import migrated
 
-from amalthea_uros.xmi.migrate.chain import migrate
-from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.notes import Kind
 
 
 @pytest.fixture
@@ -55,6 +52,41 @@ def test_priority_0_of_a_task_is_kept_for_the_allocation_that_states_none(same):
         f'<swModel><tasks name="A">{text_property("priority", 0)}</tasks></swModel><mappingModel>'
         + allocations.format('><schedulingParameters priority="3"/></taskAllocation>'),
     )
+
+
+def test_priority_0_of_an_isr_is_kept_for_the_allocation_that_states_none(same):
+    mapping = '<mappingModel><isrAllocation isr="I?type=ISR"/><isrAllocation isr="I?type=ISR" priority="3"/></mappingModel>'
+    same(
+        f'<swModel><isrs name="I" priority="0"/></swModel>{mapping}',
+        f'<swModel><isrs name="I">{text_property("priority", 0)}</isrs></swModel>{mapping}',
+    )
+
+
+def test_priority_0_of_an_allocation_stays_where_the_isr_states_none(same):
+    model = '<swModel><isrs name="I"/></swModel><mappingModel><isrAllocation isr="I?type=ISR" priority="0"/>'
+    model += '<isrAllocation priority="0"/></mappingModel>'
+    same(model, model)
+
+
+def test_a_custom_property_that_says_the_same_is_enough(same):
+    model = f'<swModel><tasks name="T"{{}}>{text_property("priority", 5)}{text_property("osekTaskGroup", 2)}</tasks></swModel>'
+    same(model.format(' priority="5" osekTaskGroup="2"'), model.format(""))
+
+
+def test_what_becomes_of_priorities_and_groups_is_noted(files):
+    content = '<swModel><tasks name="A" priority="5" osekTaskGroup="0"/><tasks name="B" priority="0" osekTaskGroup="2"/>'
+    content += '<isrs name="I" priority="9"/></swModel><mappingModel><taskAllocation task="B?type=Task" priority="3"/>'
+    content += '<isrAllocation isr="I?type=ISR" priority="0"/></mappingModel>'
+    _, notes = migrated(files("0.8.0", content), "0.8.1")
+    assert [(note.kind.name, note.message, note.detail) for note in notes] == [
+        ("MOVED", "priority of a task allocation -> schedulingParameters", "3"),
+        ("CONVERTED", "priority 0, the old default, replaced: the priority of the ISR applies", "9"),
+        ("KEPT", "priority of a process", "5"),
+        ("CONVERTED", "priority 0, the old default, left out: the priority of the allocation applies", ""),
+        ("KEPT", "priority of a process", "9"),
+        ("CONVERTED", "OSEK task group 0, the old default, left out", ""),
+        ("KEPT", "OSEK task group", "2"),
+    ]
 
 
 def test_the_official_converter_loses_priority_0(same):
@@ -124,6 +156,30 @@ def test_process_prototypes_have_priorities_and_custom_properties_come_first(fil
     (prototype,) = models.trees[0].root.find("swModel", "processPrototypes")
     assert [child.tag for child in prototype.children] == ["customProperties", "customProperties", "runnableCalls"]
     assert [child.get("key") for child in prototype.all("customProperties")] == ["k", "priority"]
+
+
+@pytest.mark.parametrize(("attribute", "parameter"), [("priority", "priority"), ("osekTaskGroup", "taskGroup")])
+def test_a_custom_property_that_was_there_is_not_taken_for_what_the_task_states(files, attribute, parameter):
+    models, notes = migrated(
+        files(
+            "0.8.0",
+            f'<swModel><tasks name="T" {attribute}="5">{text_property(attribute, 7)}</tasks></swModel><osModel>'
+            '<operatingSystems name="O"><taskSchedulers name="S"><schedulingAlgorithm xsi:type="am:OSEK"/></taskSchedulers>'
+            "</operatingSystems></osModel><mappingModel>"
+            '<taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/></mappingModel>',
+        ),
+        "2.0.0",
+    )
+    (stated,) = models.parts("mappingModel", "taskAllocation", "schedulingParameters")
+    assert (stated.target("key").name, stated.child("value").get("value")) == (parameter, "5")
+    (kept,) = models.parts("swModel", "tasks", "customProperties")
+    assert (kept.get("key"), kept.child("value").get("value")) == (f"{attribute} 2", "7")
+    assert f"{attribute} 2" in dict(reversed(pair) for pair in of_kind(notes, Kind.RENAMED))
+
+
+def test_officially_the_custom_property_of_a_task_keeps_its_key(same):
+    model = f'<swModel><tasks name="T"{{}}>{text_property("priority", 7)}{{}}</tasks></swModel>'
+    same(model.format(' priority="5"', ""), model.format("", text_property("priority", 5)), official=True)
 
 
 # Stimuli
@@ -198,6 +254,19 @@ def test_activations(same, official):
     )
 
 
+def test_the_keys_of_custom_properties_stay_unique(same):
+    model = (
+        f'<swModel><activations xsi:type="am:PeriodicActivation" name="P">{text_property("deadline", "x")}{{}}</activations>'
+    )
+    model += "</swModel>"
+    same(
+        model.format('<deadline value="3" unit="ms"/>'),
+        model.format(
+            '<customProperties key="deadline 2"><value xsi:type="am:TimeObject" value="3" unit="ms"/></customProperties>'
+        ),
+    )
+
+
 def test_the_activation_of_a_process_prototype_keeps_its_name(same):
     model = '<swModel><processPrototypes name="P" activation="A?type=SingleActivation"/>'
     model += '<activations xsi:type="am:SingleActivation" name="A"/></swModel>'
@@ -229,6 +298,47 @@ def test_scheduling_units(same, tag, official):
         official,
     )
     assert of_kind(notes, Kind.LOST) == [("interrupt controller of a scheduling unit", "C?type=InterruptController")]
+
+
+def test_a_custom_property_without_value_of_a_scheduling_unit_moves_like_others(same):
+    key = "SchedulingHWUnit_CustomProperty__k"
+    same(
+        SYSTEM.format(
+            '<taskSchedulers name="S"><schedulingUnit xsi:type="am:SchedulingHWUnit"><customProperties key="k"/></schedulingUnit>'
+            "</taskSchedulers>"
+        ),
+        SYSTEM.format(f'<taskSchedulers name="S"><customProperties key="{key}"/></taskSchedulers>'),
+    )
+
+
+def test_what_becomes_of_scheduling_units_is_noted(files):
+    schedulers = f'<taskSchedulers name="S" scheduleUnitPriority="0"><schedulingUnit priority="3">{text_property("k", "v")}'
+    schedulers += '<instructions xsi:type="am:InstructionsConstant" value="1"/></schedulingUnit></taskSchedulers>'
+    schedulers += (
+        f'<taskSchedulers name="H"><schedulingUnit>{text_property("k", "v")}<delay value="1" unit="ns"/></schedulingUnit>'
+    )
+    models, notes = migrated(files("0.8.0", SYSTEM.format(f"{schedulers}</taskSchedulers>")), "0.8.1")
+    keys = [[each.get("key") for each in found.all("customProperties")] for found in models.nodes("taskSchedulers")]
+    assert keys == [
+        ["SchedulingSWUnit_CustomProperty__k", "SchedulingSWUnit___priority"],
+        ["SchedulingHWUnit_CustomProperty__k", "SchedulingHWUnit___delay"],
+    ]
+    assert [(note.kind.name, note.message, note.detail) for note in notes] == [
+        ("CONVERTED", "scheduleUnitPriority 0, the old default, left out", ""),
+        ("MOVED", "custom property of a scheduling unit -> scheduler", "SchedulingSWUnit_CustomProperty__k"),
+        ("MOVED", "instructions of a scheduling unit -> computationItems of the scheduler", ""),
+        ("KEPT", "priority of a scheduling unit", "3"),
+        ("MOVED", "custom property of a scheduling unit -> scheduler", "SchedulingHWUnit_CustomProperty__k"),
+        ("KEPT", "delay of a scheduling unit", "1ns"),
+    ]
+
+
+def test_what_else_a_scheduling_unit_states_is_not_lost_silently(same):
+    unit = '<schedulingUnit xsi:type="am:SchedulingHWUnit" priority="0" x="1"><y z="2"/></schedulingUnit>'
+    notes = same(
+        SYSTEM.format(f'<taskSchedulers name="S">{unit}</taskSchedulers>'), SYSTEM.format('<taskSchedulers name="S"/>')
+    )
+    assert of_kind(notes, Kind.LOST) == [("other content of a scheduling unit", "x=1, y (z=2)")]
 
 
 def test_parameters_of_a_scheduler_in_its_algorithm(same):
@@ -311,6 +421,17 @@ def test_a_chain_in_no_file_may_be_an_outer_one(same):
     same(model.format(reference), model.format(text_property("eventChain", "amlt:/#b?type=EventChain")), official=True)
 
 
+def test_references_to_inner_chains_are_noted(files):
+    model = OUTER.format("segments", "SubEventChain") + '<eventChains name="c"><strands xsi:type="am:EventChainReference" '
+    model += 'eventChain="inner?type=EventChain"/></eventChains>'
+    model += '<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="l" scope="inner?type=EventChain"/>'
+    _, notes = migrated(files("0.8.0", f"<constraintsModel>{model}</constraintsModel>"), "0.8.1")
+    assert of_kind(notes, Kind.KEPT) == [
+        ("reference to an inner event chain", "inner?type=EventChain"),
+        ("scope: reference to an inner event chain", "inner?type=EventChain"),
+    ]
+
+
 @pytest.mark.parametrize("official", [False, True])
 def test_the_name_of_an_inner_chain_means_the_outer_one_that_shares_it(files, official):
     model = '<constraintsModel><eventChains name="a"><segments xsi:type="am:SubEventChain"><eventChain name="b"/></segments>'
@@ -345,30 +466,16 @@ EVERYTHING = (
 
 
 @pytest.mark.parametrize("version", ["0.8.1", "0.8.2"])
-def test_a_file_whose_namespace_was_raised_early_takes_the_step(files, version):
-    early, _ = migrated(files(version, EVERYTHING), "0.8.2")
-    proper, _ = migrated(files("0.8.0", EVERYTHING), "0.8.2")
-    assert meaning(early) == meaning(proper)
+def test_a_file_whose_namespace_was_raised_early_takes_the_step(tmp_path, version):
+    check_early(tmp_path, "0.8.0", version, "0.8.2", EVERYTHING)
 
 
-def test_the_step_leaves_alone_what_is_converted(files):
-    once, _ = migrated(files("0.8.0", EVERYTHING), "0.8.1")
-    expected = meaning(once)
-    once.trees[0].version = "0.8.0"
-    notes = Notes()
-    migrate(once, "0.8.1", notes, official=False)
-    assert meaning(once) == expected
-    assert notes.all == []
+def test_the_step_leaves_alone_what_is_converted(tmp_path):
+    check_twice(tmp_path, "0.8.0", "0.8.1", EVERYTHING)
 
 
 @pytest.mark.parametrize("official", [False, True])
 def test_damaged_files_are_migrated(files, official):
-    rng = random.Random(8)
-    pieces = re.findall(r' [\w:]+="[^"]*"', EVERYTHING)
     values = ["", "0", "x", "T?type=Task", "inner?type=EventChain", "gone?type=Periodic gone?type=Core"]
-    for _ in range(60):
-        text = EVERYTHING
-        for piece in rng.sample(pieces, 6):
-            name = piece.partition("=")[0]
-            text = text.replace(piece, rng.choice(["", f'{name}="{rng.choice(values)}"']), 1)
+    for text in damaged(EVERYTHING, values, seed=8):
         migrated(files("0.8.0", text), "0.8.3", official)

@@ -1,15 +1,12 @@
 """0.8.2 -> 0.8.3, as far as the pairs of models do not show it."""
 
-import random
-import re
 from functools import partial
 
 import pytest
-from inline_models import check_step, of_kind, text_property, written
-from migration import meaning, migrated
+from inline_models import check_early, check_step, check_twice, damaged, of_kind, text_property, written
+from migration import migrated
 
-from amalthea_uros.xmi.migrate.chain import migrate
-from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.notes import Kind
 
 
 @pytest.fixture
@@ -137,6 +134,18 @@ def test_labels_and_literals_of_other_files(same):
     assert of_kind(notes, Kind.LOST) == [("mode label of another file", "L?type=ModeLabel")]
 
 
+def test_labels_and_literals_that_are_no_references_are_lost(same):
+    task = '<tasks name="T"><callGraph><graphEntries xsi:type="am:ModeSwitch"{}</graphEntries></callGraph></tasks>'
+    notes = same(
+        MODES.format(task.format(' valueProvider="L"><entries values="a"/>')),
+        MODES.format(task.format("><entries><condition/></entries>")),
+    )
+    assert of_kind(notes, Kind.LOST) == [
+        ("mode label of a switch that is not a reference", "L"),
+        ("mode literal of a switch that is not a reference", "a"),
+    ]
+
+
 @pytest.mark.parametrize("official", [False, True])
 def test_an_entry_without_literals_is_never_taken(same, official):
     task = '<tasks name="T"><callGraph><graphEntries xsi:type="am:ModeSwitch"{}</graphEntries></callGraph></tasks>'
@@ -190,30 +199,16 @@ EVERYTHING = (
 )
 
 
-def test_a_file_whose_namespace_was_raised_early_takes_the_step(files):
-    early, _ = migrated(files("0.8.3", EVERYTHING), "0.8.3")
-    proper, _ = migrated(files("0.8.2", EVERYTHING), "0.8.3")
-    assert meaning(early) == meaning(proper)
+def test_a_file_whose_namespace_was_raised_early_takes_the_step(tmp_path):
+    check_early(tmp_path, "0.8.2", "0.8.3", "0.8.3", EVERYTHING)
 
 
-def test_the_step_leaves_alone_what_is_converted(files):
-    once, _ = migrated(files("0.8.2", EVERYTHING), "0.8.3")
-    expected = meaning(once)
-    once.trees[0].version = "0.8.2"
-    notes = Notes()
-    migrate(once, "0.8.3", notes, official=False)
-    assert meaning(once) == expected
-    assert notes.all == []
+def test_the_step_leaves_alone_what_is_converted(tmp_path):
+    check_twice(tmp_path, "0.8.2", "0.8.3", EVERYTHING)
 
 
 @pytest.mark.parametrize("official", [False, True])
 def test_damaged_files_are_migrated(files, official):
-    rng = random.Random(3)
-    pieces = re.findall(r' [\w:]+="[^"]*"', EVERYTHING)
     values = ["", "0", "x", "P?type=PeriodicStimulus", "M/a?type=ModeLiteral", "gone?type=ModeLabel gone?type=Core"]
-    for _ in range(60):
-        text = EVERYTHING
-        for piece in rng.sample(pieces, 6):
-            name = piece.partition("=")[0]
-            text = text.replace(piece, rng.choice(["", f'{name}="{rng.choice(values)}"']), 1)
+    for text in damaged(EVERYTHING, values, seed=3):
         migrated(files("0.8.2", text), "0.8.3", official)

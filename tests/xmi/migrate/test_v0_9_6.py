@@ -1,7 +1,7 @@
 """Event chains and conditions about modes."""
 
 import pytest
-from inline_migration import InlineModels
+from inline_models import InlineModels
 
 from amalthea_uros.xmi.migrate.notes import Kind
 

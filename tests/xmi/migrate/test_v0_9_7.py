@@ -1,7 +1,7 @@
 """Activity graphs and interfaces of components."""
 
 import pytest
-from inline_migration import InlineModels
+from inline_models import InlineModels
 
 from amalthea_uros.xmi.migrate.notes import Kind
 

@@ -1,7 +1,7 @@
 """Measurements, and limits of numbers that became tighter in 1.2.0 and 2.1.0."""
 
 import pytest
-from inline_migration import InlineModels
+from inline_models import InlineModels
 
 from amalthea_uros.xmi.migrate.notes import Kind
 

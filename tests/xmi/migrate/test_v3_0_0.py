@@ -1,7 +1,7 @@
 """Switches, data types, interfaces and semaphores of 3.0.0."""
 
 import pytest
-from inline_migration import InlineModels
+from inline_models import InlineModels
 
 from amalthea_uros.xmi.migrate.notes import Kind
 

@@ -21,7 +21,8 @@ from amalthea_uros.xmi.migrate.steps.back_parameters import (
     write_defaults,
 )
 from amalthea_uros.xmi.migrate.steps.definition_maps import PARAMETER_LISTS, as_map
-from amalthea_uros.xmi.migrate.steps.kept import keep, kept, prefix, string
+from amalthea_uros.xmi.migrate.steps.kept import keep, kept, prefix
+from amalthea_uros.xmi.migrate.steps.properties import text_value
 from amalthea_uros.xmi.migrate.steps.restored import DEFINITION, DEFINITIONS, OF_ASSOCIATION, OWN, PROPERTY
 from amalthea_uros.xmi.migrate.steps.scheduling_definitions import PRIORITY, USER_SPECIFIC
 from amalthea_uros.xmi.migrate.steps.standard_definitions import are_standard
@@ -117,7 +118,7 @@ def _add_algorithm(scheduler: Node, definition: Node, notes: Notes) -> Node | No
         made = scheduler.add("schedulingAlgorithm", definition.name)
     else:
         made = scheduler.add("schedulingAlgorithm", USER_SPECIFIC)
-        keep(scheduler, DEFINITION, string(definition.name, scheduler))
+        keep(scheduler, DEFINITION, text_value(definition.name, scheduler))
     notes.converted(scheduler, "scheduler definition -> algorithm class", f"{definition.name} -> {made.type}", "definition")
     return made
 

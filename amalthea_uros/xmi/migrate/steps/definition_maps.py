@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.steps.kept import references, string, strings, targets_of, text_of, texts_of
+from amalthea_uros.xmi.migrate.steps.kept import references, strings, targets_of, text_of, texts_of
+from amalthea_uros.xmi.migrate.steps.properties import text_value
 
 #: References to parameter definitions: by name, as these become maps, too.
 PARAMETER_LISTS = ("algorithmParameters", "processParameters")
@@ -20,7 +21,7 @@ def as_map(definition: Node, report: Report) -> Node:
     """The content of a definition, of which nothing is left afterwards; parts of which a map can hold nothing are reported."""
     made = Node("value", "MapObject", origin=definition.origin)
     for key, text in definition.attributes.items():
-        _enter(made, key, string(text, definition))
+        _enter(made, key, text_value(text, definition))
     for name, targets in definition.references.items():
         named = name in PARAMETER_LISTS
         _enter(made, name, strings((t.name for t in targets), definition) if named else references(targets, definition))

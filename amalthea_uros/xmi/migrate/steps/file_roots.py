@@ -70,12 +70,13 @@ _EVENTS = (
     "ProcessEvent",
     "RunnableEvent",
     "SemaphoreEvent",
+    "StimulusEvent",
 )
 
 #: The same for objects that state their class by `xsi:type`.
 _TYPED_PLACES: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("Bridge", "Bus", "CrossbarSwitch", "NetworkType"), ("hwModel", "networkTypes")),
-    **dict.fromkeys((*_STIMULI, "StimulusEvent", "Synthetic"), ("stimuliModel", "stimuli")),
+    **dict.fromkeys((*_STIMULI, "Synthetic"), ("stimuliModel", "stimuli")),
     **dict.fromkeys(("ClockMultiplierList", "ClockSinusFunction", "ClockTriangleFunction"), ("stimuliModel", "clocks")),
     **dict.fromkeys(_EVENTS, ("eventModel", "events")),
     "VendorOperatingSystem": _OPERATING_SYSTEM,
@@ -89,20 +90,32 @@ def wrap_roots(models: ModelSet, notes: Notes) -> None:
     """Put the roots of files that are not whole models into models."""
     for tree in models.active:
         root = tree.root
-        place = _PLACES.get(root.tag) or _TYPED_PLACES.get(root.tag)
-        if place is not None:
-            if root.tag in _TYPED_PLACES:
-                root.type = root.tag
-            notes.converted(root, "part of a model as root of a file -> whole model", root.tag)
-            _wrap(tree, place)
+        place = _place_of(root)
+        if place:
+            _wrap(tree, place, "Amalthea", notes)
         elif root.tag in _PLACELESS:
             notes.lost(root, "root of a file that is part of an object in no file", root.tag)
             tree.root = Node("Amalthea", origin=root.origin)
 
 
-def _wrap(tree: Tree, place: tuple[str, ...]) -> None:
+def wrap_objects(models: ModelSet, notes: Notes) -> None:
+    """The same for single objects in ITEA versions, whose steps look for them in sub-models; these may be roots there."""
+    for tree in models.active:
+        place = _place_of(tree.root)
+        if len(place) > 1:
+            _wrap(tree, place, "AMALTHEA", notes)
+
+
+def _place_of(root: Node) -> tuple[str, ...]:
+    return _PLACES.get(root.tag) or _TYPED_PLACES.get(root.tag, ())
+
+
+def _wrap(tree: Tree, place: tuple[str, ...], model: str, notes: Notes) -> None:
     part = tree.root
-    holder = tree.root = Node("Amalthea", origin=part.origin)
+    notes.converted(part, "part of a model as root of a file -> whole model", part.tag)
+    if part.tag in _TYPED_PLACES:
+        part.type = part.tag
+    holder = tree.root = Node(model, origin=part.origin)
     for tag in place[:-1]:
         holder = holder.add(tag)
     part.tag = place[-1]

@@ -10,6 +10,7 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.file_roots import wrap_objects
 from amalthea_uros.xmi.migrate.steps.itea_defaults import write_defaults
 from amalthea_uros.xmi.migrate.steps.itea_modes import convert_label_values
 from amalthea_uros.xmi.migrate.steps.itea_tools import (
@@ -39,6 +40,9 @@ _WITH_TAGS = ("swModel", "componentsModel")
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA ITEA 1.2.0."""
+    if not official:
+        # The official converter looks for what it changes in sub-models only, and so leaves most of a file of one object as it is.
+        wrap_objects(models, notes)
     write_defaults(models, notes, official)
     for node in models.rename_classes({"sw:SchedulingSWUnit": "os:SchedulingSWUnit"}):
         notes.renamed(node, "class SchedulingSWUnit moves from package sw to os")

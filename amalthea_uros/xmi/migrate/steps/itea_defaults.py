@@ -84,6 +84,9 @@ _TIMES: dict[str, dict[str, tuple[str, ...]]] = {
     "upperTimeBorder": _ENTRY,
 }
 
+#: More of them, which the official converter is not known to write.
+_MORE_DEFAULTS = {"latencies": (("", "accessType", "R"),)}
+
 #: Times that the official converter leaves without unit.
 _MORE_TIMES: dict[str, dict[str, tuple[str, ...]]] = {"limitValue": {"limit": ("TimeRequirementLimit",)}}
 
@@ -94,7 +97,7 @@ _TIME_CLASSES = ("SignedTime", "Time", "SignedTimeObject", "TimeObject")
 
 def write_defaults(models: ModelSet, notes: Notes, official: bool) -> None:
     """Write what the files do not state, but what they mean."""
-    for tag, rules in _DEFAULTS.items():
+    for tag, rules in (_DEFAULTS if official else _DEFAULTS | _MORE_DEFAULTS).items():
         for node in models.nodes(tag):
             if official and _is_overlooked(node):
                 continue

@@ -6,7 +6,7 @@ from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.steps.itea_tools import add_property
+from amalthea_uros.xmi.migrate.steps.properties import add_value, put_property
 
 #: Classes of values -> those of custom properties.
 _VALUES = {
@@ -37,9 +37,10 @@ def convert_values(models: ModelSet, notes: Notes, official: bool) -> None:
             if local_name(value.type) == "CharValue" and text is not None:
                 text = _character(text, value, notes)
             value_class = _VALUES.get(local_name(value.type), "StringObject")
-            made = add_property(holder, key, f"common:{value_class}", text, like=value)
+            content = Node("value", value_class, {} if text is None else {"value": text}, value.origin)
+            made = (put_property if official else add_value)(holder, key, content)
             made.comments = value.comments
-            notes.kept(value, f"{tag} of a hardware node: custom property", f"{key}={text}")
+            notes.kept(value, f"{tag} of a hardware node: custom property", f"{made.get('key')}={text}")
             converted.append(value)
     remove_all(converted)
 

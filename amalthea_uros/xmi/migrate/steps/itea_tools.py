@@ -48,16 +48,6 @@ def is_isr(process: Node) -> bool:
     return process.tag == "isrs" or local_name(process.type or process.get("class")) == "ISR"
 
 
-def add_property(holder: Node, key: str, value_class: str, value: str | None, like: Node | None = None) -> Node:
-    """A new custom property of an object, after those that it has; without value if that is None."""
-    last = max((at for at, child in enumerate(holder.children) if child.tag == "customProperties"), default=-1)
-    made = holder.add("customProperties", at=last + 1, like=like, key=key)
-    content = made.add("value", value_class)
-    if value is not None:
-        content.attributes["value"] = value
-    return made
-
-
 def lose_positions(models: ModelSet, part: str) -> None:
     """Do as the official converters, which leave positions in references as they are where a feature of the path is renamed.
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.properties import put_property, text_value
 
 
 def prefix(version: str) -> str:
@@ -15,12 +16,8 @@ def prefix(version: str) -> str:
 
 
 def keep(holder: Node, key: str, value: Node) -> Node:
-    """Make a value a custom property of an object; custom properties are the first parts."""
-    number = sum(1 for child in holder.children if child.tag == "customProperties")
-    made = holder.add("customProperties", at=number, like=value, key=key)
-    value.tag = "value"
-    made.insert(value)
-    return made
+    """Make a value a custom property of an object, with a key that starts with `prefix`: no other property has it."""
+    return put_property(holder, key, value)
 
 
 def kept(holder: Node, start: str) -> dict[str, Node]:
@@ -32,16 +29,11 @@ def kept(holder: Node, start: str) -> dict[str, Node]:
     }
 
 
-def string(text: str, like: Node, tag: str = "value") -> Node:
-    """A text as value of a custom property."""
-    return Node(tag, "StringObject", {"value": text}, like.origin)
-
-
 def strings(texts: Iterable[str], like: Node) -> Node:
     """Texts as one value of a custom property."""
     made = Node("value", "ListObject", origin=like.origin)
     for text in texts:
-        made.insert(string(text, like, "values"))
+        made.insert(text_value(text, like, "values"))
     return made
 
 

@@ -22,11 +22,33 @@ def property_text(found: Node | None) -> str | None:
     return value.get("value") if value is not None and value.type in _SIMPLE else None
 
 
-def add_property(node: Node, key: str, text: str) -> None:
-    """Add a text as the last custom property; a key that is there already gets a number, because keys are unique."""
-    present = node.all("customProperties")
-    unique = free_key(key, {each.get("key") for each in present})
-    node.add("customProperties", at=len(present), key=unique).add("value", "StringObject", value=text)
+def put_property(holder: Node, key: str, value: Node) -> Node:
+    """A new custom property of exactly that key, after those that the object has; the value leaves its container for it."""
+    last = max((at for at, child in enumerate(holder.children) if child.tag == "customProperties"), default=-1)
+    made = holder.add("customProperties", at=last + 1, like=value, key=key)
+    value.tag = "value"
+    made.insert(value)
+    return made
+
+
+def add_value(holder: Node, key: str, value: Node) -> Node:
+    """A new custom property with a value; a key that is there already gets a number, because keys are unique."""
+    return put_property(holder, free_key(key, keys_of(holder)), value)
+
+
+def add_property(holder: Node, key: str, text: str) -> None:
+    """Add a text as the last custom property; a key that is there already gets a number."""
+    add_value(holder, key, text_value(text, holder))
+
+
+def text_value(text: str, like: Node, tag: str = "value") -> Node:
+    """A text as value of a custom property, or as one of a list of values; it has the origin of `like`."""
+    return Node(tag, "StringObject", {"value": text}, like.origin)
+
+
+def keys_of(holder: Node) -> set[str]:
+    """The keys of all custom properties of an object."""
+    return {each.get("key") for each in holder.all("customProperties")}
 
 
 def move_properties(source: Node, target: Node) -> list[Node]:
@@ -35,7 +57,7 @@ def move_properties(source: Node, target: Node) -> list[Node]:
     A key that the other one has already gets a number, because keys are unique.
     """
     present = target.all("customProperties")
-    keys = {each.get("key") for each in present}
+    keys = keys_of(target)
     moved = source.all("customProperties")
     for at, each in enumerate(moved, len(present)):
         each.attributes["key"] = free_key(each.get("key"), keys)

@@ -12,8 +12,9 @@ from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_hardware import convert_values
-from amalthea_uros.xmi.migrate.steps.itea_tools import add_property, is_isr, lose_positions
+from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr, lose_positions
 from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA, lose_for_now
+from amalthea_uros.xmi.migrate.steps.properties import add_property
 
 #: Classes that did not only lose their package.
 _CLASSES = {
@@ -104,7 +105,7 @@ def _convert_interface(port: Node, notes: Notes) -> None:
         notes.renamed(port, f"kind {kind} is {_KINDS[kind]}", port.name, "kind")
     for interface in port.references.pop("interface", ()):
         text = interface.get("path") if interface.is_proxy else interface.name
-        add_property(port, "Franca interface", "common:StringObject", text)
+        add_property(port, "Franca interface", text)
         notes.kept(port, "reference to a Franca interface: custom property 'Franca interface'", text)
 
 

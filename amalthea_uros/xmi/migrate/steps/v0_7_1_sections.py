@@ -5,6 +5,7 @@ from __future__ import annotations
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.steps.properties import free_key
 from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, names_of, remove_and_keep
 
 #: Reference of a section -> element of the members.
@@ -29,7 +30,8 @@ def change_sections(models: ModelSet, notes: Notes, official: bool) -> None:
 
 def _place(member: Node, tag: str, section: Node, notes: Notes) -> None:
     if member.tag != tag:
-        notes.lost(section, "member of a section that is in no file of the set", names_of([member]))
+        why = "in no file of the set" if member.is_proxy else "of another kind"
+        notes.lost(section, f"member of a section that is {why}", names_of([member]))
         return
     placed = member.target("section")
     if placed is None:
@@ -72,9 +74,12 @@ def _remove_constraints(models: ModelSet, notes: Notes, official: bool) -> None:
 def name_mappings(models: ModelSet, notes: Notes) -> None:
     """Name what was a SectionMapping, which had no name; what it is now needs one from 0.7.2 on."""
     labels = models.origins.labels
-    for mapping in models.parts("mappingModel", "physicalSectionMapping"):
+    mappings = models.parts("mappingModel", "physicalSectionMapping")
+    used = {mapping.name for mapping in mappings}
+    for mapping in mappings:
         if mapping.name or labels[mapping.origin][0] != "mapping":
             continue
         ends = [target.name for name in ("origin", "memory") for target in mapping.references.get(name, ())]
-        mapping.attributes["name"] = "_".join(filter(None, ends)) or "mapping"
+        mapping.attributes["name"] = free_key("_".join(filter(None, ends)) or "mapping", used)
+        used.add(mapping.name)
         notes.defaulted(mapping, "name of a PhysicalSectionMapping", mapping.name)

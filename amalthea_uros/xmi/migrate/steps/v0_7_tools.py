@@ -1,4 +1,4 @@
-"""What the steps from 0.7.0 to 0.8.0 have in common."""
+"""What the steps from 0.7.0 to 0.8.1 have in common."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from amalthea_uros.xmi.header import XSI_NAMESPACE
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.names import reference_text
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.steps.properties import free_key
+from amalthea_uros.xmi.migrate.steps.properties import free_key, keys_of, text_value
 
 
 def keep_as_properties(holder: Node, properties: Iterable[tuple[str, str]]) -> None:
     """Add custom properties with text values, after those that the object has; a key that it has already gets a number."""
     added = []
-    used = {each.get("key") for each in holder.all("customProperties")}
+    used = keys_of(holder)
     for key, text in properties:
         unique = free_key(key, used)
         used.add(unique)
         made = Node("customProperties", "", {"key": unique}, holder.origin)
-        made.add("value", "StringObject", value=text)
+        made.insert(text_value(text, holder))
         added.append(made)
     others = [child for child in holder.children if child.tag != "customProperties"]
     holder.set_children([*holder.all("customProperties"), *added, *others])

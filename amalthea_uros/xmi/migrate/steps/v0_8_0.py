@@ -69,7 +69,10 @@ def _drop_mode(models: ModelSet, label: Node, notes: Notes, official: bool) -> N
     mode = label.references.pop("mode", None)
     if mode is None:
         return
-    if "initialValue" in label.references:
+    initial = label.target("initialValue")
+    if initial is not None and initial.parent is not None and initial.parent not in mode:
+        notes.lost(label, "mode of a mode label: that of its initial value is another one", names_of(mode), "mode")
+    elif initial is not None:
         notes.converted(label, "mode of a mode label -> mode of its initial value", names_of(mode), "mode")
     elif official:
         notes.lost(label, "mode of a mode label without initial value", names_of(mode), "mode")
@@ -82,13 +85,14 @@ def _distribute_consistency(os_model: Node, notes: Notes) -> None:
     systems = os_model.all("operatingSystems")
     for consistency in os_model.all("osDataConsistency"):
         consistency.remove()
-        for system in systems:
-            if system.child("osDataConsistency") is None:
-                system.insert(_copied(consistency))
-        if systems:
-            notes.moved(consistency, "osDataConsistency -> every operating system")
+        without = [system for system in systems if system.child("osDataConsistency") is None]
+        for system in without:
+            system.insert(_copied(consistency))
+        if without:
+            notes.moved(consistency, "osDataConsistency -> every operating system that has none")
         elif content := content_of(consistency):
-            notes.lost(consistency, "osDataConsistency: there is no operating system", content)
+            why = "every operating system has its own" if systems else "there is no operating system"
+            notes.lost(consistency, f"osDataConsistency: {why}", content)
 
 
 def _copied(node: Node) -> Node:

@@ -9,9 +9,9 @@ from amalthea_uros.xmi.migrate.names import reference_text
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.properties import add_value
 from amalthea_uros.xmi.migrate.steps.v0_8_event_chains import contain_event_chains
 from amalthea_uros.xmi.migrate.steps.v0_8_priorities import move_priorities
-from amalthea_uros.xmi.migrate.steps.v0_8_properties import add_property
 from amalthea_uros.xmi.migrate.steps.v0_8_schedulers import change_schedulers
 
 _TRIGGER = "InterProcessTrigger"
@@ -95,9 +95,9 @@ def _take_other_stimulus(trigger: Node, stimulus: Node, notes: Notes, official: 
     if official:
         notes.lost(trigger, "triggered stimulus that is not an inter-process stimulus", reference_text(stimulus), "stimulus")
         return
-    value = Node("value", origin=trigger.origin)
+    value = Node("value", "ReferenceObject", origin=trigger.origin)
     value.refer("value", stimulus)
-    add_property(trigger, "stimulus", value, "ReferenceObject")
+    add_value(trigger, "stimulus", value)
     notes.kept(trigger, "triggered stimulus that is not an inter-process stimulus", reference_text(stimulus), "stimulus")
 
 
@@ -133,7 +133,8 @@ def _keep_deadlines(models: ModelSet, notes: Notes) -> None:
         deadline = activation.child("deadline")
         if activation.type == "PeriodicActivation" and deadline is not None:
             notes.kept(deadline, "deadline of a periodic activation", deadline.get("value") + deadline.get("unit"))
-            add_property(activation, "deadline", deadline, "TimeObject")
+            deadline.type = "TimeObject"
+            add_value(activation, "deadline", deadline)
 
 
 def _change_hardware(models: ModelSet, notes: Notes) -> None:

@@ -8,8 +8,8 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.properties import add_property, add_value
 from amalthea_uros.xmi.migrate.steps.v0_8_mode_switches import state_conditions
-from amalthea_uros.xmi.migrate.steps.v0_8_properties import add_property, add_text, outline
 
 _CLASSES = {
     "FInterfacePort": "InterfacePort",
@@ -40,11 +40,11 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
 def _keep_deviation(holder: Node, tag: str, what: str, notes: Notes, official: bool) -> None:
     for deviation in holder.all(tag):
         deviation.remove()
-        text = outline(deviation)
+        text = _outline(deviation)
         if official or not text:
             notes.lost(holder, what, text)
         else:
-            add_text(holder, tag, text)
+            add_property(holder, tag, text)
             notes.kept(holder, what, text)
 
 
@@ -73,9 +73,10 @@ def _follow_clock(stimulus: Node, notes: Notes) -> None:
     scenario.take(stimulus.all("recurrence"))
     for offset in stimulus.all("offset"):
         notes.kept(offset, "offset of a periodic stimulus with a clock", offset.get("value") + offset.get("unit"))
-        add_property(scenario, "offset", offset, "TimeObject")
+        offset.type = "TimeObject"
+        add_value(scenario, "offset", offset)
     for deviation in stimulus.all(_DEVIATION):
-        notes.lost(deviation, "deviation of a periodic stimulus with a clock", outline(deviation))
+        notes.lost(deviation, "deviation of a periodic stimulus with a clock", _outline(deviation))
         deviation.remove()
 
 
@@ -104,6 +105,19 @@ def _change_arrival_curve(stimulus: Node, notes: Notes) -> None:
     for entry in stimulus.all("entries"):
         if entry.rename("numberOfEvents", "numberOfOccurrences"):
             notes.renamed(entry, "numberOfEvents -> numberOfOccurrences", attribute="numberOfEvents")
+
+
+def _outline(node: Node) -> str:
+    """What the parts of an object are, as text: `lowerBound=1ms, distribution=WeibullEstimators(pRemainPromille=0.5)`."""
+    return ", ".join(f"{child.tag}={_value(child)}" for child in node.children)
+
+
+def _value(node: Node) -> str:
+    if "value" in node.attributes:
+        return node.get("value") + node.get("unit")
+    stated = [f"{name}={text}" for name, text in node.attributes.items()]
+    stated += [_outline(node)] if node.children else []
+    return node.type + (f"({', '.join(stated)})" if stated else "")
 
 
 _KINDS: dict[str, Callable[[Node, Notes], None]] = {

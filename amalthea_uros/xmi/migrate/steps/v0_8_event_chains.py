@@ -6,7 +6,8 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.names import reference_text
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.steps.v0_8_properties import add_property, add_text
+from amalthea_uros.xmi.migrate.steps.kept import strings
+from amalthea_uros.xmi.migrate.steps.properties import add_property, add_value
 
 _CONSTRAINTS = ("EventChainLatencyConstraint", "EventChainSynchronizationConstraint")
 
@@ -21,7 +22,7 @@ def contain_event_chains(models: ModelSet, notes: Notes, official: bool) -> None
             notes.renamed(item, "class renamed", "SubEventChain -> EventChainContainer")
         elif item.type == "EventChainReference":
             for text in _take_inner(item, "eventChain", outer, official):
-                add_text(item, "eventChain", text)
+                add_property(item, "eventChain", text)
                 notes.kept(item, "reference to an inner event chain", text, "eventChain")
     for constraint in models.parts("constraintsModel", "timingConstraints"):
         if constraint.type in _CONSTRAINTS:
@@ -32,10 +33,7 @@ def _keep_scope(constraint: Node, outer: dict[str, Node], notes: Notes, official
     texts = _take_inner(constraint, "scope", outer, official)
     if not texts:
         return
-    value = Node("value", origin=constraint.origin)
-    for text in texts:
-        value.add("values", "StringObject", value=text)
-    add_property(constraint, "scope", value, "ListObject")
+    add_value(constraint, "scope", strings(texts, constraint))
     notes.kept(constraint, "scope: reference to an inner event chain", ", ".join(texts), "scope")
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.steps.v0_8_properties import add_text, text_of
+from amalthea_uros.xmi.migrate.steps.properties import free_key, keys_of, property_of, property_text, put_property, text_value
 
 _KEY = "priority"
 _GROUP = "osekTaskGroup"
@@ -24,7 +24,7 @@ def move_priorities(models: ModelSet, notes: Notes, official: bool) -> None:
         for process in models.parts("swModel", tag):
             _move_of_process(process, process in allocated, notes, official)
     for task in models.parts("swModel", "tasks"):
-        _move_task_group(task, notes)
+        _move_task_group(task, notes, official)
 
 
 def _move_of_allocations(models: ModelSet, notes: Notes, official: bool) -> set[Node]:
@@ -54,18 +54,20 @@ def _move_of_allocations(models: ModelSet, notes: Notes, official: bool) -> set[
 
 
 def _replace_defaults_of_isr_allocations(models: ModelSet, notes: Notes) -> set[Node]:
-    """The ISRs of which an allocation states a priority; it stays an attribute there, also in the newest version."""
+    """The ISRs of which every allocation states a priority; it stays an attribute there, also in the newest version."""
     allocated: set[Node] = set()
+    unstated: set[Node | None] = set()
     for allocation in models.parts("mappingModel", "isrAllocation"):
         isr = allocation.target("isr")
         if isr is None or _KEY not in allocation.attributes:
+            unstated.add(isr)
             continue
         own = _own(isr)
         if allocation.attributes[_KEY] == "0" and own not in ("", "0"):
             allocation.attributes[_KEY] = own
             notes.converted(allocation, "priority 0, the old default, replaced: the priority of the ISR applies", own, _KEY)
         allocated.add(isr)
-    return allocated
+    return allocated - unstated
 
 
 def _move_of_process(process: Node, is_allocated: bool, notes: Notes, official: bool) -> None:
@@ -73,7 +75,7 @@ def _move_of_process(process: Node, is_allocated: bool, notes: Notes, official: 
     if text is None:
         return
     if text != "0" or not (official or is_allocated):
-        add_text(process, _KEY, text)
+        _state(process, _KEY, text, notes, official)
         notes.kept(process, "priority of a process", text, _KEY)
     elif is_allocated:
         notes.converted(
@@ -83,18 +85,31 @@ def _move_of_process(process: Node, is_allocated: bool, notes: Notes, official: 
         notes.lost(process, "priority 0 of a process", attribute=_KEY)
 
 
-def _move_task_group(task: Node, notes: Notes) -> None:
+def _move_task_group(task: Node, notes: Notes, official: bool) -> None:
     text = task.attributes.pop(_GROUP, None)
     if text == "0":
         # Nothing is lost: a task without group is in group 0.
         notes.converted(task, "OSEK task group 0, the old default, left out", attribute=_GROUP)
     elif text is not None:
-        add_text(task, _GROUP, text)
+        _state(task, _GROUP, text, notes, official)
         notes.kept(task, "OSEK task group", text, _GROUP)
+
+
+def _state(process: Node, key: str, text: str, notes: Notes, official: bool) -> None:
+    """Add a custom property that the step to 2.0.0 finds by its key: of another one of that key it would take the value."""
+    present = property_of(process, key)
+    if property_text(present) == text:
+        return
+    if present is not None and not official:
+        present.attributes["key"] = free_key(key, keys_of(process))
+        notes.renamed(
+            present, f"custom property {key!r} gets another key: it is what the process states itself", present.get("key")
+        )
+    put_property(process, key, text_value(text, process))
 
 
 def _own(process: Node | None) -> str:
     """The priority that a process states itself, also in a file that was migrated before."""
     if process is None:
         return ""
-    return process.get(_KEY) or text_of(process, _KEY) or ""
+    return process.get(_KEY) or property_text(property_of(process, _KEY)) or ""

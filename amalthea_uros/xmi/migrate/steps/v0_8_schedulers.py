@@ -6,7 +6,8 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.names import reference_text
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.steps.v0_8_properties import add_property, add_text
+from amalthea_uros.xmi.migrate.steps.properties import add_property, add_value, move_properties
+from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of
 
 _HARDWARE, _SOFTWARE = "SchedulingHWUnit", "SchedulingSWUnit"
 
@@ -35,28 +36,28 @@ def _keep_priority(holder: Node, scheduler: Node, attribute: str, key: str, note
     if text == "0":
         notes.converted(holder, f"{attribute} 0, the old default, left out", attribute=attribute)
     elif text is not None:
-        add_text(scheduler, key, text)
+        add_property(scheduler, key, text)
         notes.kept(holder, f"{attribute} of a scheduling unit", text, attribute)
 
 
 def _dissolve(unit: Node, scheduler: Node, notes: Notes) -> None:
     kind = unit.type or (_HARDWARE if unit.child("delay") else _SOFTWARE)
     for entry in unit.all("customProperties"):
-        value = entry.child("value")
-        key = f"{kind}_CustomProperty__{entry.get('key')}"
+        key = entry.attributes["key"] = f"{kind}_CustomProperty__{entry.get('key')}"
         notes.moved(entry, "custom property of a scheduling unit -> scheduler", key)
-        if value is not None:
-            add_property(scheduler, key, value, value.type)
+    move_properties(unit, scheduler)
     delay = unit.child("delay")
     if delay is not None:
         notes.kept(delay, "delay of a scheduling unit", delay.get("value") + delay.get("unit"))
-        add_property(scheduler, f"{_HARDWARE}___delay", delay, "TimeObject")
+        delay.type = "TimeObject"
+        add_value(scheduler, f"{_HARDWARE}___delay", delay)
     for instructions in unit.all("instructions"):
         instructions.tag = "default"
         scheduler.add("computationItems", "RunnableInstructions", like=instructions).insert(instructions)
         notes.moved(instructions, "instructions of a scheduling unit -> computationItems of the scheduler")
     _keep_priority(unit, scheduler, "priority", f"{_SOFTWARE}___priority", notes)
-    controller = unit.target("interruptController")
-    if controller is not None:
+    for controller in unit.references.pop("interruptController", ()):
         notes.lost(unit, "interrupt controller of a scheduling unit", reference_text(controller), "interruptController")
+    if rest := content_of(unit):
+        notes.lost(unit, "other content of a scheduling unit", rest)
     unit.remove()
