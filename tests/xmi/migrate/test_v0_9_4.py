@@ -56,6 +56,15 @@ def test_deadlines_are_requirements_in_their_files(same):
     )
 
 
+@pytest.mark.parametrize(("target", "left"), [("0.9.5", 1), ("0.9.7", 0)])
+def test_a_deadline_without_value_is_no_requirement_for_0(tmp_path, target, left):
+    paths = written(tmp_path, "0.9.3", '<swModel><runnables name="A"><deadline unit="ms"/></runnables></swModel>')
+    models, notes = migrated(paths, target)
+    assert len(models.trees[0].root.find("constraintsModel", "requirements")) == left
+    said = [note for note in notes if note.message == "a deadline without value is no requirement"]
+    assert [note.kind for note in said] == [Kind.CONVERTED] * (1 - left)
+
+
 # Data types and ports
 
 

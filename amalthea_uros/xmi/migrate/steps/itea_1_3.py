@@ -107,7 +107,8 @@ def _convert_deadlines(models: ModelSet, notes: Notes, official: bool) -> None:
                 requirement = _require(sub_model_or_new(trees[root], "constraintsModel"), process, deadline, notes)
                 if "value" not in deadline.attributes and not official:
                     message = "a deadline without value is no requirement"
-                    models.postponed.append(Postponed(BEYOND_ITEA, requirement.remove, Kind.CONVERTED, deadline, message))
+                    drop = requirement.remove
+                    models.postponed.append(Postponed(BEYOND_ITEA, drop, Kind.CONVERTED, deadline, message, is_kept=True))
             remove_all(deadlines[:1] if official else deadlines)
 
 

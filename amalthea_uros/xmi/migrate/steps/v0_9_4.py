@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
 from amalthea_uros.xmi.migrate.steps.v0_9_4_modes import Modes
 
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.9.3."""
     for node in models.parts("swModel", "runnables"):
-        _move_deadline(node, notes)
+        _move_deadlines(node, models, notes, official)
     for node in models.nodes("dataMapping"):
         _convert_mapping(node, notes)
     for node in models.nodes("ports"):
@@ -24,7 +26,7 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     modes.convert_stimuli()
 
 
-def _move_deadline(runnable: Node, notes: Notes) -> None:
+def _move_deadlines(runnable: Node, models: ModelSet, notes: Notes, official: bool) -> None:
     """The deadline of a runnable is a requirement. The official converter fails if there is a constraintsModel already."""
     for deadline in runnable.all("deadline"):
         constraints = runnable.root.child_or_new("constraintsModel")
@@ -34,6 +36,10 @@ def _move_deadline(runnable: Node, notes: Notes) -> None:
         deadline.tag = "limitValue"
         limit.insert(deadline)
         notes.moved(deadline, "the deadline of a runnable is a requirement now", deadline.get("value") + deadline.get("unit"))
+        if "value" not in deadline.attributes and not official:
+            # It would be one for a response time of 0.
+            drop, message = requirement.remove, "a deadline without value is no requirement"
+            models.postponed.append(Postponed(BEYOND_CONVERTERS, drop, Kind.CONVERTED, deadline, message, is_kept=True))
 
 
 def _convert_mapping(node: Node, notes: Notes) -> None:
