@@ -22,6 +22,9 @@ _BYTE_ORDER_MARKS = (
 _UNMARKED = frozenset({"utf-16-le", "utf-16-be"})
 _MARK = "\ufeff"
 
+#: What a path can be wrong by: a path with a zero byte is a ValueError, one in a circle of links a RuntimeError before Python 3.13.
+_IMPOSSIBLE = (OSError, ValueError, RuntimeError)
+
 
 class FileError(Exception):
     """A file cannot be read or written.
@@ -107,7 +110,7 @@ def write_bytes(path: Path, data: bytes) -> None:
         Path(temporary).chmod(mode)
         Path(temporary).replace(target)
         temporary = None
-    except (OSError, ValueError) as error:
+    except _IMPOSSIBLE as error:
         raise not_writable(path, error) from None
     finally:
         if temporary:
@@ -158,7 +161,7 @@ def _staged(path: Path, data: bytes, undo: ExitStack) -> Path:
             stream.flush()
             os.fsync(stream.fileno())
         temporary.chmod(mode)
-    except (OSError, ValueError) as error:
+    except _IMPOSSIBLE as error:
         raise not_writable(path, error) from None
     return temporary
 
@@ -192,7 +195,7 @@ def _restore(path: Path, former: Path | None) -> None:
             former.replace(path.resolve())
 
 
-def not_writable(path: Path, error: OSError | ValueError) -> FileError:
+def not_writable(path: Path, error: OSError | ValueError | RuntimeError) -> FileError:
     """The error for a path at which a file or a directory cannot be created."""
     return FileError(path, f"the file cannot be written: {_cause(error)}")
 
@@ -205,11 +208,19 @@ def is_directory(path: Path) -> bool:
         return False
 
 
+def is_file(path: Path) -> bool:
+    """Whether there is such a file; False for an impossible path."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
 def resolved(path: Path) -> Path:
     """The path without links; of an impossible one, or one in a circle of links, itself: opening it reports the cause."""
     try:
         return path.resolve()
-    except (OSError, ValueError, RuntimeError):
+    except _IMPOSSIBLE:
         return path.absolute()
 
 
@@ -258,8 +269,7 @@ def _size_text(size: int) -> str:
     return f"{size // 2**20} MiB" if size >= 2**20 else f"{size:,} bytes"
 
 
-def _cause(error: OSError | ValueError) -> str:
-    # A path with a zero byte is a ValueError.
+def _cause(error: OSError | ValueError | RuntimeError) -> str:
     return getattr(error, "strerror", None) or str(error)
 
 

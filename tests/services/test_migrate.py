@@ -1,5 +1,6 @@
 """`amuros.migrate`, and what the other functions do with models of older versions."""
 
+import os
 import zipfile
 from pathlib import Path
 
@@ -118,6 +119,20 @@ class TestWhereResultsGo:
         assert [file.state for file in result.files] == [FileState.WRITTEN, FileState.FAILED]
         assert "two files would be written here" in result.findings[0].message
 
+    def test_a_folder_is_migrated_once_however_often_it_is_given(self, tmp_path):
+        write(tmp_path / "models" / "inner" / "a.amxmi", "0.9.8")
+        result = migrate_files([tmp_path / "models", tmp_path / "models" / "inner"], target=tmp_path / "new")
+        assert [file.state for file in result.files] == [FileState.WRITTEN]
+        assert versions(tmp_path / "new") == {"inner/a.amxmi": "3.3.0"}
+
+    @pytest.mark.parametrize("name", ["loop", "loop/x", "x" * 300])
+    @pytest.mark.parametrize("in_folder", [False, True])
+    def test_to_an_impossible_path(self, in_folder, name, tmp_path):
+        (tmp_path / "loop").symlink_to(tmp_path / "loop")
+        path = write(tmp_path / "models" / "a.amxmi", "0.9.8")
+        (finding,) = migrate_files(path.parent if in_folder else path, target=tmp_path / name).findings
+        assert (finding.rule, finding.message.partition(":")[0]) == ("XMI101", "the file cannot be written")
+
     def test_a_dry_run_writes_nothing(self, tmp_path):
         path = write(tmp_path / "a.amxmi", "0.9.8")
         assert migrate_files(path, is_dry_run=True).files[0].state is FileState.PLANNED
@@ -213,6 +228,29 @@ class TestSets:
         result = migrate_files(folder)
         assert [finding.rule for finding in result.findings] == ["XMI002", "XMI103", "XMI006", "XMI005"]
         assert versions(tmp_path / "models-3.3.0") == {"a.amxmi": "3.3.0"}
+
+    def test_an_impossible_path_in_a_folder_does_not_stop_the_rest(self, tmp_path):
+        folder = tmp_path / "models"
+        write(folder / "a.amxmi", "0.9.8")
+        (folder / "loop.amxmi").symlink_to(folder / "loop.amxmi")
+        (folder / "nowhere.amxmi").symlink_to(folder / "missing.amxmi")
+        os.mkfifo(folder / "pipe.amxmi")
+        result = migrate_files(folder)
+        assert [(finding.rule, finding.location.path.name) for finding in result.findings] == [
+            ("XMI001", "loop.amxmi"),
+            ("XMI001", "nowhere.amxmi"),
+        ]
+        assert versions(tmp_path / "models-3.3.0") == {"a.amxmi": "3.3.0"}
+
+    @pytest.mark.parametrize("name", ["x" * 300, "loop"])
+    @pytest.mark.parametrize("version", ["0.8.2", "2.0.0"])
+    def test_a_reference_to_a_file_at_an_impossible_path_leads_nowhere(self, version, name, tmp_path):
+        (tmp_path / "loop.amxmi").symlink_to(tmp_path / "loop.amxmi")
+        path = write(tmp_path / "a.amxmi", version, TASK.replace("amlt:/", f"{name}.amxmi"))
+        result = migrate_files(path, target=tmp_path / "b.amxmi")
+        assert result.is_complete
+        assert [finding.rule for finding in result.findings] == ["XMI025"]
+        assert "XMI025" in [finding.rule for finding in amuros.load(path).findings]
 
     def test_what_is_no_part_of_a_model_is_refused(self, tmp_path):
         spaces = f'xmlns:hw="{ITEA}1.3.0/hw"'
