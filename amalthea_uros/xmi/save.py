@@ -62,7 +62,7 @@ def _save(files: Iterable[tuple[Document, Path, bool]], compress: bool | None = 
     prepared = []
     problems: list[Finding] = []
     for document, target, canonical in files:
-        if version is None and document.migrated_from is not None and target == document.path:
+        if version is None and document.migrated_from is not None and _is_same(target, document.path):
             problems.append(_not_over_the_old_file(document, target))
             continue
         try:
@@ -93,6 +93,11 @@ def _require_version(model: Model, version: str) -> None:
         message = f"the model has AMALTHEA version {', '.join(others)}, not {version}"
         advice = f"Convert it first: amuros.migrate(model, to={version!r}).save(...)."
         raise WriteError([Finding("XMI104", Severity.ERROR, message, None, advice)])
+
+
+def _is_same(target: Path, path: Path | None) -> bool:
+    """Whether two paths lead to the same file, however they are written."""
+    return path is not None and files.resolved(target) == files.resolved(path)
 
 
 def _not_over_the_old_file(document: Document, path: Path) -> Finding:

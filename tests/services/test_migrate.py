@@ -487,12 +487,15 @@ class TestModelsInMemory:
         path = write(tmp_path / "a.amxmi", "0.8.2")
         before = path.read_text()
         model = amuros.load(path)
-        for target in (None, path):
+        link = tmp_path / "link.amxmi"
+        link.symlink_to(path)
+        for target in (None, path, tmp_path, path.parent / ".." / path.parent.name / path.name, link):
             with pytest.raises(amuros.WriteError, match=r"XMI104.*has AMALTHEA 0\.8\.2, but the model was migrated"):
                 amuros.save(model, target)
         with pytest.raises(amuros.WriteError, match=r"the model has AMALTHEA version 3\.3\.0, not 2\.0\.0"):
             amuros.save(model, tmp_path / "b.amxmi", version="2.0.0")
         assert path.read_text() == before
+        link.unlink()
         amuros.save(model, tmp_path / "b.amxmi")
         amuros.save(model, version="3.3.0")
         assert versions(tmp_path) == {"a.amxmi": "3.3.0", "b.amxmi": "3.3.0"}
