@@ -1,6 +1,7 @@
 """`amuros migrate` as people and programs see it, and what the other commands say of old models."""
 
 import json
+import re
 import sys
 from io import StringIO
 
@@ -67,6 +68,19 @@ def test_what_is_lost_makes_the_exit_code_1(tmp_path):
     page = (tmp_path / "r.md").read_text()
     assert page.startswith("# Migration to AMALTHEA 3.3.0\n\n1 file: AMALTHEA 0.9.8 -> 3.3.0, 2 lost\n")
     assert f"| Amalthea / swModel | {path}:2:1 | text between the elements | 'and \\| more' |" in page
+
+
+def test_no_text_of_a_model_is_markup_in_the_report(tmp_path):
+    odd = "a&#10;b|c&lt;b>_x_y_ __z `k` &amp;lt; &#13;R ~~s~~ *s* [l](u) &#x2028;\\"
+    content = f'</swModel><measurementModel><measurements><runtimes unit="{odd}"/></measurements></measurementModel><swModel>'
+    path = model(tmp_path / "a.amxmi", "0.9.9", content)
+    result = run(path, "--dry-run", "--output", "markdown")
+    rows = [line for line in result.stdout.splitlines() if "no place any more" in line]
+    assert len(rows) == 2
+    for row in rows:
+        assert row.endswith(" |")
+        assert r"a b\|c\<b\>\_x_y\_ \_\_z \`k\` \&lt;  R \~\~s\~\~ \*s\* \[l\](u)" in row
+        assert len(re.findall(r"(?<!\\)\|", row)) == (5 if "Amalthea" in row else 6)
 
 
 def test_what_is_not_migrated_makes_the_exit_code_2_and_the_rest_is_written(tmp_path):
