@@ -5,7 +5,6 @@ from __future__ import annotations
 import codecs
 import os
 import shutil
-import tempfile
 from collections.abc import Collection, Mapping
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -102,20 +101,17 @@ def write_bytes(path: Path, data: bytes) -> None:
             target.write_bytes(data)  # a device or a pipe must not become a file
             return
         mode = target.stat().st_mode & 0o777 if target.exists() else 0o666 & ~_umask()
-        descriptor, temporary = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
-        with os.fdopen(descriptor, "wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
-        Path(temporary).chmod(mode)
-        Path(temporary).replace(target)
+        temporary = _name_beside(target)
+        _write_new(temporary, data)
+        temporary.chmod(mode)
+        temporary.replace(target)
         temporary = None
     except _IMPOSSIBLE as error:
         raise not_writable(path, error) from None
     finally:
         if temporary:
             with suppress(OSError):
-                Path(temporary).unlink()
+                temporary.unlink()
 
 
 def write_all(contents: Mapping[Path, bytes], removed: Collection[Path] = ()) -> None:
@@ -156,10 +152,7 @@ def _staged(path: Path, data: bytes, undo: ExitStack) -> Path:
             raise FileError(path, "the file cannot be written: it is a directory")
         mode = path.stat().st_mode & 0o777 if path.exists() else 0o666 & ~_umask()
         temporary = _beside(path, undo)
-        with temporary.open("wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
+        _write_new(temporary, data)
         temporary.chmod(mode)
     except _IMPOSSIBLE as error:
         raise not_writable(path, error) from None
@@ -172,18 +165,30 @@ def _copied(path: Path, undo: ExitStack) -> Path | None:
         if not path.exists():
             return None
         copy = _beside(path, undo)
-        shutil.copy2(path, copy)
+        _write_new(copy, path.read_bytes())
+        shutil.copystat(path, copy)
     except OSError as error:
         raise not_writable(path, error) from None
     return copy
 
 
 def _beside(path: Path, undo: ExitStack) -> Path:
-    target = path.resolve()
-    descriptor, name = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
-    os.close(descriptor)
-    undo.callback(Path(name).unlink, missing_ok=True)
-    return Path(name)
+    temporary = _name_beside(path.resolve())
+    undo.callback(temporary.unlink, missing_ok=True)
+    return temporary
+
+
+def _name_beside(target: Path) -> Path:
+    """The path of a temporary file, which is known before the file exists, so that it can be removed whenever somebody interrupts."""
+    return target.parent / f".{target.name[:40]}.{os.urandom(8).hex()}"
+
+
+def _write_new(path: Path, data: bytes) -> None:
+    """Write a file that nobody else may read yet."""
+    with open(path, "xb", opener=lambda name, flags: os.open(name, flags, 0o600)) as stream:
+        stream.write(data)
+        stream.flush()
+        os.fsync(stream.fileno())
 
 
 def _restore(path: Path, former: Path | None) -> None:
