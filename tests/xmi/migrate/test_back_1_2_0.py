@@ -205,6 +205,14 @@ def test_a_quantum_is_a_number_of_nanoseconds(models, unit, expected):
         taken_back(models, content)
 
 
+@pytest.mark.parametrize("text", ["0", "007"])
+def test_a_quantum_that_would_come_back_as_another_text_is_kept(models, text):
+    definitions = definition("PfairPD2") + parameter_definition("quantSize", "Time")
+    roots = taken_back(models, os_model(scheduler("PfairPD2", time("quantSize", text, "ns")), definitions))
+    (algorithm,) = found(roots, "osModel", "operatingSystems", "taskSchedulers", "schedulingAlgorithm")
+    assert algorithm.attributes == {}
+
+
 def test_what_the_step_up_fills_in_is_not_restored(models):
     """The task group 0 and the quantum 0 of an allocation and algorithm that state none."""
     osek = definition("OSEK", processParameters="taskGroup?type=SchedulingParameterDefinition")

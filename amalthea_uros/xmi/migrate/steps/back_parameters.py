@@ -30,7 +30,8 @@ _TIMES = ("minBudget", "maxBudget", "replenishment")
 
 _NANOSECONDS = {"ns": 1, "us": 1_000, "ms": 1_000_000, "s": 1_000_000_000}
 
-_NUMBER = re.compile("[0-9]{1,10}").fullmatch
+#: A quantum that 1.2.0 can state so that it comes back: 0 is the default there, which the step up takes for none.
+_QUANTUM = re.compile("[1-9][0-9]{0,9}").fullmatch
 _LARGEST = 2**31 - 1
 
 _PARAMETER = "schedulingParameterDefinitions"
@@ -146,7 +147,7 @@ def place_in_algorithm(algorithm: Node, name: str, value: Node) -> bool:
         return _place_as_extension(algorithm, name, value)
     text = value.get("value")
     factor = _NANOSECONDS.get(value.get("unit"))
-    if name != QUANTUM or algorithm.type not in QUANTIZED or value.type != "Time" or not factor or not _NUMBER(text):
+    if name != QUANTUM or algorithm.type not in QUANTIZED or value.type != "Time" or not factor or not _QUANTUM(text):
         return False
     if int(text) * factor > _LARGEST:
         return False
