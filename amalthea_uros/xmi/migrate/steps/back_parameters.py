@@ -9,10 +9,14 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.kept import keep, strings
 from amalthea_uros.xmi.migrate.steps.restored import ParameterKeys
-from amalthea_uros.xmi.migrate.steps.scheduling_definitions import EXTENDED, PRIORITY, QUANTUM, USER_SPECIFIC
-
-#: Algorithms with a quantum.
-QUANTIZED = {"PfairPD2", "PartlyPFairPD2", "EarlyReleaseFairPD2", "PartlyEarlyReleaseFairPD2"}
+from amalthea_uros.xmi.migrate.steps.scheduling_definitions import (
+    BUDGETS,
+    EXTENDED,
+    PRIORITY,
+    QUANTIZED,
+    QUANTUM,
+    USER_SPECIFIC,
+)
 
 #: The algorithms that 1.2.0 has, by the tag of the scheduler.
 ALGORITHMS = {
@@ -24,9 +28,6 @@ ALGORITHMS = {
     },
     "interruptControllers": {"PriorityBased"},
 }
-
-#: Parameters that 1.2.0 has as parts of SchedulingParameters.
-_TIMES = ("minBudget", "maxBudget", "replenishment")
 
 _NANOSECONDS = {"ns": 1, "us": 1_000, "ms": 1_000_000, "s": 1_000_000_000}
 
@@ -102,7 +103,7 @@ def change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: Pl
             shown = _shown(value)
             keep(keeper, keys.parameter + name, value).comments = node.comments
             notes.kept(keeper, "scheduling parameter", f"{name} = {shown}")
-    order = [name for name in (PRIORITY, *_TIMES) if name in placed]
+    order = [name for name in (PRIORITY, *BUDGETS) if name in placed]
     order += [name for name in placed if name not in order] + others
     stated = [key.name for node in nodes if (key := node.target("key")) is not None]
     if order != stated:
@@ -134,7 +135,7 @@ def place_in_allocation(holder: Node, name: str, value: Node) -> bool:
     if name == PRIORITY and value.type == "IntegerObject":
         holder.child_or_new("schedulingParameters").attributes["priority"] = value.get("value", "0")
         return True
-    if name in _TIMES and value.type == "Time":
+    if name in BUDGETS and value.type == "Time":
         value.tag, value.type = name, ""
         holder.child_or_new("schedulingParameters").insert(value)
         return True

@@ -7,10 +7,16 @@ from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.numbers import whole_number
 from amalthea_uros.xmi.migrate.steps.properties import add_property, move_properties
-from amalthea_uros.xmi.migrate.steps.scheduling_definitions import EXTENDED, PRIORITY, QUANTUM, USER_SPECIFIC, Definitions
+from amalthea_uros.xmi.migrate.steps.scheduling_definitions import (
+    BUDGETS,
+    EXTENDED,
+    PRIORITY,
+    QUANTUM,
+    USER_SPECIFIC,
+    Definitions,
+)
 
 _TAG = "schedulingParameters"
-_BUDGETS = ("minBudget", "maxBudget", "replenishment")
 
 #: The size of a quantum, which has no unit.
 _QUANTUM_NS = "quantSizeNs"
@@ -83,7 +89,7 @@ def _convert_fixed(holder: Node, old: Node, definitions: Definitions, notes: Not
     elif priority is not None:
         add_parameter(holder, PRIORITY, definitions, "IntegerObject", value=priority)
         notes.converted(holder, "priority is now a scheduling parameter with a definition", priority)
-    for name in _BUDGETS:
+    for name in BUDGETS:
         for time in old.all(name):
             time.remove()
             added = add_parameter(holder, name, definitions)
