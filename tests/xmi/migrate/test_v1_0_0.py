@@ -2,6 +2,7 @@
 
 import pytest
 from inline_migration import InlineModels
+from migration import migrated
 
 from amalthea_uros.xmi.migrate.notes import Kind
 
@@ -29,6 +30,12 @@ def test_custom_properties_of_a_measurement_stay_with_what_was_measured(models):
     assert found == models.read("1.0.0", measured(own + PROPERTY.format("tool 2", "X"), ""))
     [lost] = [note for note in models.notes if note.kind == Kind.LOST]
     assert lost.detail == "of 'T 1': 5 us, 7 us, TimeBoundaries lowerBound 1 us upperBound 9 us"
+
+
+def test_comments_on_a_measurement_stay_with_what_was_measured(models):
+    content = measured("", MEASUREMENT.replace("<measurements ", "<!-- on the bench --><measurements "))
+    roots = migrated(models.files("before", "0.9.9", content), "1.0.0")[0].roots
+    assert [task.comments for task in roots[0].find("swModel", "tasks")] == [["<!-- on the bench -->"]]
 
 
 def test_the_official_converter_removes_them(models):

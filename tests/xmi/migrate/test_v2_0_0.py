@@ -2,7 +2,9 @@
 
 import pytest
 from inline_migration import InlineModels
+from migration import migrated
 
+from amalthea_uros.xmi.migrate.index import all_below
 from amalthea_uros.xmi.migrate.notes import Kind
 
 FLAGS = 'requiresParentScheduler="false" passesParametersUpwards="false" hasExactlyOneChild="false"'
@@ -292,6 +294,23 @@ def test_damaged_content_does_not_raise(models):
         "unknown scheduling parameter",
     ]
     assert models.messages(Kind.KEPT) == ["size of the quantum is not a number"]
+
+
+def test_comments_stay_with_the_scheduler_and_the_allocation(models):
+    pfair = """<!--1--><schedulingAlgorithm xsi:type="am:PfairPD2"><!--2--><parameterExtensions key="quantSizeNs" value="5"/>
+      <!--3--><parameterExtensions key="k" value="v"/></schedulingAlgorithm>"""
+    os = f'<osModel><operatingSystems name="OS"><taskSchedulers name="S0">{pfair}</taskSchedulers></operatingSystems></osModel>'
+    mapping = allocated(
+        '<!--4--><schedulingParameters priority="1"><!--5--><minBudget value="1" unit="ms"/></schedulingParameters>'
+    )
+    roots = migrated(models.files("before", "1.2.0", os + mapping), "2.0.0")[0].roots
+    commented = [(node.tag, node.comments) for node in all_below(roots) if node.comments]
+    assert commented == [
+        ("taskSchedulers", ["<!--1-->", "<!--2-->"]),
+        ("schedulingParameters", ["<!--3-->"]),
+        ("taskAllocation", ["<!--4-->"]),
+        ("value", ["<!--5-->"]),
+    ]
 
 
 def test_a_written_class_of_a_disjunction_is_renamed(models):

@@ -2,7 +2,9 @@
 
 import pytest
 from inline_migration import InlineModels
+from migration import migrated
 
+from amalthea_uros.xmi.migrate.index import all_below
 from amalthea_uros.xmi.migrate.notes import Kind
 
 
@@ -61,6 +63,21 @@ def test_custom_properties_of_a_type_reference_stay_with_the_label(models):
     )
     after = f'<labels name="L" dataType="u+8?type=BaseTypeDefinition">{note}</labels>'
     assert models.migrate("2.2.0", "3.0.0", software(before)) == models.read("3.0.0", software(after))
+
+
+def test_comments_on_a_type_that_goes_away_stay_with_the_label(models):
+    reference = '<!--{}--><dataType xsi:type="am:TypeRef" typeDef="u+8?type=BaseTypeDefinition"/>'
+    array = "<!--{}-->" + ARRAY.format("dataType", 1)
+    before = f"""<labels name="A">{reference.format(1)}</labels><labels name="B">{array.format(2)}</labels>
+      <labels name="C">{array.format(3)}{array.format(4)}</labels><labels name="D"><!--5--><dataType xsi:type="am:TypeRef"/></labels>"""
+    roots = migrated(models.files("before", "2.2.0", software(before)), "3.0.0")[0].roots
+    commented = [(node.tag, node.name, node.comments) for node in all_below(roots) if node.comments]
+    assert commented == [
+        ("labels", "A", ["<!--1-->"]),
+        ("labels", "C", ["<!--3-->", "<!--4-->"]),
+        ("labels", "D", ["<!--5-->"]),
+        ("dataType", "", ["<!--2-->"]),
+    ]
 
 
 def test_a_second_type_and_an_unreadable_reference_do_not_raise(models):

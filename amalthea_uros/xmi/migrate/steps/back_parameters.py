@@ -17,6 +17,7 @@ from amalthea_uros.xmi.migrate.steps.scheduling_definitions import (
     QUANTUM,
     USER_SPECIFIC,
 )
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import keep_comments
 
 #: The algorithms that 1.2.0 has, by the tag of the scheduler.
 ALGORITHMS = {
@@ -96,8 +97,7 @@ def change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: Pl
         if place(holder, name, value):
             placed.append(name)
             notes.converted(keeper, "scheduling parameter is stated as in AMALTHEA 1.2.0", f"{name} = {_shown(value)}")
-            if node.comments:
-                holder.comments = [*(holder.comments or ()), *node.comments]
+            keep_comments(node, holder)
         else:
             others.append(name)
             shown = _shown(value)

@@ -15,6 +15,7 @@ from amalthea_uros.xmi.migrate.steps.scheduling_definitions import (
     USER_SPECIFIC,
     Definitions,
 )
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import keep_comments
 
 _TAG = "schedulingParameters"
 
@@ -29,6 +30,7 @@ def convert_algorithms(models: ModelSet, definitions: Definitions, notes: Notes)
         if scheduler is None:
             continue
         algorithm.remove()
+        keep_comments(algorithm, scheduler)
         if scheduler.references.get("definition"):
             notes.lost(scheduler, "second scheduling algorithm", algorithm.type)
             continue
@@ -59,6 +61,7 @@ def _convert_quantum(scheduler: Node, algorithm: Node, definitions: Definitions,
         for extension in algorithm.all("parameterExtensions"):
             if extension.get("key") == _QUANTUM_NS and not texts:
                 extension.remove()
+                keep_comments(extension, scheduler)
                 texts.append(extension.get("value"))
     for text in texts:
         if whole_number(text) is None:
@@ -75,6 +78,7 @@ def convert_parameters(models: ModelSet, definitions: Definitions, notes: Notes,
         for parameters in holder.all(_TAG):
             if not (parameters.references.get("key") or "key" in parameters.attributes or parameters.child("value")):
                 parameters.remove()
+                keep_comments(parameters, holder)
                 _convert_fixed(holder, parameters, definitions, notes, official)
         for extension in holder.all("parameterExtensions"):
             _convert_extension(holder, extension, definitions, notes)
@@ -107,7 +111,8 @@ def _note_unknown(holder: Node, old: Node, notes: Notes) -> None:
 def _convert_extension(holder: Node, extension: Node, definitions: Definitions, notes: Notes) -> None:
     extension.remove()
     name = EXTENDED + extension.get("key")
-    add_parameter(holder, name, definitions, "StringObject", value=extension.get("value"))
+    added = add_parameter(holder, name, definitions, "StringObject", value=extension.get("value"))
+    keep_comments(extension, added)
     notes.converted(holder, "parameter extension is now a scheduling parameter with a definition", extension.get("key"))
 
 
