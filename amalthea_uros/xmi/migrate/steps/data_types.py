@@ -41,17 +41,19 @@ def _drop_empty(models: ModelSet, notes: Notes) -> None:
 
 def _convert(owner: Node, feature: str, part: Node, definitions: _Definitions, notes: Notes) -> None:
     part.remove()
-    if part.type == "TypeRef":
+    if feature in owner.references or feature in owner.attributes:
         move_properties(part, owner)
         keep_comments(part, owner)
-        if not part.references.get("typeDef"):
-            owner.attributes[feature] = part.get("typeDef")
-        elif feature not in owner.references:
-            owner.refer(feature, part.references["typeDef"][0])
-        notes.converted(owner, "data type is now a reference to the type definition", "", feature)
-    elif feature in owner.references:
-        keep_comments(part, owner)
         notes.lost(owner, "second data type", part.type)
+    elif part.type == "TypeRef":
+        move_properties(part, owner)
+        keep_comments(part, owner)
+        targets = part.references.get("typeDef")
+        if targets:
+            owner.refer(feature, targets[0])
+        else:
+            owner.attributes[feature] = part.get("typeDef")
+        notes.converted(owner, "data type is now a reference to the type definition", "", feature)
     else:
         definition = definitions.of(owner, part)
         owner.refer(feature, definition)
