@@ -38,6 +38,16 @@ def test_comments_on_a_measurement_stay_with_what_was_measured(models):
     assert [task.comments for task in roots[0].find("swModel", "tasks")] == [["<!-- on the bench -->"]]
 
 
+def test_measurements_of_event_chains_and_notes_on_all_of_them_stay(models):
+    note = PROPERTY.format("bench", "A")
+    measurements = f"""<measurementModel>{note}<measurements xsi:type="am:EventChainMeasurement" eventChain="E?type=EventChain">
+      <runtimes value="5" unit="us"/></measurements></measurementModel>"""
+    chains = '<constraintsModel><eventChains name="E">{}</eventChains></constraintsModel>'
+    after = note + chains.format(PROPERTY.format("measured runtimes", "5 us"))
+    assert models.migrate("0.9.9", "1.2.0", chains.format("") + measurements) == models.read("1.2.0", after)
+    assert models.messages(Kind.LOST) == []
+
+
 def test_the_official_converter_removes_them(models):
     assert models.migrate("0.9.9", "1.0.0", measured("", MEASUREMENT), official=True) == models.read("1.0.0", measured("", ""))
     [lost] = [note for note in models.notes if note.kind == Kind.LOST]
@@ -82,3 +92,12 @@ def test_what_2_1_0_does_not_allow_is_to_be_checked(models):
       <mappingModel><memoryMapping/></mappingModel>"""
     assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
     assert len(models.messages(Kind.TO_CHECK)) == 4
+
+
+def test_what_2_1_0_allows_is_not_to_be_checked(models):
+    content = """<swModel><runnables name="R"><executionCondition>
+        <entries xsi:type="am:ChannelFillCondition" fillLevel="3" relation="EQUAL"/></executionCondition></runnables></swModel>
+      <osModel><semaphores name="S" initialValue="0"/></osModel>
+      <mappingModel><memoryMapping memory="what?"/></mappingModel>"""
+    assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
+    assert models.messages(Kind.TO_CHECK) == []
