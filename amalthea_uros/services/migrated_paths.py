@@ -90,8 +90,7 @@ class Destination:
 
     def folders(self) -> set[Path]:
         """The folders of results, which may be inside of those that are migrated."""
-        inside = {resolved(self._beside(root)) for root in self.roots}
-        return inside | ({resolved(self.folder)} - {resolved(root) for root in self.roots} if self.folder else set())
+        return {resolved(self._beside(root)) for root in self.roots} | ({resolved(self.folder)} if self.folder else set())
 
     def target(self, path: Path, name: str, has_others: bool) -> Path:
         """The file for the result of a file.
@@ -150,9 +149,6 @@ class Destination:
 
     def _beside(self, root: Path) -> Path:
         """The folder for the results of a folder, without a target."""
-        name = root.name or resolved(root).name
-        return (
-            resolved(root).parent / f"{name}-{self._label}"
-            if root.name in ("", "..")
-            else root.with_name(f"{name}-{self._label}")
-        )
+        # `.` and `..` are not what the folder is called.
+        place = resolved(root) if root.name in ("", "..") else root
+        return place.parent / f"{place.name}-{self._label}"

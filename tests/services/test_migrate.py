@@ -15,6 +15,7 @@ from amalthea_uros.services.format import format_files
 from amalthea_uros.services.info import info
 from amalthea_uros.services.migrate import migrate_files
 from amalthea_uros.services.migration import FileState
+from amalthea_uros.xmi.migrate import chain
 from amalthea_uros.xmi.migrate.chain import _UP
 from amalthea_uros.xmi.migrate.notes import Kind
 from amalthea_uros.xmi.migrate.step import Step
@@ -83,6 +84,26 @@ class TestWhereResultsGo:
             assert [file.path.name for file in result.files] == ["a.amxmi"]
         assert versions(tmp_path) == {"a.amxmi": "0.9.8", "new/a.amxmi": "3.0.0"}
 
+    @pytest.mark.parametrize("given", [".", ".."])
+    def test_of_the_current_folder_to_a_folder_beside_it(self, given, tmp_path, monkeypatch):
+        write(tmp_path / "models" / "a.amxmi", "0.9.8")
+        (tmp_path / "models" / "inner").mkdir()
+        monkeypatch.chdir(tmp_path / "models" / ("" if given == "." else "inner"))
+        assert migrate_files(given).is_complete
+        assert versions(tmp_path / "models-3.3.0") == {"a.amxmi": "3.3.0"}
+
+    def test_a_file_that_has_the_version_is_copied_if_the_others_of_its_folder_go_elsewhere(self, tmp_path):
+        write(tmp_path / "models" / "a.amxmi", "0.9.8")
+        path = write(tmp_path / "models" / "b.amxmi", "3.3.0")
+        migrate_files(tmp_path / "models")
+        assert (tmp_path / "models-3.3.0" / "b.amxmi").read_text() == path.read_text()
+
+    def test_no_folder_is_made_for_a_file(self, tmp_path):
+        path = write(tmp_path / "a.amxmi", "0.9.8")
+        (finding,) = migrate_files(path, target=tmp_path / "missing" / "b.amxmi").findings
+        assert finding.rule == "XMI101"
+        assert [file.name for file in tmp_path.iterdir()] == ["a.amxmi"]
+
     def test_in_place(self, tmp_path):
         write(tmp_path / "a.amxmi", "0.9.8")
         write(tmp_path / "sub" / "b.amxmi", "3.3.0")
@@ -108,6 +129,7 @@ class TestWhereResultsGo:
         (tmp_path / "a-3.3.0.amxmi").write_text("mine")
         result = migrate_files(path)
         assert (result.files[0].state, result.findings[0].rule) == (FileState.FAILED, "XMI101")
+        assert result.changes == ()
         assert (tmp_path / "a-3.3.0.amxmi").read_text() == "mine"
         assert migrate_files(path, target=path).findings[0].message == "the file exists already"
         assert migrate_files(path, force=True).is_complete
@@ -353,29 +375,29 @@ class TestWhatIsLost:
         assert [(finding.rule, finding.location.line) for finding in result.findings] == [("XMI011", 3)]
         assert 'x="1"' in (tmp_path / "a-3.3.0.amxmi").read_text()
 
-    def test_on_the_way_back_it_is_an_error_and_nothing_is_written(self, tmp_path):
-        # A label has no reference to its type before 3.0.0.
-        content = '<swModel>\n<labels name="L"/>\n<semaphores name="Q" unknown="1" interruptible="true"/>\n</swModel>'
+    def test_on_the_way_back_it_is_an_error_and_nothing_is_written(self, tmp_path, monkeypatch):
+        # As if no step knew of the attribute that 2.2.0 does not have.
+        monkeypatch.setitem(chain._DOWN, "3.0.0", Step("3.0.0", "2.2.0"))
+        content = '<osModel>\n<semaphores name="Q" unknown="1" ownership="true"/>\n</osModel>'
         path = write(tmp_path / "a.amxmi", "3.3.0", content)
-        attribute = "ownership"
-        path.write_text(path.read_text().replace("interruptible", attribute))
-        result = migrate_files(path, "2.2.0")
-        found = [finding for finding in result.findings if finding.rule == "XMI102"]
-        if found:  # unless a step knows better
-            assert [(finding.severity, finding.location.line) for finding in found] == [(Severity.ERROR, 5)]
-            assert f"'{attribute}'" in found[0].message
-            assert [file.name for file in tmp_path.iterdir()] == ["a.amxmi"]
-        assert not any("'unknown'" in finding.message for finding in found)
+        (finding,) = migrate_files(path, "2.2.0").findings
+        assert (finding.rule, finding.severity, finding.location.line) == ("XMI102", Severity.ERROR, 4)
+        assert "'ownership'" in finding.message
+        assert [file.name for file in tmp_path.iterdir()] == ["a.amxmi"]
 
-    def test_a_step_back_that_loses_something_is_an_error(self, tmp_path, monkeypatch):
+    def test_what_a_step_back_and_the_reader_say_of_the_same_place_is_one_error(self, tmp_path):
+        path = write(tmp_path / "a.amxmi", "3.3.0", '<osModel><semaphores name="Q" semaphoreType="Mutex"/></osModel>')
+        (finding,) = migrate_files(path, "2.2.0").findings
+        assert "semaphore type Mutex: only AMALTHEA 3.0.0 and later have it" in finding.message
+
+    @pytest.mark.parametrize(("number", "more"), [(30, " (and 10 more of this kind)"), (20, "")])
+    def test_a_step_back_that_loses_something_is_an_error(self, number, more, tmp_path, monkeypatch):
         def lose(models, notes, official):
             for node in models.nodes("labels"):
                 notes.lost(node, "has no place", node.name, "name")
 
-        from amalthea_uros.xmi.migrate import chain
-
         monkeypatch.setitem(chain._DOWN, "3.3.0", Step("3.3.0", "3.2.0", lose))
-        labels = "\n".join(f'<labels name="L{number}"/>' for number in range(30))
+        labels = "\n".join(f'<labels name="L{number}"/>' for number in range(number))
         path = write(tmp_path / "a.amxmi", "3.3.0", f"<swModel>\n{labels}\n</swModel>")
         with pytest.raises(amuros.WriteError) as caught:
             amuros.migrate(path, "3.2.0")
@@ -383,7 +405,7 @@ class TestWhatIsLost:
         assert len(findings) == 20
         assert str(findings[1]) == f"{path}:5:9: XMI102 error: AMALTHEA 3.2.0 cannot hold this: has no place: L1"
         assert findings[1].object == "labels 'L1'"
-        assert findings[-1].message.endswith("L19 (and 10 more of this kind)")
+        assert findings[-1].message.endswith(f"has no place: L19{more}")
 
 
 class TestLibrary:
