@@ -111,17 +111,16 @@ class Destination:
         if self.file is not None and self.file.suffix == SUFFIX:
             message = f"{path} and the files to which it refers cannot be written to one file"
             raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(self.file), "Give a folder with -o.")])
-        root = self._root(path)
-        folder = self.file or self.folder
-        if folder is None and root is None:
+        root, below = self._place(path) or (None, Path())
+        folder = self.file or self.folder or (self._beside(root) if root is not None else None)
+        if folder is None:
             plain = Path(name)
             return path.with_name(f"{plain.stem}-{self._label}{plain.suffix}")
-        below = resolved(path).relative_to(resolved(root)).parent if root is not None else Path()
-        return (folder or self._beside(root or Path())) / below / name
+        return folder / below / name
 
     def leaves_what_is_unchanged(self, path: Path) -> bool:
         """Whether a file that has the version already is not copied."""
-        return self.in_place or (self.file is None and self.folder is None and self._root(path) is None)
+        return self.in_place or (self.file is None and self.folder is None and self._place(path) is None)
 
     def make_folders(self, targets: Iterable[Path]) -> None:
         """Make the folders of some files; only below the folder for the results.
@@ -142,10 +141,14 @@ class Destination:
     def _label(self) -> str:
         return self.version.replace(" ", "-")
 
-    def _root(self, path: Path) -> Path | None:
-        """The given folder in which a file is."""
-        place = resolved(path)
-        return next((root for root in self.roots if place.is_relative_to(resolved(root))), None)
+    def _place(self, path: Path) -> tuple[Path, Path] | None:
+        """The given folder in which a file is, and the way from there to the folder of the file."""
+        for root in self.roots:
+            # A link is where it was found; a file that another one names may be written as if it were elsewhere.
+            for file, folder in ((path, root), (resolved(path), resolved(root))):
+                if file.is_relative_to(folder) and ".." not in (below := file.relative_to(folder)).parts:
+                    return root, below.parent
+        return None
 
     def _beside(self, root: Path) -> Path:
         """The folder for the results of a folder, without a target."""

@@ -92,6 +92,13 @@ class TestWhereResultsGo:
         assert migrate_files(given).is_complete
         assert versions(tmp_path / "models-3.3.0") == {"a.amxmi": "3.3.0"}
 
+    def test_a_link_in_a_folder_to_a_file_elsewhere(self, tmp_path):
+        write(tmp_path / "models" / "inner" / "a.amxmi", "0.9.8")
+        (tmp_path / "models" / "inner" / "b.amxmi").symlink_to(write(tmp_path / "other" / "x.amxmi", "0.9.8"))
+        assert migrate_files(tmp_path / "models").is_complete
+        assert versions(tmp_path / "models-3.3.0") == {"inner/a.amxmi": "3.3.0", "inner/b.amxmi": "3.3.0"}
+        assert versions(tmp_path / "models") == {"inner/a.amxmi": "0.9.8", "inner/b.amxmi": "0.9.8"}
+
     def test_a_file_that_has_the_version_is_copied_if_the_others_of_its_folder_go_elsewhere(self, tmp_path):
         write(tmp_path / "models" / "a.amxmi", "0.9.8")
         path = write(tmp_path / "models" / "b.amxmi", "3.3.0")
