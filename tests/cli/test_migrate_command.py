@@ -105,6 +105,31 @@ def test_a_dry_run(tmp_path):
     assert [file.name for file in tmp_path.iterdir()] == ["a.amxmi"]
 
 
+def test_steps_are_in_the_order_in_which_they_were_taken(tmp_path):
+    semaphore = '</swModel><osModel><semaphores name="S" semaphoreType="CountingSemaphore"{}/></osModel><swModel>'
+    newer, older = tmp_path / "newer", tmp_path / "older"
+    for folder in (newer, older):
+        folder.mkdir()
+    model(
+        newer / "a.amxmi",
+        "3.3.0",
+        "to do" + semaphore.format(' ownership="true"') + '<labels name="L" dataType="X?type=BaseTypeDefinition"/>',
+    )
+    model(older / "a.amxmi", "0.9.5", "to do" + semaphore.format(' maxValue="0"') + '<tasks name="T"><callGraph/></tasks>')
+    headings = [
+        [
+            line
+            for line in run(folder / "a.amxmi", "--dry-run", "--to", version).stdout.splitlines()
+            if line.startswith(("To", "Read"))
+        ]
+        for folder, version in ((newer, "1.2.0"), (older, "3.3.0"))
+    ]
+    assert headings == [
+        ["Reading", "To AMALTHEA 2.2.0", "To AMALTHEA 2.0.0"],
+        ["Reading", "To AMALTHEA 0.9.7", "To AMALTHEA 2.1.0", "To AMALTHEA 3.0.0"],
+    ]
+
+
 def test_nothing_to_do(tmp_path):
     result = run(model(tmp_path / "a.amxmi", "3.3.0"))
     assert (result.exit_code, result.stdout.splitlines()[-1]) == (0, "1 file has AMALTHEA 3.3.0 already")

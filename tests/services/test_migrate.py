@@ -132,7 +132,7 @@ class TestWhereResultsGo:
         assert (tmp_path / "new" / "b.amxmi").read_text() == path.read_text()
 
     def test_nothing_is_overwritten_unless_forced(self, tmp_path):
-        path = write(tmp_path / "a.amxmi", "0.9.8")
+        path = write(tmp_path / "a.amxmi", "0.9.8", "<swModel>to do</swModel>")
         (tmp_path / "a-3.3.0.amxmi").write_text("mine")
         result = migrate_files(path)
         assert (result.files[0].state, result.findings[0].rule) == (FileState.FAILED, "XMI101")
@@ -175,6 +175,13 @@ class TestWhereResultsGo:
             migrate_files(path, target=tmp_path / "b.amxmi", compress=compress, force=True)
             assert zipfile.is_zipfile(tmp_path / "b.amxmi") is expected
             assert amuros.load(tmp_path / "b.amxmi").documents[0].version == "3.3.0"
+
+    def test_the_name_in_a_zip_stays(self, tmp_path):
+        with zipfile.ZipFile(tmp_path / "a.amxmi", "w") as archive:
+            archive.writestr("model", text("0.9.8"))
+        for compress in (None, True):
+            migrate_files(tmp_path / "a.amxmi", target=tmp_path / "b.amxmi", compress=compress, force=True)
+            assert zipfile.ZipFile(tmp_path / "b.amxmi").namelist() == ["model"]
 
     def test_another_encoding_becomes_utf_8(self, tmp_path):
         path = tmp_path / "a.amxmi"
