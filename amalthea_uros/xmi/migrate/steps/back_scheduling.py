@@ -56,13 +56,8 @@ def change_scheduling(models: ModelSet, notes: Notes) -> None:
 
 def _is_standard(models: ModelSet) -> bool:
     """Whether the step up makes the same definitions, if nothing but the classes and attributes of 1.2.0 is there."""
-    algorithms = []
-    for scheduler in models.nodes("taskSchedulers", "interruptControllers"):
-        definition = scheduler.target("definition")
-        if definition is not None:
-            if definition.name not in ALGORITHMS[scheduler.tag]:
-                return False
-            algorithms.append(definition.name)
+    definitions = [node.target("definition") for node in models.nodes("taskSchedulers", "interruptControllers")]
+    algorithms = [definition.name for definition in definitions if definition is not None]
     keys = [node.target("key") for node in models.nodes("schedulingParameters")]
     return are_standard(models, algorithms, [key.name for key in keys if key is not None])
 
