@@ -70,12 +70,13 @@ def test_only_events_of_processes_lose_the_deadline(models):
 
 def test_no_occurrences_become_one(models):
     text = """<stimuliModel><stimuli xsi:type="am:PeriodicBurstStimulus" name="B" {0}/>
-      <stimuli xsi:type="am:PeriodicBurstStimulus" name="D"/>
+      <stimuli xsi:type="am:PeriodicBurstStimulus" name="D"/><stimuli xsi:type="am:PeriodicStimulus" name="P"/>
       <stimuli xsi:type="am:ArrivalCurveStimulus" name="A"><entries {1}/><entries numberOfOccurrences="3"/></stimuli></stimuliModel>"""
     before = text.format('occurrenceCount="0"', 'numberOfOccurrences="0"')
     after = text.format('occurrenceCount="1"', 'numberOfOccurrences="1"')
     assert models.migrate("1.1.0", "1.2.0", before) == models.read("1.2.0", after)
     assert len(models.messages(Kind.CONVERTED)) == 2
+    assert models.messages(Kind.DEFAULTED) == ["occurrenceCount is not stated: it was 0 by default, and is 1 now"]
 
 
 @pytest.mark.parametrize("text", ["-1", "many", "", "1", "99"])
@@ -97,7 +98,8 @@ def test_what_2_1_0_does_not_allow_is_to_be_checked(models):
 def test_what_2_1_0_allows_is_not_to_be_checked(models):
     content = """<swModel><runnables name="R"><executionCondition>
         <entries xsi:type="am:ChannelFillCondition" fillLevel="3" relation="EQUAL"/></executionCondition></runnables></swModel>
-      <osModel><semaphores name="S" initialValue="0"/></osModel>
+      <osModel><semaphores name="S" initialValue="0" maxValue="1"/><semaphores name="T"/></osModel>
       <mappingModel><memoryMapping memory="what?"/></mappingModel>"""
     assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
     assert models.messages(Kind.TO_CHECK) == []
+    assert models.messages(Kind.DEFAULTED) == ["maxValue is not stated: it was 0 by default, and is 1 now"]
