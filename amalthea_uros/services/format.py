@@ -10,6 +10,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.xmi.load import load, model_files
+from amalthea_uros.xmi.migrate.versions import spelled
 from amalthea_uros.xmi.save import save
 from amalthea_uros.xmi.writer import document_text
 
@@ -70,7 +71,7 @@ def _format(path: Path, write: bool) -> Iterable[FormattedFile]:
     model = load(path)
     document = model.documents[0]
     if document.migrated_from is not None:
-        message = f"a model of AMALTHEA {document.migrated_from} has no canonical form"
+        message = f"a model of {spelled(document.migrated_from)} has no canonical form"
         raise WriteError(
             [Finding("XMI104", Severity.ERROR, message, Location(path), f"Migrate it first: amuros migrate {path}")]
         )

@@ -11,7 +11,7 @@ from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.xmi.files import ZIP_ENTRY, FileText, not_writable, write_text
 from amalthea_uros.xmi.load import SUFFIX, StrPath
-from amalthea_uros.xmi.migrate.versions import migrated_name
+from amalthea_uros.xmi.migrate.versions import migrated_name, spelled
 from amalthea_uros.xmi.writer import document_text, usable_source
 
 
@@ -111,9 +111,8 @@ def _is_same(target: Path, path: Path | None) -> bool:
 
 
 def _not_over_the_old_file(document: Document, path: Path) -> Finding:
-    message = (
-        f"the file has AMALTHEA {document.migrated_from}, but the model was migrated to {document.version} when it was loaded"
-    )
+    before = spelled(document.migrated_from or "")
+    message = f"the file has {before}, but the model was migrated to {document.version} when it was loaded"
     advice = (
         f"Save it to another file, or replace this one with save(model, version={document.version!r}); "
         "amuros.migrate() or `amuros migrate` also report what is converted."

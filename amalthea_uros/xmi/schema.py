@@ -14,6 +14,7 @@ from lxml import etree
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros.metamodel.factfile import Kind
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, Facts, facts, supported_versions
+from amalthea_uros.xmi.migrate.versions import spelled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -51,7 +52,7 @@ class NoSchemaError(LookupError):
     """There is no schema of an AMALTHEA version."""
 
     def __init__(self, version: str) -> None:
-        super().__init__(f"no XML schema for AMALTHEA {version}; there is one for {', '.join(supported_versions())}")
+        super().__init__(f"no XML schema for {spelled(version)}; there is one for {', '.join(supported_versions())}")
         self.version = version
 
 

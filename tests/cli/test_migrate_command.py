@@ -184,6 +184,14 @@ def test_the_other_commands_say_that_a_model_was_migrated(tmp_path):
     assert path.read_bytes() == before
 
 
+@pytest.mark.parametrize("command", [["check", "--fix"], ["info"], ["migrate", "--to", "ITEA 1.3.0"]])
+def test_versions_of_itea_are_not_called_amalthea(command, tmp_path):
+    (tmp_path / "a.amxmi").write_text('<c:AMALTHEA xmlns:c="http://www.amalthea.itea2.org/model/1.3.0/central"/>')
+    result = amuros(*command, tmp_path / "a.amxmi")
+    assert "ITEA 1.3.0" in result.stdout
+    assert "AMALTHEA ITEA" not in result.stdout + result.stderr
+
+
 def test_models_of_different_versions_are_compared(tmp_path):
     old, new = model(tmp_path / "a.amxmi", "0.8.2"), model(tmp_path / "b.amxmi", "2.0.0", "")
     result = amuros("diff", old, new)

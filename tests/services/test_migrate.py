@@ -555,6 +555,12 @@ class TestModelsInMemory:
         assert (finding.rule, finding.help) == ("XMI104", f"Migrate it first: amuros migrate {path}")
         assert path.read_text() == before
 
+    def test_versions_of_itea_are_not_called_amalthea(self, tmp_path):
+        path = write(tmp_path / "a.amxmi", "ITEA 1.3.0")
+        assert format_files(path).findings[0].message == "a model of ITEA 1.3.0 has no canonical form"
+        with pytest.raises(amuros.WriteError, match=r"the file has ITEA 1\.3\.0, but the model was migrated"):
+            amuros.save(amuros.load(path))
+
     def test_findings_are_located_in_the_old_file(self, tmp_path):
         content = '<swModel>\n  <!-- é -->\n  <tasks name="T" multipleTaskActivationLimit="many"/></swModel>'
         path = write(tmp_path / "a.amxmi", "0.8.2", content)

@@ -6,6 +6,7 @@ from amalthea_uros.report.findings import joined
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.wording import counted
 from amalthea_uros.services.fix import FixResult
+from amalthea_uros.services.migration import spelled
 
 
 def write(result: FixResult, terminal: Terminal) -> None:
@@ -16,4 +17,4 @@ def write(result: FixResult, terminal: Terminal) -> None:
     for path in result.descriptions:
         terminal.line(f"{path}: a description is not repaired, only its author knows what is meant")
     for path, version in result.older:
-        terminal.line(f"{path}: a model of AMALTHEA {version} is not repaired; migrate it first: amuros migrate {path}")
+        terminal.line(f"{path}: a model of {spelled(version)} is not repaired; migrate it first: amuros migrate {path}")

@@ -6,6 +6,7 @@ from amalthea_uros.metamodel.summary import ModelSummary
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.wording import counted
 from amalthea_uros.services.info import InfoResult
+from amalthea_uros.services.migration import spelled
 
 #: More classes and memories are only counted: the rare ones hide what matters.
 MOST_CLASSES = 12
@@ -20,8 +21,7 @@ def write(result: InfoResult, terminal: Terminal) -> None:
         path = terminal.style(document.path, "1")
         version = f"AMALTHEA {document.version}"
         if document.migrated_from is not None:
-            old = document.migrated_from
-            version = f"{old if old.startswith('ITEA') else f'AMALTHEA {old}'}, migrated to {document.version} in memory"
+            version = f"{spelled(document.migrated_from)}, migrated to {document.version} in memory"
         terminal.line(f"{path}: {version}, {document.objects:,} objects, {size}")
     if summary.unresolved:
         terminal.line(f"  {counted(summary.unresolved, 'unresolved reference')}")
