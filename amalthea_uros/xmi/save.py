@@ -36,8 +36,8 @@ def save(
 
     Raises
     ------
-    WriteError : values that the AMALTHEA version does not allow (all are listed), a model that was migrated, or a file that
-        cannot be written. No file is written unless all of them can be serialised.
+    WriteError : values that the AMALTHEA version does not allow (all are listed), a model that was migrated, two documents that
+        would become one file, or a file that cannot be written. No file is written unless all of them can be serialised.
     """
     if version is not None:
         _require_version(model, version)

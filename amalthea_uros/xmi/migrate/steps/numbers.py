@@ -21,7 +21,7 @@ def make_positive(node: Node, attribute: str, notes: Notes) -> None:
     anything.
     """
     if attribute not in node.attributes:
-        notes.defaulted(node, f"{attribute} is not stated: it was 0 by default, and is 1 now", "", attribute)
+        notes.to_check(node, f"{attribute} is not stated: it was 0 by default, and is 1 now", "", attribute)
         return
     number = whole_number(node.get(attribute))
     if number == 0:
