@@ -6,7 +6,6 @@ import codecs
 import os
 import shutil
 import stat
-import tempfile
 from collections.abc import Collection, Mapping
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -22,6 +21,9 @@ _BYTE_ORDER_MARKS = (
 #: Codecs that treat a byte order mark as an ordinary character. Without a mark, such text cannot be told from binary data.
 _UNMARKED = frozenset({"utf-16-le", "utf-16-be"})
 _MARK = "\ufeff"
+
+#: What a path can be wrong by: a path with a zero byte is a ValueError, one in a circle of links a RuntimeError before Python 3.13.
+_IMPOSSIBLE = (OSError, ValueError, RuntimeError)
 
 
 class FileError(Exception):
@@ -141,7 +143,7 @@ def _mode(path: Path) -> int | None:
         return path.stat().st_mode
     except FileNotFoundError:
         return None
-    except (OSError, ValueError) as error:
+    except _IMPOSSIBLE as error:
         raise not_writable(path, error) from None
 
 
@@ -152,12 +154,9 @@ def _staged(path: Path, data: bytes, undo: ExitStack) -> Path:
         raise FileError(path, "the file cannot be written: it is a directory")
     try:
         temporary = _beside(path, undo)
-        with temporary.open("wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
+        _write_new(temporary, data)
         temporary.chmod(0o666 & ~_umask() if mode is None else mode & 0o777)
-    except (OSError, ValueError) as error:
+    except _IMPOSSIBLE as error:
         raise not_writable(path, error) from None
     return temporary
 
@@ -168,18 +167,30 @@ def _copied(path: Path, undo: ExitStack) -> Path | None:
         if not path.exists():
             return None
         copy = _beside(path, undo)
-        shutil.copy2(path, copy)
+        _write_new(copy, path.read_bytes())
+        shutil.copystat(path, copy)
     except OSError as error:
         raise not_writable(path, error) from None
     return copy
 
 
 def _beside(path: Path, undo: ExitStack) -> Path:
-    target = path.resolve()
-    descriptor, name = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
-    os.close(descriptor)
-    undo.callback(Path(name).unlink, missing_ok=True)
-    return Path(name)
+    temporary = _name_beside(path.resolve())
+    undo.callback(temporary.unlink, missing_ok=True)
+    return temporary
+
+
+def _name_beside(target: Path) -> Path:
+    """The path of a temporary file, which is known before the file exists, so that it can be removed whenever somebody interrupts."""
+    return target.parent / f".{target.name[:40]}.{os.urandom(8).hex()}"
+
+
+def _write_new(path: Path, data: bytes) -> None:
+    """Write a file that nobody else may read yet."""
+    with open(path, "xb", opener=lambda name, flags: os.open(name, flags, 0o600)) as stream:
+        stream.write(data)
+        stream.flush()
+        os.fsync(stream.fileno())
 
 
 def _restore(path: Path, former: Path | None) -> None:
@@ -191,7 +202,7 @@ def _restore(path: Path, former: Path | None) -> None:
             former.replace(path.resolve())
 
 
-def not_writable(path: Path, error: OSError | ValueError) -> FileError:
+def not_writable(path: Path, error: OSError | ValueError | RuntimeError) -> FileError:
     """The error for a path at which a file or a directory cannot be created."""
     return FileError(path, f"the file cannot be written: {_cause(error)}")
 
@@ -204,11 +215,19 @@ def is_directory(path: Path) -> bool:
         return False
 
 
+def is_file(path: Path) -> bool:
+    """Whether there is such a file; False for an impossible path."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
 def resolved(path: Path) -> Path:
     """The path without links; of an impossible one, or one in a circle of links, itself: opening it reports the cause."""
     try:
         return path.resolve()
-    except (OSError, ValueError, RuntimeError):
+    except _IMPOSSIBLE:
         return path.absolute()
 
 
@@ -257,8 +276,7 @@ def _size_text(size: int) -> str:
     return f"{size // 2**20} MiB" if size >= 2**20 else f"{size:,} bytes"
 
 
-def _cause(error: OSError | ValueError) -> str:
-    # A path with a zero byte is a ValueError.
+def _cause(error: OSError | ValueError | RuntimeError) -> str:
     return getattr(error, "strerror", None) or str(error)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from amalthea_uros._internal.files import resolved
 from amalthea_uros.diagnostics import Finding
 
 
@@ -34,7 +35,7 @@ def profile_name(identifier: str) -> str:
 def relative(path: Path) -> str | None:
     """A path relative to the current folder, None if it is outside of it."""
     try:
-        return path.resolve().relative_to(Path.cwd()).as_posix()
+        return resolved(path).relative_to(Path.cwd()).as_posix()
     except ValueError:
         return None
 

@@ -65,7 +65,7 @@ def summary(result: MigrationResult) -> str:
         parts += _counts(result.changes) or ["nothing else to convert"]
     if as_is := sum(file.state is FileState.AS_IS for file in result.files):
         has = "has" if as_is == 1 else "have"
-        parts.append(f"{counted(as_is, 'file')} {has} AMALTHEA {result.version} already")
+        parts.append(f"{counted(as_is, 'file')} {has} {spelled(result.version)} already")
     if failed := sum(file.state is FileState.FAILED for file in result.files):
         parts.append(f"{counted(failed, 'file')} not written")
     if any(file.state is FileState.PLANNED for file in result.files):

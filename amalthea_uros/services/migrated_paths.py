@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from amalthea_uros._internal.files import FileError, is_directory, not_writable, resolved
+from amalthea_uros._internal.files import FileError, is_directory, is_file, not_writable, resolved
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.xmi.files import not_readable
@@ -39,10 +39,10 @@ def given_files(paths: Iterable[Path], excluded: Collection[Path]) -> list[Given
         if not is_directory(path):
             found.setdefault(resolved(path), GivenFile(path, None))
             continue
-        before = len(found)
-        for file in _models_below(path, excluded):
-            found.setdefault(file.resolve(), GivenFile(file, file.parent))
-        if len(found) == before:
+        models = list(_models_below(path, excluded))
+        for file in models:
+            found.setdefault(resolved(file), GivenFile(file, file.parent))
+        if not models:
             raise not_readable(FileError(path, f"the directory contains no {SUFFIX} file"))
     return list(found.values())
 
@@ -50,8 +50,10 @@ def given_files(paths: Iterable[Path], excluded: Collection[Path]) -> list[Given
 def _models_below(folder: Path, excluded: Collection[Path]) -> Iterator[Path]:
     for name, folders, files in os.walk(folder):
         holder = Path(name)
-        folders[:] = sorted(each for each in folders if not each.startswith(".") and (holder / each).resolve() not in excluded)
-        yield from (holder / file for file in sorted(files) if is_model_name(Path(file)))
+        folders[:] = sorted(each for each in folders if not each.startswith(".") and resolved(holder / each) not in excluded)
+        models = (holder / file for file in sorted(files) if is_model_name(Path(file)))
+        # Reading a pipe never ends; a link that leads nowhere is reported.
+        yield from (file for file in models if is_file(file) or file.is_symlink())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,8 +90,7 @@ class Destination:
 
     def folders(self) -> set[Path]:
         """The folders of results, which may be inside of those that are migrated."""
-        inside = {self._beside(root).resolve() for root in self.roots}
-        return inside | ({self.folder.resolve()} - {root.resolve() for root in self.roots} if self.folder else set())
+        return {resolved(self._beside(root)) for root in self.roots} | ({resolved(self.folder)} if self.folder else set())
 
     def target(self, path: Path, name: str, has_others: bool) -> Path:
         """The file for the result of a file.
@@ -110,17 +111,16 @@ class Destination:
         if self.file is not None and self.file.suffix == SUFFIX:
             message = f"{path} and the files to which it refers cannot be written to one file"
             raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(self.file), "Give a folder with -o.")])
-        root = self._root(path)
-        folder = self.file or self.folder
-        if folder is None and root is None:
+        root, below = self._place(path) or (None, Path())
+        folder = self.file or self.folder or (self._beside(root) if root is not None else None)
+        if folder is None:
             plain = Path(name)
             return path.with_name(f"{plain.stem}-{self._label}{plain.suffix}")
-        below = path.resolve().relative_to(root.resolve()).parent if root is not None else Path()
-        return (folder or self._beside(root or Path())) / below / name
+        return folder / below / name
 
     def leaves_what_is_unchanged(self, path: Path) -> bool:
         """Whether a file that has the version already is not copied."""
-        return self.in_place or (self.file is None and self.folder is None and self._root(path) is None)
+        return self.in_place or (self.file is None and self.folder is None and self._place(path) is None)
 
     def make_folders(self, targets: Iterable[Path]) -> None:
         """Make the folders of some files; only below the folder for the results.
@@ -141,16 +141,17 @@ class Destination:
     def _label(self) -> str:
         return self.version.replace(" ", "-")
 
-    def _root(self, path: Path) -> Path | None:
-        """The given folder in which a file is."""
-        place = path.resolve()
-        return next((root for root in self.roots if place.is_relative_to(root.resolve())), None)
+    def _place(self, path: Path) -> tuple[Path, Path] | None:
+        """The given folder in which a file is, and the way from there to the folder of the file."""
+        for root in self.roots:
+            # A link is where it was found; a file that another one names may be written as if it were elsewhere.
+            for file, folder in ((path, root), (resolved(path), resolved(root))):
+                if file.is_relative_to(folder) and ".." not in (below := file.relative_to(folder)).parts:
+                    return root, below.parent
+        return None
 
     def _beside(self, root: Path) -> Path:
         """The folder for the results of a folder, without a target."""
-        name = root.name or root.resolve().name
-        return (
-            root.resolve().parent / f"{name}-{self._label}"
-            if root.name in ("", "..")
-            else root.with_name(f"{name}-{self._label}")
-        )
+        # `.` and `..` are not what the folder is called.
+        place = resolved(root) if root.name in ("", "..") else root
+        return place.parent / f"{place.name}-{self._label}"

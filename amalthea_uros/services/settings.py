@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from amalthea_uros._internal.files import is_file, resolved
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings.targets import TARGETS
@@ -69,11 +70,11 @@ def project_settings(path: Path) -> CheckSettings:
     ------
     ReadError : the settings cannot be read, or something in them is wrong.
     """
-    start = path.resolve()
+    start = resolved(path)
     for folder in (start, *start.parents):
         for name, tables in _PLACES:
             file = folder / name
-            if file.is_file() and (settings := _table(file, tables)) is not None:
+            if is_file(file) and (settings := _table(file, tables)) is not None:
                 return _Reader(file, ".".join(tables)).settings(settings)
     return CheckSettings()
 

@@ -37,8 +37,8 @@ def save(
 
     Raises
     ------
-    WriteError : values that the AMALTHEA version does not allow (all are listed), a model that was migrated, or a file that
-        cannot be written. No file is written unless all of them can be serialised.
+    WriteError : values that the AMALTHEA version does not allow (all are listed), a model that was migrated, two documents that
+        would become one file, or a file that cannot be written. No file is written unless all of them can be serialised.
     """
     if version is not None:
         _require_version(model, version)
@@ -59,11 +59,16 @@ def save_documents(documents: Iterable[Document], canonical: Collection[Document
     _save([(document, _own_path(document), document in canonical) for document in documents])
 
 
-def _save(files: Iterable[tuple[Document, Path, bool]], compress: bool | None = None, version: str | None = None) -> None:
+def _save(saved: Iterable[tuple[Document, Path, bool]], compress: bool | None = None, version: str | None = None) -> None:
     prepared = []
     problems: list[Finding] = []
-    for document, target, canonical in files:
-        if version is None and document.migrated_from is not None and target == document.path:
+    taken: dict[Path, Document] = {}
+    for document, target, canonical in saved:
+        other = taken.setdefault(files.resolved(target), document)
+        if other is not document:
+            problems.append(_not_one_file(other, document, target))
+            continue
+        if version is None and document.migrated_from is not None and _is_same(target, document.path):
             problems.append(_not_over_the_old_file(document, target))
             continue
         try:
@@ -94,6 +99,16 @@ def _require_version(model: Model, version: str) -> None:
         message = f"the model has AMALTHEA version {', '.join(others)}, not {version}"
         advice = f"Convert it first: amuros.migrate(model, to={version!r}).save(...)."
         raise WriteError([Finding("XMI104", Severity.ERROR, message, None, advice)])
+
+
+def _not_one_file(one: Document, other: Document, path: Path) -> Finding:
+    message = f"two documents would be written here: {one.path} and {other.path}"
+    return Finding("XMI101", Severity.ERROR, message, Location(path), "Give one of them another file name.")
+
+
+def _is_same(target: Path, path: Path | None) -> bool:
+    """Whether two paths lead to the same file, however they are written."""
+    return path is not None and files.resolved(target) == files.resolved(path)
 
 
 def _not_over_the_old_file(document: Document, path: Path) -> Finding:

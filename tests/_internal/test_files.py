@@ -58,6 +58,23 @@ def test_a_write_that_fails_leaves_the_old_content_and_no_other_file(tmp_path, m
     assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [("a", b"old")]
 
 
+@pytest.mark.parametrize("number", [1, 2])
+def test_who_interrupts_while_a_file_is_made_leaves_nothing_behind(number, tmp_path, monkeypatch):
+    opened = os.open
+
+    def interrupted(path, flags, *mode, **options):
+        descriptor = opened(path, flags, *mode, **options)
+        if flags & os.O_CREAT:
+            os.close(descriptor)
+            raise KeyboardInterrupt
+        return descriptor
+
+    monkeypatch.setattr(os, "open", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_all({tmp_path / str(name): b"new" for name in range(number)})
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_write_keeps_permissions_and_symbolic_links(tmp_path):
     target, link = tmp_path / "target", tmp_path / "link"
     target.write_bytes(b"old")

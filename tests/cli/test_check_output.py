@@ -109,3 +109,12 @@ def test_annotations_escape_what_has_a_meaning(tmp_path):
     run = amuros("check", path, "--select", "INC-ST-NONE", "--output", "github", cwd=tmp_path)
     assert run.stdout.startswith("::warning file=a%2Cb%3Ac.amxmi,line=")
     assert "'100%25'" in run.stdout
+
+
+@pytest.mark.parametrize("format_name", ["text", "sarif", "github", "json", "junit"])
+def test_a_circle_of_links_is_a_finding(format_name, tmp_path):
+    path = tmp_path / "loop.amxmi"
+    path.symlink_to(path)
+    run = amuros("check", path, "--output", format_name)
+    assert (run.returncode, run.stderr.count("Traceback")) == (2, 0)
+    assert "the file cannot be read: Too many levels of symbolic links" in run.stdout + run.stderr

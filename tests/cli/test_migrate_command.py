@@ -1,6 +1,7 @@
 """`amuros migrate` as people and programs see it, and what the other commands say of old models."""
 
 import json
+import re
 import sys
 from io import StringIO
 
@@ -69,6 +70,19 @@ def test_what_is_lost_makes_the_exit_code_1(tmp_path):
     assert f"| Amalthea / swModel | {path}:2:1 | text between the elements | 'and \\| more' |" in page
 
 
+def test_no_text_of_a_model_is_markup_in_the_report(tmp_path):
+    odd = "a&#10;b|c&lt;b>_x_y_ __z `k` &amp;lt; &#13;R ~~s~~ *s* [l](u) &#x2028;\\"
+    content = f'</swModel><measurementModel><measurements><runtimes unit="{odd}"/></measurements></measurementModel><swModel>'
+    path = model(tmp_path / "a.amxmi", "0.9.9", content)
+    result = run(path, "--dry-run", "--output", "markdown")
+    rows = [line for line in result.stdout.splitlines() if "no place any more" in line]
+    assert len(rows) == 2
+    for row in rows:
+        assert row.endswith(" |")
+        assert r"a b\|c\<b\>\_x_y\_ \_\_z \`k\` \&lt;  R \~\~s\~\~ \*s\* \[l\](u)" in row
+        assert len(re.findall(r"(?<!\\)\|", row)) == (5 if "Amalthea" in row else 6)
+
+
 def test_what_is_not_migrated_makes_the_exit_code_2_and_the_rest_is_written(tmp_path):
     folder = tmp_path / "models"
     folder.mkdir()
@@ -89,6 +103,31 @@ def test_a_dry_run(tmp_path):
         "1 file: AMALTHEA 0.9.8 -> 3.3.0, nothing else to convert, dry run",
     )
     assert [file.name for file in tmp_path.iterdir()] == ["a.amxmi"]
+
+
+def test_steps_are_in_the_order_in_which_they_were_taken(tmp_path):
+    semaphore = '</swModel><osModel><semaphores name="S" semaphoreType="CountingSemaphore"{}/></osModel><swModel>'
+    newer, older = tmp_path / "newer", tmp_path / "older"
+    for folder in (newer, older):
+        folder.mkdir()
+    model(
+        newer / "a.amxmi",
+        "3.3.0",
+        "to do" + semaphore.format(' ownership="true"') + '<labels name="L" dataType="X?type=BaseTypeDefinition"/>',
+    )
+    model(older / "a.amxmi", "0.9.5", "to do" + semaphore.format(' maxValue="0"') + '<tasks name="T"><callGraph/></tasks>')
+    headings = [
+        [
+            line
+            for line in run(folder / "a.amxmi", "--dry-run", "--to", version).stdout.splitlines()
+            if line.startswith(("To", "Read"))
+        ]
+        for folder, version in ((newer, "1.2.0"), (older, "3.3.0"))
+    ]
+    assert headings == [
+        ["Reading", "To AMALTHEA 2.2.0", "To AMALTHEA 2.0.0"],
+        ["Reading", "To AMALTHEA 0.9.7", "To AMALTHEA 2.1.0", "To AMALTHEA 3.0.0"],
+    ]
 
 
 def test_nothing_to_do(tmp_path):
@@ -143,6 +182,14 @@ def test_the_other_commands_say_that_a_model_was_migrated(tmp_path):
     assert formatted.returncode == 2
     assert "XMI104 error: a model of AMALTHEA 0.8.2 has no canonical form" in formatted.stderr
     assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize("command", [["check", "--fix"], ["info"], ["migrate", "--to", "ITEA 1.3.0"]])
+def test_versions_of_itea_are_not_called_amalthea(command, tmp_path):
+    (tmp_path / "a.amxmi").write_text('<c:AMALTHEA xmlns:c="http://www.amalthea.itea2.org/model/1.3.0/central"/>')
+    result = amuros(*command, tmp_path / "a.amxmi")
+    assert "ITEA 1.3.0" in result.stdout
+    assert "AMALTHEA ITEA" not in result.stdout + result.stderr
 
 
 def test_models_of_different_versions_are_compared(tmp_path):

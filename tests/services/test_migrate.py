@@ -1,5 +1,6 @@
 """`amuros.migrate`, and what the other functions do with models of older versions."""
 
+import os
 import zipfile
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from amalthea_uros.services.format import format_files
 from amalthea_uros.services.info import info
 from amalthea_uros.services.migrate import migrate_files
 from amalthea_uros.services.migration import FileState
+from amalthea_uros.xmi.migrate import chain
 from amalthea_uros.xmi.migrate.chain import _UP
 from amalthea_uros.xmi.migrate.notes import Kind
 from amalthea_uros.xmi.migrate.step import Step
@@ -82,6 +84,33 @@ class TestWhereResultsGo:
             assert [file.path.name for file in result.files] == ["a.amxmi"]
         assert versions(tmp_path) == {"a.amxmi": "0.9.8", "new/a.amxmi": "3.0.0"}
 
+    @pytest.mark.parametrize("given", [".", ".."])
+    def test_of_the_current_folder_to_a_folder_beside_it(self, given, tmp_path, monkeypatch):
+        write(tmp_path / "models" / "a.amxmi", "0.9.8")
+        (tmp_path / "models" / "inner").mkdir()
+        monkeypatch.chdir(tmp_path / "models" / ("" if given == "." else "inner"))
+        assert migrate_files(given).is_complete
+        assert versions(tmp_path / "models-3.3.0") == {"a.amxmi": "3.3.0"}
+
+    def test_a_link_in_a_folder_to_a_file_elsewhere(self, tmp_path):
+        write(tmp_path / "models" / "inner" / "a.amxmi", "0.9.8")
+        (tmp_path / "models" / "inner" / "b.amxmi").symlink_to(write(tmp_path / "other" / "x.amxmi", "0.9.8"))
+        assert migrate_files(tmp_path / "models").is_complete
+        assert versions(tmp_path / "models-3.3.0") == {"inner/a.amxmi": "3.3.0", "inner/b.amxmi": "3.3.0"}
+        assert versions(tmp_path / "models") == {"inner/a.amxmi": "0.9.8", "inner/b.amxmi": "0.9.8"}
+
+    def test_a_file_that_has_the_version_is_copied_if_the_others_of_its_folder_go_elsewhere(self, tmp_path):
+        write(tmp_path / "models" / "a.amxmi", "0.9.8")
+        path = write(tmp_path / "models" / "b.amxmi", "3.3.0")
+        migrate_files(tmp_path / "models")
+        assert (tmp_path / "models-3.3.0" / "b.amxmi").read_text() == path.read_text()
+
+    def test_no_folder_is_made_for_a_file(self, tmp_path):
+        path = write(tmp_path / "a.amxmi", "0.9.8")
+        (finding,) = migrate_files(path, target=tmp_path / "missing" / "b.amxmi").findings
+        assert finding.rule == "XMI101"
+        assert [file.name for file in tmp_path.iterdir()] == ["a.amxmi"]
+
     def test_in_place(self, tmp_path):
         write(tmp_path / "a.amxmi", "0.9.8")
         write(tmp_path / "sub" / "b.amxmi", "3.3.0")
@@ -103,10 +132,11 @@ class TestWhereResultsGo:
         assert (tmp_path / "new" / "b.amxmi").read_text() == path.read_text()
 
     def test_nothing_is_overwritten_unless_forced(self, tmp_path):
-        path = write(tmp_path / "a.amxmi", "0.9.8")
+        path = write(tmp_path / "a.amxmi", "0.9.8", "<swModel>to do</swModel>")
         (tmp_path / "a-3.3.0.amxmi").write_text("mine")
         result = migrate_files(path)
         assert (result.files[0].state, result.findings[0].rule) == (FileState.FAILED, "XMI101")
+        assert result.changes == ()
         assert (tmp_path / "a-3.3.0.amxmi").read_text() == "mine"
         assert migrate_files(path, target=path).findings[0].message == "the file exists already"
         assert migrate_files(path, force=True).is_complete
@@ -117,6 +147,20 @@ class TestWhereResultsGo:
         result = migrate_files([one, other], target=tmp_path / "new")
         assert [file.state for file in result.files] == [FileState.WRITTEN, FileState.FAILED]
         assert "two files would be written here" in result.findings[0].message
+
+    def test_a_folder_is_migrated_once_however_often_it_is_given(self, tmp_path):
+        write(tmp_path / "models" / "inner" / "a.amxmi", "0.9.8")
+        result = migrate_files([tmp_path / "models", tmp_path / "models" / "inner"], target=tmp_path / "new")
+        assert [file.state for file in result.files] == [FileState.WRITTEN]
+        assert versions(tmp_path / "new") == {"inner/a.amxmi": "3.3.0"}
+
+    @pytest.mark.parametrize("name", ["loop", "loop/x", "x" * 300])
+    @pytest.mark.parametrize("in_folder", [False, True])
+    def test_to_an_impossible_path(self, in_folder, name, tmp_path):
+        (tmp_path / "loop").symlink_to(tmp_path / "loop")
+        path = write(tmp_path / "models" / "a.amxmi", "0.9.8")
+        (finding,) = migrate_files(path.parent if in_folder else path, target=tmp_path / name).findings
+        assert (finding.rule, finding.message.partition(":")[0]) == ("XMI101", "the file cannot be written")
 
     def test_a_dry_run_writes_nothing(self, tmp_path):
         path = write(tmp_path / "a.amxmi", "0.9.8")
@@ -131,6 +175,13 @@ class TestWhereResultsGo:
             migrate_files(path, target=tmp_path / "b.amxmi", compress=compress, force=True)
             assert zipfile.is_zipfile(tmp_path / "b.amxmi") is expected
             assert amuros.load(tmp_path / "b.amxmi").documents[0].version == "3.3.0"
+
+    def test_the_name_in_a_zip_stays(self, tmp_path):
+        with zipfile.ZipFile(tmp_path / "a.amxmi", "w") as archive:
+            archive.writestr("model", text("0.9.8"))
+        for compress in (None, True):
+            migrate_files(tmp_path / "a.amxmi", target=tmp_path / "b.amxmi", compress=compress, force=True)
+            assert zipfile.ZipFile(tmp_path / "b.amxmi").namelist() == ["model"]
 
     def test_another_encoding_becomes_utf_8(self, tmp_path):
         path = tmp_path / "a.amxmi"
@@ -213,6 +264,29 @@ class TestSets:
         result = migrate_files(folder)
         assert [finding.rule for finding in result.findings] == ["XMI002", "XMI103", "XMI006", "XMI005"]
         assert versions(tmp_path / "models-3.3.0") == {"a.amxmi": "3.3.0"}
+
+    def test_an_impossible_path_in_a_folder_does_not_stop_the_rest(self, tmp_path):
+        folder = tmp_path / "models"
+        write(folder / "a.amxmi", "0.9.8")
+        (folder / "loop.amxmi").symlink_to(folder / "loop.amxmi")
+        (folder / "nowhere.amxmi").symlink_to(folder / "missing.amxmi")
+        os.mkfifo(folder / "pipe.amxmi")
+        result = migrate_files(folder)
+        assert [(finding.rule, finding.location.path.name) for finding in result.findings] == [
+            ("XMI001", "loop.amxmi"),
+            ("XMI001", "nowhere.amxmi"),
+        ]
+        assert versions(tmp_path / "models-3.3.0") == {"a.amxmi": "3.3.0"}
+
+    @pytest.mark.parametrize("name", ["x" * 300, "loop"])
+    @pytest.mark.parametrize("version", ["0.8.2", "2.0.0"])
+    def test_a_reference_to_a_file_at_an_impossible_path_leads_nowhere(self, version, name, tmp_path):
+        (tmp_path / "loop.amxmi").symlink_to(tmp_path / "loop.amxmi")
+        path = write(tmp_path / "a.amxmi", version, TASK.replace("amlt:/", f"{name}.amxmi"))
+        result = migrate_files(path, target=tmp_path / "b.amxmi")
+        assert result.is_complete
+        assert [finding.rule for finding in result.findings] == ["XMI025"]
+        assert "XMI025" in [finding.rule for finding in amuros.load(path).findings]
 
     def test_what_is_no_part_of_a_model_is_refused(self, tmp_path):
         spaces = f'xmlns:hw="{ITEA}1.3.0/hw"'
@@ -315,29 +389,29 @@ class TestWhatIsLost:
         assert [(finding.rule, finding.location.line) for finding in result.findings] == [("XMI011", 3)]
         assert 'x="1"' in (tmp_path / "a-3.3.0.amxmi").read_text()
 
-    def test_on_the_way_back_it_is_an_error_and_nothing_is_written(self, tmp_path):
-        # A label has no reference to its type before 3.0.0.
-        content = '<swModel>\n<labels name="L"/>\n<semaphores name="Q" unknown="1" interruptible="true"/>\n</swModel>'
+    def test_on_the_way_back_it_is_an_error_and_nothing_is_written(self, tmp_path, monkeypatch):
+        # As if no step knew of the attribute that 2.2.0 does not have.
+        monkeypatch.setitem(chain._DOWN, "3.0.0", Step("3.0.0", "2.2.0"))
+        content = '<osModel>\n<semaphores name="Q" unknown="1" ownership="true"/>\n</osModel>'
         path = write(tmp_path / "a.amxmi", "3.3.0", content)
-        attribute = "ownership"
-        path.write_text(path.read_text().replace("interruptible", attribute))
-        result = migrate_files(path, "2.2.0")
-        found = [finding for finding in result.findings if finding.rule == "XMI102"]
-        if found:  # unless a step knows better
-            assert [(finding.severity, finding.location.line) for finding in found] == [(Severity.ERROR, 5)]
-            assert f"'{attribute}'" in found[0].message
-            assert [file.name for file in tmp_path.iterdir()] == ["a.amxmi"]
-        assert not any("'unknown'" in finding.message for finding in found)
+        (finding,) = migrate_files(path, "2.2.0").findings
+        assert (finding.rule, finding.severity, finding.location.line) == ("XMI102", Severity.ERROR, 4)
+        assert "'ownership'" in finding.message
+        assert [file.name for file in tmp_path.iterdir()] == ["a.amxmi"]
 
-    def test_a_step_back_that_loses_something_is_an_error(self, tmp_path, monkeypatch):
+    def test_what_a_step_back_and_the_reader_say_of_the_same_place_is_one_error(self, tmp_path):
+        path = write(tmp_path / "a.amxmi", "3.3.0", '<osModel><semaphores name="Q" semaphoreType="Mutex"/></osModel>')
+        (finding,) = migrate_files(path, "2.2.0").findings
+        assert "semaphore type Mutex: only AMALTHEA 3.0.0 and later have it" in finding.message
+
+    @pytest.mark.parametrize(("number", "more"), [(30, " (and 10 more of this kind)"), (20, "")])
+    def test_a_step_back_that_loses_something_is_an_error(self, number, more, tmp_path, monkeypatch):
         def lose(models, notes, official):
             for node in models.nodes("labels"):
                 notes.lost(node, "has no place", node.name, "name")
 
-        from amalthea_uros.xmi.migrate import chain
-
         monkeypatch.setitem(chain._DOWN, "3.3.0", Step("3.3.0", "3.2.0", lose))
-        labels = "\n".join(f'<labels name="L{number}"/>' for number in range(30))
+        labels = "\n".join(f'<labels name="L{number}"/>' for number in range(number))
         path = write(tmp_path / "a.amxmi", "3.3.0", f"<swModel>\n{labels}\n</swModel>")
         with pytest.raises(amuros.WriteError) as caught:
             amuros.migrate(path, "3.2.0")
@@ -345,7 +419,7 @@ class TestWhatIsLost:
         assert len(findings) == 20
         assert str(findings[1]) == f"{path}:5:9: XMI102 error: AMALTHEA 3.2.0 cannot hold this: has no place: L1"
         assert findings[1].object == "labels 'L1'"
-        assert findings[-1].message.endswith("L19 (and 10 more of this kind)")
+        assert findings[-1].message.endswith(f"has no place: L19{more}")
 
 
 class TestLibrary:
@@ -449,12 +523,15 @@ class TestModelsInMemory:
         path = write(tmp_path / "a.amxmi", "0.8.2")
         before = path.read_text()
         model = amuros.load(path)
-        for target in (None, path):
+        link = tmp_path / "link.amxmi"
+        link.symlink_to(path)
+        for target in (None, path, tmp_path, path.parent / ".." / path.parent.name / path.name, link):
             with pytest.raises(amuros.WriteError, match=r"XMI104.*has AMALTHEA 0\.8\.2, but the model was migrated"):
                 amuros.save(model, target)
         with pytest.raises(amuros.WriteError, match=r"the model has AMALTHEA version 3\.3\.0, not 2\.0\.0"):
             amuros.save(model, tmp_path / "b.amxmi", version="2.0.0")
         assert path.read_text() == before
+        link.unlink()
         amuros.save(model, tmp_path / "b.amxmi")
         amuros.save(model, version="3.3.0")
         assert versions(tmp_path) == {"a.amxmi": "3.3.0", "b.amxmi": "3.3.0"}
@@ -477,6 +554,12 @@ class TestModelsInMemory:
         (finding,) = format_files(path).findings
         assert (finding.rule, finding.help) == ("XMI104", f"Migrate it first: amuros migrate {path}")
         assert path.read_text() == before
+
+    def test_versions_of_itea_are_not_called_amalthea(self, tmp_path):
+        path = write(tmp_path / "a.amxmi", "ITEA 1.3.0")
+        assert format_files(path).findings[0].message == "a model of ITEA 1.3.0 has no canonical form"
+        with pytest.raises(amuros.WriteError, match=r"the file has ITEA 1\.3\.0, but the model was migrated"):
+            amuros.save(amuros.load(path))
 
     def test_findings_are_located_in_the_old_file(self, tmp_path):
         content = '<swModel>\n  <!-- é -->\n  <tasks name="T" multipleTaskActivationLimit="many"/></swModel>'

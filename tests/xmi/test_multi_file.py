@@ -111,6 +111,16 @@ def test_saved_elsewhere_the_files_keep_their_names(folder, tmp_path):
     assert texts(tmp_path / "copy") == (SOFTWARE, MAPPING)
 
 
+def test_documents_of_the_same_name_do_not_become_one(tmp_path):
+    paths = [tmp_path / name / "a.amxmi" for name in ("one", "other")]
+    for path in paths:
+        path.parent.mkdir()
+        path.write_text(SOFTWARE)
+    with pytest.raises(amuros.WriteError, match=r"XMI101.*two documents would be written here"):
+        amuros.save(amuros.load(*paths), tmp_path / "both")
+    assert not list((tmp_path / "both").iterdir())
+
+
 def test_an_object_moved_to_another_file_is_referred_to_by_href(folder):
     model = amuros.load(folder)
     mapping = next(d.root for d in model.documents if d.root.mapping_model)

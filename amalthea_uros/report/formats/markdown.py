@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import IO, TYPE_CHECKING
 
@@ -9,6 +10,9 @@ if TYPE_CHECKING:
     from amalthea_uros.services.migrate import MigrationResult
 
 RENDERS = ("MigrationResult",)
+
+#: Characters that may be markup; an underscore between letters never is.
+_SPECIAL = re.compile(r"[\\|<>*`\[\]~&]|(?<![^\W_])_|_(?![^\W_])")
 
 
 def write(result: MigrationResult, stream: IO[str]) -> None:
@@ -47,6 +51,4 @@ def _table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterato
 
 def _escaped(text: str) -> str:
     """Text that cannot end the cell, nor be taken for markup."""
-    for special in "\\|<>*`[]":
-        text = text.replace(special, "\\" + special)
-    return text.replace("\n", " ")
+    return " ".join(_SPECIAL.sub(r"\\\g<0>", text).splitlines())

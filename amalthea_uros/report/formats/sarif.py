@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 from urllib.parse import quote
 
+from amalthea_uros._internal.files import resolved
 from amalthea_uros._version import __version__
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.report.findings import profile_name, relative
@@ -78,7 +79,7 @@ def _result(entry: Entry, index: int) -> dict[str, Any]:
 
 def _place(path: Path, line: int | None, column: int | None) -> dict[str, Any]:
     below = relative(path)
-    artifact = {"uri": path.resolve().as_uri()} if below is None else {"uri": quote(below), "uriBaseId": _ROOT}
+    artifact = {"uri": resolved(path).as_uri()} if below is None else {"uri": quote(below), "uriBaseId": _ROOT}
     place: dict[str, Any] = {"artifactLocation": artifact}
     if line:
         place["region"] = {"startLine": line, "startColumn": column or 1}

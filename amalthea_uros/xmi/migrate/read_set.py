@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
+from amalthea_uros._internal.files import is_file, resolved
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
 from amalthea_uros.xmi.files import FileText, read_text
@@ -32,7 +33,7 @@ def read_set(files: Iterable[tuple[Path, FileText]], max_size: int, notes: Notes
     parsed: list[Parsed] = []
     refused: list[Finding] = []
     waiting = list(files)
-    known = {path.resolve() for path in (*elsewhere, *(path for path, _ in waiting))}
+    known = {resolved(path) for path in (*elsewhere, *(path for path, _ in waiting))}
     while waiting:
         path, content = waiting.pop(0)
         try:
@@ -43,8 +44,8 @@ def read_set(files: Iterable[tuple[Path, FileText]], max_size: int, notes: Notes
         for other in dict.fromkeys(file_of(href.text) for href in parsed[-1].hrefs):
             found = path.parent / other
             # A missing file is reported with the references to it.
-            if other and SUFFIX in found.suffix and found.resolve() not in known and found.is_file():
-                known.add(found.resolve())
+            if other and SUFFIX in found.suffix and resolved(found) not in known and is_file(found):
+                known.add(resolved(found))
                 try:
                     waiting.append((found, read_text(found, max_size)))
                 except ReadError as error:

@@ -9,7 +9,7 @@ from pathlib import Path
 from urllib.parse import unquote, unquote_plus
 from xml.sax.saxutils import unescape
 
-from amalthea_uros._internal.files import resolved
+from amalthea_uros._internal.files import is_file, resolved
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.naming import TYPE_MARK
@@ -94,11 +94,11 @@ class _Sets:
                 names.add(_name(href))
                 continue
             path = file.path.parent / other
-            if SUFFIX not in path.suffix or not path.is_file():
+            if SUFFIX not in path.suffix or not is_file(path):
                 continue  # a missing file is reported with the references to it
-            found = self.places.get(path.resolve())
+            found = self.places.get(resolved(path))
             if found is None:
-                found = self.places[path.resolve()] = len(self.files)
+                found = self.places[resolved(path)] = len(self.files)
                 self.files.append(InputFile.read(path, path.parent, self.target, self.max_size))
                 self.leaders.append(found)
             self.join(place, found)

@@ -4,6 +4,7 @@ import pytest
 from inline_models import InlineModels
 from migration import meaning, migrated, opened
 
+from amalthea_uros.xmi.migrate.index import all_below
 from amalthea_uros.xmi.migrate.notes import Kind
 from amalthea_uros.xmi.migrate.write import tree_text
 
@@ -205,6 +206,14 @@ def test_a_quantum_is_a_number_of_nanoseconds(models, unit, expected):
         taken_back(models, content)
 
 
+@pytest.mark.parametrize("text", ["0", "007"])
+def test_a_quantum_that_would_come_back_as_another_text_is_kept(models, text):
+    definitions = definition("PfairPD2") + parameter_definition("quantSize", "Time")
+    roots = taken_back(models, os_model(scheduler("PfairPD2", time("quantSize", text, "ns")), definitions))
+    (algorithm,) = found(roots, "osModel", "operatingSystems", "taskSchedulers", "schedulingAlgorithm")
+    assert algorithm.attributes == {}
+
+
 def test_what_the_step_up_fills_in_is_not_restored(models):
     """The task group 0 and the quantum 0 of an allocation and algorithm that state none."""
     osek = definition("OSEK", processParameters="taskGroup?type=SchedulingParameterDefinition")
@@ -231,6 +240,95 @@ def test_defaults_of_parameters_are_stated(models):
     (node,) = found(taken_back(models, content), "mappingModel", "taskAllocation")
     assert node.child("schedulingParameters").attributes == {"priority": "7"}
     assert len(models.messages(Kind.DEFAULTED)) == 1
+
+
+def test_a_stated_parameter_needs_no_default(models):
+    default = '<defaultValue xsi:type="am:IntegerObject" value="7"/>'
+    content = os_model(scheduler("OSEK"), OSEK + parameter_definition("priority", "Integer", default))
+    (node,) = found(taken_back(models, content + allocated(integer("priority", 3))), "mappingModel", "taskAllocation")
+    assert [child.attributes for child in node.all("schedulingParameters")] == [{"priority": "3"}]
+    assert models.messages(Kind.DEFAULTED) == []
+
+
+def test_a_default_that_was_changed_in_1_2_0_counts(models):
+    default = '<defaultValue xsi:type="am:IntegerObject" value="7"/>'
+    content = os_model(scheduler("OSEK"), OSEK + parameter_definition("priority", "Integer", default))
+    older, _ = migrated(models.files("newer", "2.0.0", content + allocated("")), "1.2.0")
+    (allocation,) = found(older.roots, "mappingModel", "taskAllocation")
+    allocation.children[-1].attributes["priority"] = "5"
+    (path,) = models.files("older", "1.2.0", "")
+    path.write_text(tree_text(older.trees[0]))
+    assert meaning(migrated([path], "2.0.0")[0]) == models.read("2.0.0", content + allocated(integer("priority", 5)))
+
+
+def test_processes_of_all_kinds_keep_properties_that_are_parameters_in_1_2_0(models):
+    properties = "".join(
+        f'<customProperties key="{key}"><value xsi:type="am:StringObject" value="4"/></customProperties>'
+        for key in ("osekTaskGroup", "priority")
+    )
+    content = f"""<swModel><isrs name="I">{properties}</isrs></swModel>
+    <osModel><operatingSystems name="OS"><interruptControllers name="C"/></operatingSystems></osModel>
+    <mappingModel><isrAllocation isr="I?type=ISR" controller="C?type=InterruptController"/></mappingModel>"""
+    (isr,) = found(taken_back(models, content), "swModel", "isrs")
+    assert keys(isr) == ["AMALTHEA 2.0.0: customProperties/osekTaskGroup", "AMALTHEA 2.0.0: customProperties/priority"]
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        integer("priority", 1) + integer("taskGroup", 2),
+        integer("priority", 1) + integer("minBudget", 2),
+        integer("priority", 1) + '<schedulingParameters key="extended%3A+k?type=SchedulingParameterDefinition">'
+        '<value xsi:type="am:StringObject"/></schedulingParameters>',
+    ],
+)
+def test_definitions_are_kept_where_an_allocation_keeps_a_parameter(models, parameters):
+    """As the step up makes them, but only beside a parameter that 1.2.0 cannot state."""
+    names = {"taskGroup": "Integer", "minBudget": "Time", "extended: k": "String"}
+    used = [name for name in names if name.replace(": ", "%3A+") + "?" in parameters or name == "taskGroup"]
+    flags = dict.fromkeys(("requiresParentScheduler", "passesParametersUpwards", "hasExactlyOneChild"), "false")
+    group = "taskGroup?type=SchedulingParameterDefinition"
+    osek = definition("OSEK", **flags, processParameters=f"priority?type=SchedulingParameterDefinition {group}")
+    made = "".join(
+        f'<schedulingParameterDefinitions name="{name}" type="{names[name]}" many="false"'
+        f' mandatory="{"true" if name == "taskGroup" else "false"}"/>'
+        for name in used
+    )
+    roots = taken_back(models, os_model(scheduler("OSEK"), osek + PRIORITY + made) + allocated(parameters))
+    (node,) = found(roots, "osModel")
+    assert "AMALTHEA 2.0.0: schedulerDefinitions/OSEK" in keys(node)
+
+
+def test_comments_come_back(models):
+    definitions = f"<!--1-->{definition('OSEK')}<!--2-->{parameter_definition('own')}"
+    content = os_model(scheduler("OSEK", "<!--3-->" + integer("own", 1)), definitions)
+    older, _ = migrated(models.files("newer", "2.0.0", content), "1.2.0")
+    (path,) = models.files("older", "1.2.0", "")
+    path.write_text(tree_text(older.trees[0]))
+    nodes = all_below(migrated([path], "2.0.0")[0].roots)
+    assert {node.tag: node.comments for node in nodes if node.comments} == {
+        "schedulerDefinitions": ["<!--1-->"],
+        "schedulingParameterDefinitions": ["<!--2-->"],
+        "schedulingParameters": ["<!--3-->"],
+    }
+
+
+@pytest.mark.parametrize(
+    ("comment", "part", "other", "number"),
+    [
+        ("", "", [], 0),
+        ("<!--why-->", "", [], 2),
+        ("", '<customProperties key="k"><value xsi:type="am:StringObject" value="v"/></customProperties>', [], 2),
+        # The step up would put them there.
+        ("", "", ['<osModel><osOverheads name="O"/></osModel>'], 2),
+    ],
+)
+def test_definitions_are_kept_unless_the_step_up_makes_them_so(models, comment, part, other, number):
+    flags = dict.fromkeys(("requiresParentScheduler", "passesParametersUpwards", "hasExactlyOneChild"), "false")
+    standard = definition("PriorityBased", part, **flags, processParameters="priority?type=SchedulingParameterDefinition")
+    controller = '<interruptControllers name="C" definition="PriorityBased?type=SchedulerDefinition"/>'
+    roots = taken_back(models, *other, os_model(controller, comment + standard + PRIORITY))
+    assert len(keys(found(roots, "osModel")[-1])) == number
 
 
 def test_a_changed_algorithm_counts(models):

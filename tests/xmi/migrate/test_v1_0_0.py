@@ -2,6 +2,7 @@
 
 import pytest
 from inline_models import InlineModels
+from migration import migrated
 
 from amalthea_uros.xmi.migrate.notes import Kind
 
@@ -31,6 +32,22 @@ def test_custom_properties_of_a_measurement_stay_with_what_was_measured(models):
     assert lost.detail == "of 'T 1': 5 us, 7 us, TimeBoundaries lowerBound 1 us upperBound 9 us"
 
 
+def test_comments_on_a_measurement_stay_with_what_was_measured(models):
+    content = measured("", MEASUREMENT.replace("<measurements ", "<!-- on the bench --><measurements "))
+    roots = migrated(models.files("before", "0.9.9", content), "1.0.0")[0].roots
+    assert [task.comments for task in roots[0].find("swModel", "tasks")] == [["<!-- on the bench -->"]]
+
+
+def test_measurements_of_event_chains_and_notes_on_all_of_them_stay(models):
+    note = PROPERTY.format("bench", "A")
+    measurements = f"""<measurementModel>{note}<measurements xsi:type="am:EventChainMeasurement" eventChain="E?type=EventChain">
+      <runtimes value="5" unit="us"/></measurements></measurementModel>"""
+    chains = '<constraintsModel><eventChains name="E">{}</eventChains></constraintsModel>'
+    after = note + chains.format(PROPERTY.format("measured runtimes", "5 us"))
+    assert models.migrate("0.9.9", "1.2.0", chains.format("") + measurements) == models.read("1.2.0", after)
+    assert models.messages(Kind.LOST) == []
+
+
 def test_the_official_converter_removes_them(models):
     assert models.migrate("0.9.9", "1.0.0", measured("", MEASUREMENT), official=True) == models.read("1.0.0", measured("", ""))
     [lost] = [note for note in models.notes if note.kind == Kind.LOST]
@@ -53,12 +70,13 @@ def test_only_events_of_processes_lose_the_deadline(models):
 
 def test_no_occurrences_become_one(models):
     text = """<stimuliModel><stimuli xsi:type="am:PeriodicBurstStimulus" name="B" {0}/>
-      <stimuli xsi:type="am:PeriodicBurstStimulus" name="D"/>
+      <stimuli xsi:type="am:PeriodicBurstStimulus" name="D"/><stimuli xsi:type="am:PeriodicStimulus" name="P"/>
       <stimuli xsi:type="am:ArrivalCurveStimulus" name="A"><entries {1}/><entries numberOfOccurrences="3"/></stimuli></stimuliModel>"""
     before = text.format('occurrenceCount="0"', 'numberOfOccurrences="0"')
     after = text.format('occurrenceCount="1"', 'numberOfOccurrences="1"')
     assert models.migrate("1.1.0", "1.2.0", before) == models.read("1.2.0", after)
     assert len(models.messages(Kind.CONVERTED)) == 2
+    assert models.messages(Kind.TO_CHECK) == ["occurrenceCount is not stated: it was 0 by default, and is 1 now"]
 
 
 @pytest.mark.parametrize("text", ["-1", "many", "", "1", "99"])
@@ -75,3 +93,12 @@ def test_what_2_1_0_does_not_allow_is_to_be_checked(models):
       <mappingModel><memoryMapping/></mappingModel>"""
     assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
     assert len(models.messages(Kind.TO_CHECK)) == 4
+
+
+def test_what_2_1_0_allows_is_not_to_be_checked(models):
+    content = """<swModel><runnables name="R"><executionCondition>
+        <entries xsi:type="am:ChannelFillCondition" fillLevel="3" relation="EQUAL"/></executionCondition></runnables></swModel>
+      <osModel><semaphores name="S" initialValue="0" maxValue="1"/><semaphores name="T"/></osModel>
+      <mappingModel><memoryMapping memory="what?"/></mappingModel>"""
+    assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
+    assert models.messages(Kind.TO_CHECK) == ["maxValue is not stated: it was 0 by default, and is 1 now"]

@@ -2,7 +2,9 @@
 
 import pytest
 from inline_models import InlineModels
+from migration import migrated
 
+from amalthea_uros.xmi.migrate.index import all_below
 from amalthea_uros.xmi.migrate.notes import Kind
 
 FLAGS = 'requiresParentScheduler="false" passesParametersUpwards="false" hasExactlyOneChild="false"'
@@ -139,6 +141,66 @@ def test_algorithms_of_the_user_have_definitions_of_their_own(models):
       <schedulingParameterDefinitions name="extended: b c" type="String" many="false" mandatory="false"/>"""
     given = f'<osModel><operatingSystems name="OS">{before}</operatingSystems></osModel>'
     assert models.migrate("1.2.0", "2.0.0", given) == models.read("2.0.0", f"<osModel>{after}</osModel>")
+
+
+def test_numbers_of_algorithms_of_the_user_are_new_and_in_order(models):
+    user = "UserSpecificSchedulingAlgorithm"
+    present = f'<schedulerDefinitions name="{user}3"/>'
+    before = old_os(*[user] * 11).replace("</osModel>", f"{present}</osModel>")
+    numbers = [number for number in range(1, 13) if number != 3]
+    made = "".join(f'<schedulerDefinitions name="{user}{number}"/>' for number in numbers)
+    after = new_os(present + made, *(f"{user}{number}" for number in numbers))
+    assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
+
+
+def test_a_key_that_occurs_twice_is_one_parameter_of_the_definition(models):
+    extension = '<parameterExtensions key="k" value="{}"/>'
+    before = f"""<osModel><operatingSystems name="OS"><taskSchedulers name="S0">
+      <schedulingAlgorithm xsi:type="am:UserSpecificSchedulingAlgorithm">{extension.format(1)}{extension.format(2)}
+      </schedulingAlgorithm></taskSchedulers></operatingSystems></osModel>"""
+    after = f"""<osModel><operatingSystems name="OS">
+      <taskSchedulers name="S0" definition="UserSpecificSchedulingAlgorithm1?type=SchedulerDefinition">
+      {string("extended: k", "1")}{string("extended: k", "2")}</taskSchedulers></operatingSystems>
+      <schedulerDefinitions name="UserSpecificSchedulingAlgorithm1"
+        algorithmParameters="extended%3A+k?type=SchedulingParameterDefinition"/>
+      <schedulingParameterDefinitions name="extended: k" type="String" many="false" mandatory="false"/></osModel>"""
+    assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
+
+
+def test_a_quantum_that_is_stated_twice_stays_twice(models):
+    before = """<osModel><operatingSystems name="OS"><taskSchedulers name="S0"><schedulingAlgorithm xsi:type="am:PfairPD2"
+      quantSizeNs="5"><parameterExtensions key="quantSizeNs" value="6"/></schedulingAlgorithm></taskSchedulers>
+      </operatingSystems></osModel>"""
+    text = "\n".join(models.migrate("1.2.0", "2.0.0", before))
+    assert text.index("value [Time] unit='ns' value='5'") < text.index("value [StringObject] value='6'")
+
+
+def test_a_newer_file_of_the_set_takes_the_definitions(models):
+    mapping = models.files("mapping", "1.2.0", tasks("") + allocated('<schedulingParameters priority="4"/>'))
+    (os,) = models.files("os", "2.1.0", "<osModel/>")
+    found = migrated([*mapping, os.rename(os.with_name("os.amxmi"))], "2.1.0")[0]
+    assert [
+        (tree.path.name, node.name)
+        for tree in found.trees
+        for node in tree.root.find("osModel", "schedulingParameterDefinitions")
+    ] == [("os.amxmi", "priority")]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<schedulingParameters key="x"><value xsi:type="am:IntegerObject" value="4"/></schedulingParameters>',
+        '<schedulingParameters><value xsi:type="am:IntegerObject" value="4"/></schedulingParameters>',
+    ],
+)
+def test_damaged_parameters_of_2_0_0_stay_in_a_snapshot(models, content):
+    content = tasks("") + new_os("", "X") + allocated(content)
+    assert models.migrate("1.2.0", "2.0.0", content) == models.read("2.0.0", content)
+
+
+def test_a_priority_whose_definition_is_in_no_file_is_stated(models):
+    content = tasks(property_("priority", "7")) + new_os("", "X") + allocated(integer("priority", 4))
+    assert models.migrate("1.2.0", "2.0.0", content) == models.read("2.0.0", content)
 
 
 def test_one_set_of_definitions_for_several_files(models):
@@ -292,6 +354,23 @@ def test_damaged_content_does_not_raise(models):
         "unknown scheduling parameter",
     ]
     assert models.messages(Kind.KEPT) == ["size of the quantum is not a number"]
+
+
+def test_comments_stay_with_the_scheduler_and_the_allocation(models):
+    pfair = """<!--1--><schedulingAlgorithm xsi:type="am:PfairPD2"><!--2--><parameterExtensions key="quantSizeNs" value="5"/>
+      <!--3--><parameterExtensions key="k" value="v"/></schedulingAlgorithm>"""
+    os = f'<osModel><operatingSystems name="OS"><taskSchedulers name="S0">{pfair}</taskSchedulers></operatingSystems></osModel>'
+    mapping = allocated(
+        '<!--4--><schedulingParameters priority="1"><!--5--><minBudget value="1" unit="ms"/></schedulingParameters>'
+    )
+    roots = migrated(models.files("before", "1.2.0", os + mapping), "2.0.0")[0].roots
+    commented = [(node.tag, node.comments) for node in all_below(roots) if node.comments]
+    assert commented == [
+        ("taskSchedulers", ["<!--1-->", "<!--2-->"]),
+        ("schedulingParameters", ["<!--3-->"]),
+        ("taskAllocation", ["<!--4-->"]),
+        ("value", ["<!--5-->"]),
+    ]
 
 
 def test_a_written_class_of_a_disjunction_is_renamed(models):

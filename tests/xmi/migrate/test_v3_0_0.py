@@ -2,7 +2,9 @@
 
 import pytest
 from inline_models import InlineModels
+from migration import migrated
 
+from amalthea_uros.xmi.migrate.index import all_below
 from amalthea_uros.xmi.migrate.notes import Kind
 
 
@@ -35,6 +37,39 @@ def test_equal_types_share_a_definition_whose_name_is_new(models):
     assert models.migrate("2.2.0", "3.0.0", software(before)) == models.read("3.0.0", f"<swModel>{after}</swModel>")
 
 
+def test_different_types_have_definitions_of_their_own(models):
+    pointer = """<dataType xsi:type="am:{}"><dataType xsi:type="am:TypeRef" typeDef="{}?type=BaseTypeDefinition"/></dataType>"""
+    types = [pointer.format(*each) for each in (("Pointer", "u+8"), ("Pointer", "u16"), ("Other", "u+8"))]
+    present = """<typeDefinitions xsi:type="am:BaseTypeDefinition" name="u 8"/>
+      <typeDefinitions xsi:type="am:BaseTypeDefinition" name="u16"/>"""
+    before = "".join(f'<labels name="L{n}">{each}</labels>' for n, each in enumerate(types))
+    after = "".join(f'<labels name="L{n}" dataType="L{n}_type?type=DataTypeDefinition"/>' for n, _ in enumerate(types))
+    made = "".join(
+        f'<typeDefinitions xsi:type="am:DataTypeDefinition" name="L{n}_type">{each}</typeDefinitions>'
+        for n, each in enumerate(types)
+    )
+    found = models.migrate("2.2.0", "3.0.0", f"<swModel>{before}{present}</swModel>")
+    assert found == models.read("3.0.0", f"<swModel>{after}{present}{made}</swModel>")
+
+
+def test_equal_types_of_two_files_have_definitions_of_their_own(models):
+    text = '<swModel><labels name="{}"><dataType xsi:type="am:Array" numberElements="2"/></labels></swModel>'
+    after = """<swModel><labels name="{0}" dataType="{1}?type=DataTypeDefinition"/>
+      <typeDefinitions xsi:type="am:DataTypeDefinition" name="{1}"><dataType xsi:type="am:Array" numberElements="2"/>
+      </typeDefinitions></swModel>"""
+    found = models.migrate("2.2.0", "3.0.0", text.format("A"), text.format("B"))
+    assert found == models.read("3.0.0", after.format("A", "A_type"), after.format("B", "B_type"))
+
+
+def test_the_first_of_two_type_references_counts(models):
+    other = '<typeDefinitions xsi:type="am:BaseTypeDefinition" name="u16"/>'
+    both = "".join(f'<dataType xsi:type="am:TypeRef" typeDef="{name}?type=BaseTypeDefinition"/>' for name in ("u16", "u+8"))
+    after = '<labels name="L" dataType="u16?type=BaseTypeDefinition"/>'
+    before = software(f'{other}<labels name="L">{both}</labels>')
+    assert models.migrate("2.2.0", "3.0.0", before) == models.read("3.0.0", software(other + after))
+    assert models.messages(Kind.LOST) == ["second data type"]
+
+
 def test_a_type_of_another_file_is_a_reference_between_files(models):
     before = """<swModel><labels name="L"><dataType xsi:type="am:TypeRef">
       <typeDef href="amlt:/#u+8?type=BaseTypeDefinition"/></dataType></labels></swModel>"""
@@ -61,6 +96,21 @@ def test_custom_properties_of_a_type_reference_stay_with_the_label(models):
     )
     after = f'<labels name="L" dataType="u+8?type=BaseTypeDefinition">{note}</labels>'
     assert models.migrate("2.2.0", "3.0.0", software(before)) == models.read("3.0.0", software(after))
+
+
+def test_comments_on_a_type_that_goes_away_stay_with_the_label(models):
+    reference = '<!--{}--><dataType xsi:type="am:TypeRef" typeDef="u+8?type=BaseTypeDefinition"/>'
+    array = "<!--{}-->" + ARRAY.format("dataType", 1)
+    before = f"""<labels name="A">{reference.format(1)}</labels><labels name="B">{array.format(2)}</labels>
+      <labels name="C">{array.format(3)}{array.format(4)}</labels><labels name="D"><!--5--><dataType xsi:type="am:TypeRef"/></labels>"""
+    roots = migrated(models.files("before", "2.2.0", software(before)), "3.0.0")[0].roots
+    commented = [(node.tag, node.name, node.comments) for node in all_below(roots) if node.comments]
+    assert commented == [
+        ("labels", "A", ["<!--1-->"]),
+        ("labels", "C", ["<!--3-->", "<!--4-->"]),
+        ("labels", "D", ["<!--5-->"]),
+        ("dataType", "", ["<!--2-->"]),
+    ]
 
 
 def test_a_second_type_and_an_unreadable_reference_do_not_raise(models):

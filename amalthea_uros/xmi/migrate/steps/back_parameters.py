@@ -9,10 +9,15 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.kept import keep, strings
 from amalthea_uros.xmi.migrate.steps.restored import ParameterKeys
-from amalthea_uros.xmi.migrate.steps.scheduling_definitions import EXTENDED, PRIORITY, QUANTUM, USER_SPECIFIC
-
-#: Algorithms with a quantum.
-QUANTIZED = {"PfairPD2", "PartlyPFairPD2", "EarlyReleaseFairPD2", "PartlyEarlyReleaseFairPD2"}
+from amalthea_uros.xmi.migrate.steps.scheduling_definitions import (
+    BUDGETS,
+    EXTENDED,
+    PRIORITY,
+    QUANTIZED,
+    QUANTUM,
+    USER_SPECIFIC,
+)
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import keep_comments
 
 #: The algorithms that 1.2.0 has, by the tag of the scheduler.
 ALGORITHMS = {
@@ -25,12 +30,10 @@ ALGORITHMS = {
     "interruptControllers": {"PriorityBased"},
 }
 
-#: Parameters that 1.2.0 has as parts of SchedulingParameters.
-_TIMES = ("minBudget", "maxBudget", "replenishment")
-
 _NANOSECONDS = {"ns": 1, "us": 1_000, "ms": 1_000_000, "s": 1_000_000_000}
 
-_NUMBER = re.compile("[0-9]{1,10}").fullmatch
+#: A quantum that 1.2.0 can state so that it comes back: 0 is the default there, which the step up takes for none.
+_QUANTUM = re.compile("[1-9][0-9]{0,9}").fullmatch
 _LARGEST = 2**31 - 1
 
 _PARAMETER = "schedulingParameterDefinitions"
@@ -94,14 +97,13 @@ def change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: Pl
         if place(holder, name, value):
             placed.append(name)
             notes.converted(keeper, "scheduling parameter is stated as in AMALTHEA 1.2.0", f"{name} = {_shown(value)}")
-            if node.comments:
-                holder.comments = [*(holder.comments or ()), *node.comments]
+            keep_comments(node, holder)
         else:
             others.append(name)
             shown = _shown(value)
             keep(keeper, keys.parameter + name, value).comments = node.comments
             notes.kept(keeper, "scheduling parameter", f"{name} = {shown}")
-    order = [name for name in (PRIORITY, *_TIMES) if name in placed]
+    order = [name for name in (PRIORITY, *BUDGETS) if name in placed]
     order += [name for name in placed if name not in order] + others
     stated = [key.name for node in nodes if (key := node.target("key")) is not None]
     if order != stated:
@@ -133,7 +135,7 @@ def place_in_allocation(holder: Node, name: str, value: Node) -> bool:
     if name == PRIORITY and value.type == "IntegerObject":
         holder.child_or_new("schedulingParameters").attributes["priority"] = value.get("value", "0")
         return True
-    if name in _TIMES and value.type == "Time":
+    if name in BUDGETS and value.type == "Time":
         value.tag, value.type = name, ""
         holder.child_or_new("schedulingParameters").insert(value)
         return True
@@ -146,7 +148,7 @@ def place_in_algorithm(algorithm: Node, name: str, value: Node) -> bool:
         return _place_as_extension(algorithm, name, value)
     text = value.get("value")
     factor = _NANOSECONDS.get(value.get("unit"))
-    if name != QUANTUM or algorithm.type not in QUANTIZED or value.type != "Time" or not factor or not _NUMBER(text):
+    if name != QUANTUM or algorithm.type not in QUANTIZED or value.type != "Time" or not factor or not _QUANTUM(text):
         return False
     if int(text) * factor > _LARGEST:
         return False

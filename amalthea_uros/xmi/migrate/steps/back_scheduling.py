@@ -13,7 +13,6 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.back_parameters import (
     ALGORITHMS,
-    QUANTIZED,
     change_parameters,
     name_of,
     place_in_algorithm,
@@ -24,7 +23,7 @@ from amalthea_uros.xmi.migrate.steps.definition_maps import PARAMETER_LISTS, as_
 from amalthea_uros.xmi.migrate.steps.kept import keep, kept, prefix
 from amalthea_uros.xmi.migrate.steps.properties import text_value
 from amalthea_uros.xmi.migrate.steps.restored import DEFINITION, DEFINITIONS, OF_ASSOCIATION, OWN, PROPERTY
-from amalthea_uros.xmi.migrate.steps.scheduling_definitions import PRIORITY, USER_SPECIFIC
+from amalthea_uros.xmi.migrate.steps.scheduling_definitions import PRIORITY, QUANTIZED, USER_SPECIFIC
 from amalthea_uros.xmi.migrate.steps.standard_definitions import are_standard
 
 _SCHEDULER, _PARAMETER = DEFINITIONS
@@ -58,13 +57,8 @@ def change_scheduling(models: ModelSet, notes: Notes) -> None:
 
 def _is_standard(models: ModelSet) -> bool:
     """Whether the step up makes the same definitions, if nothing but the classes and attributes of 1.2.0 is there."""
-    algorithms = []
-    for scheduler in models.nodes("taskSchedulers", "interruptControllers"):
-        definition = scheduler.target("definition")
-        if definition is not None:
-            if definition.name not in ALGORITHMS[scheduler.tag]:
-                return False
-            algorithms.append(definition.name)
+    definitions = [node.target("definition") for node in models.nodes("taskSchedulers", "interruptControllers")]
+    algorithms = [definition.name for definition in definitions if definition is not None]
     keys = [node.target("key") for node in models.nodes("schedulingParameters")]
     return are_standard(models, algorithms, [key.name for key in keys if key is not None])
 
@@ -73,7 +67,7 @@ def _are_complete(schedulers: list[Node], allocations: list[Node]) -> bool:
     """Whether the classes and attributes of 1.2.0 say everything, and nothing was kept."""
     algorithms = [algorithm for scheduler in schedulers for algorithm in scheduler.all("schedulingAlgorithm")]
     if any(algorithm.type in QUANTIZED and "quantSizeNs" not in algorithm.attributes for algorithm in algorithms):
-        return False  # the default of 1.2.0 would come back
+        return False  # other tools may write the default 0, which the step up takes for none only where definitions were kept
     return not any(kept(node, prefix("2.0.0")) for node in (*schedulers, *allocations))
 
 

@@ -10,6 +10,7 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.properties import move_properties
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import keep_comments
 
 #: Everything that a type states.
 _Content: TypeAlias = tuple[object, ...]
@@ -33,21 +34,26 @@ def _drop_empty(models: ModelSet, notes: Notes) -> None:
     for node in models.nodes("dataType", "elementType"):
         if node.type == "TypeRef" and not (node.references.get("typeDef") or node.get("typeDef")) and node.parent is not None:
             move_properties(node, node.parent)
+            keep_comments(node, node.parent)
             notes.lost(node.parent, "data type that refers to nothing")
             node.remove()
 
 
 def _convert(owner: Node, feature: str, part: Node, definitions: _Definitions, notes: Notes) -> None:
     part.remove()
-    if part.type == "TypeRef":
+    if feature in owner.references or feature in owner.attributes:
         move_properties(part, owner)
-        if not part.references.get("typeDef"):
-            owner.attributes[feature] = part.get("typeDef")
-        elif feature not in owner.references:
-            owner.refer(feature, part.references["typeDef"][0])
-        notes.converted(owner, "data type is now a reference to the type definition", "", feature)
-    elif feature in owner.references:
+        keep_comments(part, owner)
         notes.lost(owner, "second data type", part.type)
+    elif part.type == "TypeRef":
+        move_properties(part, owner)
+        keep_comments(part, owner)
+        targets = part.references.get("typeDef")
+        if targets:
+            owner.refer(feature, targets[0])
+        else:
+            owner.attributes[feature] = part.get("typeDef")
+        notes.converted(owner, "data type is now a reference to the type definition", "", feature)
     else:
         definition = definitions.of(owner, part)
         owner.refer(feature, definition)
@@ -75,6 +81,8 @@ class _Definitions:
             part.tag = "dataType"
             found.insert(part)
             self.made[key] = found
+        else:
+            keep_comments(part, owner)
         return found
 
     def new_name(self, base: str) -> str:

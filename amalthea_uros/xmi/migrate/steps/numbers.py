@@ -17,8 +17,13 @@ def whole_number(text: str) -> int | None:
 
 
 def make_positive(node: Node, attribute: str, notes: Notes) -> None:
-    """Replace a written 0 by the smallest number that is allowed now; negative numbers never meant anything."""
-    number = whole_number(node.get(attribute, "1"))
+    """Replace a written 0 by the smallest number that is allowed now, which is also the new default; negative numbers never meant
+    anything.
+    """
+    if attribute not in node.attributes:
+        notes.to_check(node, f"{attribute} is not stated: it was 0 by default, and is 1 now", "", attribute)
+        return
+    number = whole_number(node.get(attribute))
     if number == 0:
         node.attributes[attribute] = "1"
         notes.converted(node, f"{attribute} 0 is not allowed any more, and is 1 now", "", attribute)

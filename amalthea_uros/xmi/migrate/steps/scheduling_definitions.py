@@ -12,6 +12,9 @@ from amalthea_uros.xmi.migrate.notes import Notes
 
 PRIORITY, TASK_GROUP, QUANTUM = "priority", "taskGroup", "quantSize"
 
+#: Parameters of servers; until 1.2.0 parts of their own.
+BUDGETS = ("minBudget", "maxBudget", "replenishment")
+
 #: What the names of parameters begin with that were pairs of a key and a text.
 EXTENDED = "extended: "
 
@@ -24,10 +27,8 @@ _OF_PROCESSES: dict[str, tuple[str, ...]] = {
     "StaticCyclic": ("cycleOrder",),
     "PriorityBased": (PRIORITY,),
 }
-#: Parameters of the algorithm itself.
-_OF_ALGORITHMS: dict[str, tuple[str, ...]] = dict.fromkeys(
-    ("PfairPD2", "PartlyPFairPD2", "EarlyReleaseFairPD2", "PartlyEarlyReleaseFairPD2"), (QUANTUM,)
-)
+#: Algorithms with a quantum, which is a parameter of the algorithm itself.
+QUANTIZED = ("PfairPD2", "PartlyPFairPD2", "EarlyReleaseFairPD2", "PartlyEarlyReleaseFairPD2")
 
 #: The options of the known definitions.
 _OPTIONS = dict.fromkeys(("requiresParentScheduler", "passesParametersUpwards", "hasExactlyOneChild"), "false")
@@ -42,7 +43,7 @@ class _Kind(NamedTuple):
 
 _PARAMETERS = {
     **dict.fromkeys((PRIORITY, TASK_GROUP, "cycleOrder"), _Kind("Integer", mandatory=True)),
-    **dict.fromkeys(("minBudget", "maxBudget", "replenishment", QUANTUM), _Kind("Time", mandatory=False)),
+    **dict.fromkeys((*BUDGETS, QUANTUM), _Kind("Time", mandatory=False)),
 }
 _OTHER = _Kind("String", mandatory=False)
 
@@ -61,9 +62,9 @@ class Definitions:
         """The definition of an algorithm, by the name of its former class."""
         found = self.schedulers.get(algorithm)
         if found is None:
-            of_processes, of_algorithm = _OF_PROCESSES.get(algorithm, ()), _OF_ALGORITHMS.get(algorithm, ())
+            of_processes = _OF_PROCESSES.get(algorithm, ())
             found = self._make("schedulerDefinitions", algorithm, like, _OPTIONS if of_processes else {})
-            self._refer(found, "algorithmParameters", of_algorithm)
+            self._refer(found, "algorithmParameters", (QUANTUM,) if algorithm in QUANTIZED else ())
             self._refer(found, "processParameters", of_processes)
             self.schedulers[algorithm] = found
         return found

@@ -7,10 +7,17 @@ from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.numbers import whole_number
 from amalthea_uros.xmi.migrate.steps.properties import add_property, move_properties
-from amalthea_uros.xmi.migrate.steps.scheduling_definitions import EXTENDED, PRIORITY, QUANTUM, USER_SPECIFIC, Definitions
+from amalthea_uros.xmi.migrate.steps.scheduling_definitions import (
+    BUDGETS,
+    EXTENDED,
+    PRIORITY,
+    QUANTUM,
+    USER_SPECIFIC,
+    Definitions,
+)
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import keep_comments
 
 _TAG = "schedulingParameters"
-_BUDGETS = ("minBudget", "maxBudget", "replenishment")
 
 #: The size of a quantum, which has no unit.
 _QUANTUM_NS = "quantSizeNs"
@@ -23,6 +30,7 @@ def convert_algorithms(models: ModelSet, definitions: Definitions, notes: Notes)
         if scheduler is None:
             continue
         algorithm.remove()
+        keep_comments(algorithm, scheduler)
         if scheduler.references.get("definition"):
             notes.lost(scheduler, "second scheduling algorithm", algorithm.type)
             continue
@@ -53,6 +61,7 @@ def _convert_quantum(scheduler: Node, algorithm: Node, definitions: Definitions,
         for extension in algorithm.all("parameterExtensions"):
             if extension.get("key") == _QUANTUM_NS and not texts:
                 extension.remove()
+                keep_comments(extension, scheduler)
                 texts.append(extension.get("value"))
     for text in texts:
         if whole_number(text) is None:
@@ -69,6 +78,7 @@ def convert_parameters(models: ModelSet, definitions: Definitions, notes: Notes,
         for parameters in holder.all(_TAG):
             if not (parameters.references.get("key") or "key" in parameters.attributes or parameters.child("value")):
                 parameters.remove()
+                keep_comments(parameters, holder)
                 _convert_fixed(holder, parameters, definitions, notes, official)
         for extension in holder.all("parameterExtensions"):
             _convert_extension(holder, extension, definitions, notes)
@@ -83,7 +93,7 @@ def _convert_fixed(holder: Node, old: Node, definitions: Definitions, notes: Not
     elif priority is not None:
         add_parameter(holder, PRIORITY, definitions, "IntegerObject", value=priority)
         notes.converted(holder, "priority is now a scheduling parameter with a definition", priority)
-    for name in _BUDGETS:
+    for name in BUDGETS:
         for time in old.all(name):
             time.remove()
             added = add_parameter(holder, name, definitions)
@@ -101,7 +111,8 @@ def _note_unknown(holder: Node, old: Node, notes: Notes) -> None:
 def _convert_extension(holder: Node, extension: Node, definitions: Definitions, notes: Notes) -> None:
     extension.remove()
     name = EXTENDED + extension.get("key")
-    add_parameter(holder, name, definitions, "StringObject", value=extension.get("value"))
+    added = add_parameter(holder, name, definitions, "StringObject", value=extension.get("value"))
+    keep_comments(extension, added)
     notes.converted(holder, "parameter extension is now a scheduling parameter with a definition", extension.get("key"))
 
 

@@ -11,6 +11,7 @@ from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.later import lose_for_now
 from amalthea_uros.xmi.migrate.steps.properties import add_property, move_properties
+from amalthea_uros.xmi.migrate.steps.v0_9_parts import keep_comments
 
 #: References from a measurement to what was measured.
 _MEASURED = ("runnable", "task", "eventChain")
@@ -33,6 +34,7 @@ def _remove_measurements(models: ModelSet, model: Node, notes: Notes, official: 
         measured = next((target for name in _MEASURED for target in measurement.references.get(name, ())), None)
         if not official and measured is not None and not measured.is_proxy:
             _move_properties(measurement, measured, notes)
+            keep_comments(measurement, measured)
         name = repr(measured.name) if measured is not None else "unknown"
         what = ("measurement, for which there is no place any more", f"of {name}: {_described(measurement)}")
         if measured is None or measured.is_proxy:

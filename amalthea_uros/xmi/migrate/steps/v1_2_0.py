@@ -10,10 +10,11 @@ from amalthea_uros.xmi.migrate.steps.numbers import make_positive
 
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 1.1.0."""
-    for stimulus in models.nodes("stimuli"):
+    for stimulus in models.of_type("PeriodicBurstStimulus"):
         make_positive(stimulus, "occurrenceCount", notes)
-    for entry in models.nodes("entries"):
-        make_positive(entry, "numberOfOccurrences", notes)
+    for curve in models.of_type("ArrivalCurveStimulus"):
+        for entry in curve.all("entries"):
+            make_positive(entry, "numberOfOccurrences", notes)
 
 
 STEP = Step("1.1.0", "1.2.0", change)
