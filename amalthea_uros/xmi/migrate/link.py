@@ -40,6 +40,8 @@ _SUFFIX = ".amxmi"
 #: What references by id or position start with.
 _STARTS = ("_", "/", "#")
 
+#: A position as an attribute; the root itself, `/`, occurs in `href` elements only.
+_POSITION = re.compile(r"#?/\d*(?:/@[A-Za-z]+(?:\.\d+)?)+").fullmatch
 _STEP = re.compile(r"@?([A-Za-z]+)(?:\.(\d+))?").fullmatch
 _UUID = re.compile(r"_[A-Za-z0-9_-]{22}").fullmatch
 
@@ -140,9 +142,12 @@ class _Linker:
         """The objects that the texts name; None if this is no reference."""
         found = []
         for text in texts:
+            is_position = _POSITION(text) is not None
+            if text.startswith(("/", "#/")) and not is_position and TYPE_MARK not in text:
+                return None
             target = self.target(one, text)
             if target is None:
-                if not (TYPE_MARK in text or _UUID(text) or text.startswith(("//", "#//"))):
+                if not (TYPE_MARK in text or _UUID(text) or is_position):
                     return None
                 target = self.proxy(text)
             found.append(target)

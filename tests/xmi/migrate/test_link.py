@@ -163,3 +163,10 @@ def test_a_class_that_two_packages_have(tmp_path):
     models = opened(*write(tmp_path, "1.3.0", m__amxmi=content))
     (task,), (runnable_,) = models.nodes("tasks"), models.nodes("runnables")
     assert [task.target("stimuli").tag, runnable_.target("activation").tag] == ["stimuli", "activations"]
+
+
+@pytest.mark.parametrize("text", ["/", "//", "/  /", "/0", "//x", "/a/b", "_ab _cd", "#1"])
+def test_a_text_with_slashes_is_no_position(tmp_path, text):
+    content = f'<swModel/><stimuliModel><stimuli name="s"><setModeValueList value="{text}"/></stimuli></stimuliModel>'
+    (entry,) = all_of(opened(*write(tmp_path, "1.3.0", m__amxmi=content)), "setModeValueList")
+    assert (entry.attributes, entry.references) == ({"value": text}, {})
