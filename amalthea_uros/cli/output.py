@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from amalthea_uros._internal.files import resolved
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.report import formats
 from amalthea_uros.report.terminal import Terminal
@@ -67,13 +68,25 @@ def write_outputs(outputs: Iterable[Output], result: object, as_text: object | N
     Raises
     ------
     WriteError : a file cannot be written.
+    UsageError : a file is one of those that the command reads.
     """
+    for output in outputs:
+        if output.path is not None and resolved(output.path) in _inputs():
+            raise click.UsageError(f"--output {output.format}={output.path} would replace a file that is read.")
     for output in outputs:
         shown = result if as_text is None or output.format != formats.TEXT else as_text
         if output.path is None:
             formats.write(output.format, shown, sys.stdout)
         else:
             _write_file(output.path, output.format, shown)
+
+
+def _inputs() -> set[Path]:
+    """The files that the present command reads, as its arguments name them."""
+    context = click.get_current_context()
+    arguments = (context.params[p.name] for p in context.command.params if isinstance(p, click.Argument) and p.name)
+    paths = (path for given in arguments for path in (given if isinstance(given, tuple) else (given,)))
+    return {resolved(path) for path in paths if isinstance(path, Path)}
 
 
 def shows_text(outputs: Iterable[Output]) -> bool:

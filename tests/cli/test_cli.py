@@ -147,6 +147,19 @@ def test_closed_error_output_keeps_the_exit_code():
     assert run.returncode == 2
 
 
+@pytest.mark.parametrize(
+    "arguments", [("info", "{}"), ("diff", "{}", "{}"), ("check", "{}"), ("analyze", "{}"), ("migrate", "{}")]
+)
+def test_a_result_does_not_replace_what_is_read(brake, arguments):
+    before = brake.read_bytes()
+    (brake.parent / "folder").mkdir()
+    same = brake.parent / "folder" / ".." / brake.name
+    run = amuros(*(argument.format(brake) for argument in arguments), "--output", f"json={same}")
+    assert run.returncode == 2
+    assert f"--output json={same} would replace a file that is read." in run.stderr
+    assert brake.read_bytes() == before
+
+
 def test_a_zipped_model(brake):
     amalthea_uros.save(amalthea_uros.load(brake), compress=True)
     assert brake.read_bytes()[:2] == b"PK"

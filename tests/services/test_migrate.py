@@ -302,6 +302,15 @@ class TestSets:
         assert [file.state for file in result.files] == [FileState.FAILED] * 2
         assert not (tmp_path / "models-3.3.0").exists()
 
+    def test_too_little_memory_is_no_error_of_ours(self, tmp_path, monkeypatch):
+        def large(models, notes, official):
+            raise MemoryError
+
+        monkeypatch.setitem(_UP, "0.9.8", Step("0.9.8", "0.9.9", large))
+        write(tmp_path / "a.amxmi", "0.9.8")
+        (finding,) = migrate_files(tmp_path / "a.amxmi").findings
+        assert (finding.rule, finding.message) == ("XMI105", "the migration needs more memory than there is")
+
     def test_an_error_in_a_step_is_a_finding(self, tmp_path, monkeypatch):
         def broken(models, notes, official):
             if models.nodes("tasks"):

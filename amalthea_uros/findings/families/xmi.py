@@ -278,7 +278,8 @@ KINDS = (
         id="XMI105",
         title="migration that failed",
         severity=Severity.ERROR,
-        rationale="This is an error in amuros. The files are unchanged; other models are migrated nevertheless.",
-        remedy="Report the message together with the model.",
+        rationale="This is an error in amuros, or there is too little memory. The files are unchanged; other models are migrated "
+        "nevertheless.",
+        remedy="Report the message together with the model, unless it is about memory.",
     ),
 )

@@ -147,6 +147,11 @@ def migrate_set(
 
 def failed(path: Path, error: Exception) -> Finding:
     """The finding for an error of ours, which must end neither the whole run nor a command without words."""
+    if isinstance(error, MemoryError):
+        message = "the migration needs more memory than there is"
+        return Finding(
+            "XMI105", Severity.ERROR, message, Location(path), "Migrate fewer files at once, or on a larger machine."
+        )
     help_text = "This is an error in amuros; please report it together with the model."
     return Finding("XMI105", Severity.ERROR, f"the migration failed: {failure(error)}", Location(path), help_text)
 
