@@ -29,6 +29,8 @@ ROOMS = {
     "difference": (*BASE, "metamodel"),
     "validate": (*BASE, "findings", "metamodel", "perf", "timing"),
     "analyze": (*BASE, "perf", "timing"),
+    "trace": BASE,
+    "simulate": (*BASE, "perf", "timing", "trace"),
 }
 INNER = tuple(ROOMS)
 ROOMS["services"] = INNER

@@ -10,13 +10,13 @@ import numpy as np
 
 from amalthea_uros.analyze.chains import completed_work
 from amalthea_uros.analyze.chains.completed_work import Busy
-from amalthea_uros.analyze.chains.stages import At, Boundary, Fire, Pass, Read, Stage, Write
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.schedule import Jobs
 from amalthea_uros.perf.activities import Communication, Execute, ExecutionNeed
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.dataflow.stages import At, Boundary, Fire, Pass, Read, Stage, Write
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.units import Time
 

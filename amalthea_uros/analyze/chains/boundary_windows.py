@@ -9,11 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.boundary_times import kind, position_of
-from amalthea_uros.analyze.chains.stages import Boundary, Stage
 from amalthea_uros.analyze.response_times.partial import time_until_executed
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.timing.dataflow.events import JobPhase
+from amalthea_uros.timing.dataflow.stages import Boundary, Stage
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.units import Time
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
-from amalthea_uros.analyze.chains.stages import Stage, communication_of, link_text, stages
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, Value
 from amalthea_uros.analyze.solution import Solution
@@ -19,6 +18,7 @@ from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import GAPS, LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, routes
+from amalthea_uros.timing.dataflow.stages import Stage, communication_of, link_text, stages
 from amalthea_uros.timing.phases import Occurrence, unknown_phases
 
 

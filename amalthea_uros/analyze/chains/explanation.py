@@ -16,7 +16,6 @@ from amalthea_uros.analyze.chains.job_chains import backward, build_job_chains, 
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, reach
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
-from amalthea_uros.analyze.chains.stages import Stage
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.phases import solutions_for_phases
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity, Value
@@ -24,6 +23,7 @@ from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.routes import Route, routes
+from amalthea_uros.timing.dataflow.stages import Stage
 from amalthea_uros.timing.phases import unknown_phases
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.units import Time

@@ -22,7 +22,6 @@ from amalthea_uros.analyze.chains.boundary_windows import BoundaryWindows
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
-from amalthea_uros.analyze.chains.stages import SAME_JOB, Boundary, Fire, Pass, Read, Stage
 from amalthea_uros.analyze.chains.timed_stage import ReadWriteBounds, TimedStage
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.schedule import MAX_JOBS
@@ -37,6 +36,7 @@ from amalthea_uros.timing.counters import ALWAYS, composed, first_effect, is_alw
 from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.skipping import can_be_skipped
+from amalthea_uros.timing.dataflow.stages import SAME_JOB, Boundary, Fire, Pass, Read, Stage
 from amalthea_uros.timing.demand import MAX_TIME_BASE
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.timing.multiframe import MultiframeDemand

@@ -1,0 +1,48 @@
+"""What a simulation run is asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import Time
+
+
+class Mode(StrEnum):
+    """How values that vary are chosen.
+
+    `SAMPLED` draws each from its distribution. The others always take the same one: `WORST` the longest demand and the shortest
+    distance of sporadic activations, `BEST` the contrary, `AVERAGE` the means. None of them is a bound of what can occur.
+    """
+
+    SAMPLED = "sampled"
+    WORST = "worst"
+    BEST = "best"
+    AVERAGE = "average"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What a simulation run is asked for.
+
+    Attributes
+    ----------
+    duration : model time, from 0; at its end the run stops
+    seed : of all random values; runs with the same seed are equal on every machine
+    settings : as of an analysis
+    traced : the part of the model time of which events are recorded; None: nothing is
+    """
+
+    duration: Time
+    seed: int = 1
+    mode: Mode = Mode.SAMPLED
+    settings: Settings = field(default_factory=Settings)
+    traced: tuple[Time, Time] | None = None
+
+    def __post_init__(self) -> None:
+        if self.duration <= 0:
+            raise InvalidArgumentError("the duration of a simulation must be greater than zero")
+        if self.seed < 0:
+            raise InvalidArgumentError("the seed of a simulation must not be negative")

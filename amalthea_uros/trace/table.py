@@ -1,0 +1,113 @@
+"""Events in time as a table of columns: what a simulation records, and what a trace file contains.
+
+The kinds of events, and the order of those at the same time, are those of the Best Trace Format (BTF 2.3.0); events of chains are
+added. Rows are in the order in which the events occur; time never decreases.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import IntEnum, StrEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class EntityKind(StrEnum):
+    """What events are about; the values are the type letters of BTF, apart from chains, which BTF does not know."""
+
+    STIMULUS = "STI"
+    TASK = "T"
+    ISR = "I"
+    RUNNABLE = "R"
+    LABEL = "SIG"
+    SEMAPHORE = "SEM"
+    OS_EVENT = "EVENT"
+    CORE = "C"
+    SCHEDULER = "SCHED"
+    CHAIN = "CHAIN"
+
+
+@dataclass(frozen=True, slots=True)
+class Entity:
+    """Something that causes events, or that they are about."""
+
+    kind: EntityKind
+    name: str
+
+
+class EventKind(IntEnum):
+    """What happens.
+
+    Transitions of tasks and ISRs come first, then those of runnables, accesses to data, semaphores, OS events. `CHAIN_STEP` is where
+    the effect of an occurrence of a chain's stimulus passes a process: the source is the process, the target the chain, the target
+    instance the number of that occurrence, and the note the number of the step, from 0.
+    """
+
+    ACTIVATE = 0
+    START = 1
+    PREEMPT = 2
+    RESUME = 3
+    TERMINATE = 4
+    POLL = 5
+    RUN = 6
+    PARK = 7
+    POLL_PARKING = 8
+    RELEASE_PARKING = 9
+    WAIT = 10
+    RELEASE = 11
+    ACTIVATION_LOST = 12
+    RUNNABLE_START = 20
+    RUNNABLE_SUSPEND = 21
+    RUNNABLE_RESUME = 22
+    RUNNABLE_TERMINATE = 23
+    TRIGGER = 30
+    READ = 31
+    WRITE = 32
+    REQUEST_SEMAPHORE = 40
+    LOCK = 41
+    UNLOCK = 42
+    ASSIGNED = 43
+    WAITING = 44
+    RELEASED = 45
+    SET_EVENT = 50
+    CLEAR_EVENT = 51
+    WAIT_EVENT = 52
+    SCHEDULE = 60
+    SCHEDULE_POINT = 61
+    CHAIN_STEP = 70
+
+
+#: In the column of the note: there is none.
+NO_NOTE = -(2**63)
+
+
+@dataclass(frozen=True, slots=True)
+class EventTable:
+    """Some events; `source` and `target` are indices into `entities`.
+
+    Attributes
+    ----------
+    entities : the same for all tables of a trace
+    time : picoseconds, int64
+    kind : of `EventKind`, int16
+    source, target : int32
+    source_instance, target_instance : numbers of jobs or occurrences, counted from 0; 0 for what has no instances; int64
+    note : a value that belongs to the event, or `NO_NOTE`; int64
+    """
+
+    entities: Sequence[Entity]
+    time: NDArray[np.int64]
+    kind: NDArray[np.int16]
+    source: NDArray[np.int32]
+    source_instance: NDArray[np.int64]
+    target: NDArray[np.int32]
+    target_instance: NDArray[np.int64]
+    note: NDArray[np.int64] = field(repr=False)
+
+    def __len__(self) -> int:
+        return len(self.time)
