@@ -33,18 +33,28 @@ def protection_of(process: Process, system: System) -> Protection:
     """What a process uses to keep others off."""
     if system.activity_classes.isdisjoint((SemaphoreAccess, Group)):
         return Protection()
-    spinlocks = {semaphore.name for semaphore in system.os.semaphores if semaphore.kind is SemaphoreKind.SPINLOCK}
+    spinlocks = spinlocks_of(system)
     semaphores, actively, has_group = set[str](), set[str](), False
     for activity in executed(process.activities, system):
         match activity:
-            case SemaphoreAccess(semaphore=name, operation=operation, waiting=waiting):
+            case SemaphoreAccess(semaphore=name):
                 semaphores.add(name)
-                is_active = waiting is Waiting.ACTIVE or (waiting is None and name in spinlocks)
-                if is_active and operation is not SemaphoreOperation.RELEASE:
+                if waits_actively(activity, spinlocks):
                     actively.add(name)
             case Group(interruptible=False):
                 has_group = True
     return Protection(frozenset(semaphores), frozenset(actively), has_group)
+
+
+def spinlocks_of(system: System) -> frozenset[str]:
+    """The semaphores for which processes wait actively unless they state something else."""
+    return frozenset(semaphore.name for semaphore in system.os.semaphores if semaphore.kind is SemaphoreKind.SPINLOCK)
+
+
+def waits_actively(access: SemaphoreAccess, spinlocks: frozenset[str]) -> bool:
+    """Whether an access waits for its semaphore without giving the core away."""
+    is_active = access.waiting is Waiting.ACTIVE or (access.waiting is None and access.semaphore in spinlocks)
+    return is_active and access.operation is not SemaphoreOperation.RELEASE
 
 
 def exclusively_held(positions: Sequence[ActivityPosition], system: System) -> Iterator[frozenset[str]]:

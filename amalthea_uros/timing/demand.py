@@ -109,9 +109,9 @@ class DemandModel:
             raise UnknownDemandError("it can terminate before its last activity, which cannot be analysed")
         frames = self._frames(process.activities, core, ())
         if self.settings.memory is Memory.IMPLICIT:
-            frames += self._copies(process, core)
+            frames += [frame for _, frame in self.copies(process, core)]
         if isinstance(process, Isr):
-            frames += [self._ticks(demand, core) for demand in self.overheads.of_isr(process, core)]
+            frames += [self._ticks(demand, core) for demand in self.overheads.of_isr(process, core) if demand is not None]
         return MultiframeDemand(_scaled(_summed(frames), self._growth(process)))
 
     def of_activities(self, process: Process, activities: Sequence[Activity], core: str) -> MultiframeDemand:
@@ -141,13 +141,13 @@ class DemandModel:
         """The factor on the worst-case execution times of a process."""
         return self.settings.growth * self.settings.factors.get(process.name, 1)
 
-    def _access(self, core: str, label: str, kind: AccessKind, times: Count | float | None) -> Frame:
-        """The demand of an access to a label, or to its copy, which can be anywhere on the way to the label."""
+    def access(self, core: str, label: str, kind: AccessKind, times: Count | float | None) -> Frame:
+        """The demand of an access to a label, or to its copy, which can be anywhere on the way to the label; raises as `of_process`."""
         found = self.memory.frame(core, label, kind, count_of(times), self.settings.scale * self.time_base(core))
         return _at_most(found) if self.settings.memory is Memory.IMPLICIT else found
 
-    def _copies(self, process: Process, core: str) -> list[Frame]:
-        """Copies of the labels that a process accesses, at its start, and of those that it writes, at its end.
+    def copies(self, process: Process, core: str) -> list[tuple[AccessKind, Frame]]:
+        """Copies of the labels that a process accesses, at its start (reads), and of those that it writes, at its end.
 
         Also a label that is only written is copied at the start, because a job need not write it, or all of it.
         """
@@ -161,8 +161,8 @@ class DemandModel:
                     is_certain = position.is_certain and position.counter is not None and is_always(position.counter)
                     certain[key] = certain.get(key, False) or is_certain
         time_base = self.settings.scale * self.time_base(core)
-        frames = [(self.memory.frame(core, *key, count_of(1), time_base), is_certain) for key, is_certain in certain.items()]
-        return [frame if is_certain else _at_most(frame) for frame, is_certain in frames]
+        frames = [(key[1], self.memory.frame(core, *key, count_of(1), time_base), is_certain) for key, is_certain in certain.items()]
+        return [(kind, frame if is_certain else _at_most(frame)) for kind, frame, is_certain in frames]
 
     def _positions(self, process: Process) -> Sequence[ActivityPosition]:
         """Everything that the jobs of a process do."""
@@ -190,14 +190,14 @@ class DemandModel:
                 return [self._ticks(demand, core)]
             case ExecutionNeed(needs=needs):
                 scale = self.settings.scale
-                return [self._time(need, self._ticks_per_unit(name, core) * scale, core) for name, need in needs]
+                return [self._time(need, self.ticks_per_unit(name, core) * scale, core) for name, need in needs]
             case LabelAccess(label=label, kind=kind, times=times) if self.settings.memory is not Memory.NONE:
-                return [self._access(core, label, kind, times)]
+                return [self.access(core, label, kind, times)]
             case Send(channel=channel, elements=elements) if self.settings.memory is not Memory.NONE:
-                return [self._access(core, channel, AccessKind.WRITE, max(1, elements))]
+                return [self.access(core, channel, AccessKind.WRITE, max(1, elements))]
             case Receive(channel=channel, elements=elements, at_least=least) if self.settings.memory is not Memory.NONE:
                 most = max(1, elements)
-                return [self._access(core, channel, AccessKind.READ, Count(least=min(least, most), mean=most, most=most))]
+                return [self.access(core, channel, AccessKind.READ, Count(least=min(least, most), mean=most, most=most))]
             case ModeAccess() if self.settings.memory is not Memory.NONE:
                 self.notes.assume("accesses to mode labels take no time")
             case Call():
@@ -219,7 +219,7 @@ class DemandModel:
             case ServerCall() | SenderReceiverAccess() if reason := self._obstacle(activity):
                 raise UnknownDemandError(reason)
             case SenderReceiverAccess(label=label, kind=kind) if self.settings.memory is not Memory.NONE:
-                return [self._access(core, label, kind, None)]
+                return [self.access(core, label, kind, None)]
             case WaitEvent():
                 raise UnknownDemandError("it waits for events without a timeout, so there is no upper bound")
             case Incomplete(reason=reason, is_access=is_access) if not is_access or self.settings.memory is not Memory.NONE:
@@ -246,10 +246,14 @@ class DemandModel:
         return [*found, switch.default or ()]
 
     def _ticks(self, demand: Demand, core: str) -> Frame:
+        return self._time(self.ticks(demand, core), self.settings.scale, core)
+
+    def ticks(self, demand: Demand, core: str) -> Distribution[int]:
+        """The ticks of a demand on a core; raises as `of_process`."""
         ticks = dict(demand.by_core_type).get(self.system.cores[core].type or "", demand.ticks)
         if ticks is None:
             raise UnknownDemandError(f"ticks have no value for the core {core!r}")
-        return self._time(ticks, self.settings.scale, core)
+        return ticks
 
     def _call(self, call: Call, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
         runnable = self.system.runnables.get(call.runnable)
@@ -314,7 +318,7 @@ class DemandModel:
 
     def _time(self, ticks: Distribution[int], factor: Fraction, core: str) -> Frame:
         """The demand of ticks, or of units that take `factor` ticks each, in the time base."""
-        tick = self._time_of_tick(factor, core)
+        tick = self.time_of_tick(factor, core)
         worst, best = highest(ticks), lowest(ticks)
         if worst is None or best is None:
             raise UnknownDemandError("a distribution of ticks has no bounds")
@@ -327,8 +331,13 @@ class DemandModel:
             raise UnknownDemandError("an execution time exceeds 13 days")
         return Frame(worst=ceil(worst * tick), best=floor(best * tick), average=mean(ticks) * tick)
 
-    def _time_of_tick(self, factor: Fraction, core: str) -> int | Fraction:
-        """The time units that `factor` ticks of a core take: usually a whole number, with which it is quicker to calculate."""
+    def time_of_tick(self, factor: Fraction, core: str) -> int | Fraction:
+        """The time units that `factor` ticks of a core take: usually a whole number, with which it is quicker to calculate.
+
+        Raises
+        ------
+        UnknownDemandError : the frequency of the core is unknown.
+        """
         key = (core, factor)
         if key not in self._times_of_ticks:
             frequency = self.frequency(core)
@@ -338,8 +347,13 @@ class DemandModel:
             self._times_of_ticks[key] = int(found) if found.denominator == 1 else found
         return self._times_of_ticks[key]
 
-    def _ticks_per_unit(self, need: str, core: str) -> Fraction:
-        """Ticks per unit of an execution need: the value of the feature, or its inverse for instructions per cycle."""
+    def ticks_per_unit(self, need: str, core: str) -> Fraction:
+        """Ticks per unit of an execution need: the value of the feature, or its inverse for instructions per cycle.
+
+        Raises
+        ------
+        UnknownDemandError : the type of the core does not define them.
+        """
         kind = next((t for t in self.system.hardware.core_types if t.name == self.system.cores[core].type), None)
         for feature in kind.features if kind else ():
             if feature.category == need:

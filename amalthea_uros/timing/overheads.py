@@ -93,10 +93,10 @@ class Overheads:
                 return (Service.SUSPEND_INTERRUPTS, Service.RESUME_INTERRUPTS)
         return _OF_ACTIVITIES.get(type(activity), ())
 
-    def of_isr(self, isr: Isr, core: str) -> Iterator[Demand]:
-        """The demands of entry and exit of an interrupt service routine."""
-        if core in self._by_core:
-            overhead, _ = self._by_core[core]
-            around = overhead.category_1 if isr.category is IsrCategory.CATEGORY_1 else overhead.category_2
-            if around is not None:
-                yield from (demand for demand in (around.before, around.after) if demand is not None)
+    def of_isr(self, isr: Isr, core: str) -> tuple[Demand | None, Demand | None]:
+        """The demands of entry and exit of an interrupt service routine, if they are stated."""
+        if core not in self._by_core:
+            return (None, None)
+        overhead, _ = self._by_core[core]
+        around = overhead.category_1 if isr.category is IsrCategory.CATEGORY_1 else overhead.category_2
+        return (None, None) if around is None else (around.before, around.after)

@@ -172,6 +172,11 @@ class Scheduling:
         ------
         NotSchedulableError : its scheduling cannot be analysed.
         """
+        found = self.on_any_core(allocation)
+        return replace(found, core=self._core(self.system.schedulers[allocation.scheduler], allocation.cores))
+
+    def on_any_core(self, allocation: TaskAllocation) -> ScheduledProcess:
+        """The same, without a core: several ones can execute it."""
         process = self.system.processes.get(allocation.task)
         scheduler = self.system.schedulers.get(allocation.scheduler)
         if process is None or scheduler is None:
@@ -181,7 +186,6 @@ class Scheduling:
         found = self._under(scheduler, parameters, ())
         return ScheduledProcess(
             process=process,
-            core=self._core(scheduler, allocation.cores),
             server=found.server,
             is_isr=False,
             priority=allocation.priority,

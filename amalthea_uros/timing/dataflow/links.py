@@ -110,7 +110,7 @@ class Dataflow:
 
     def trigger(self, first: str, then: str) -> Link | None:
         """How a process activates another one; None if it does not."""
-        found = next((firing for firing in self._triggers(first) if firing.stimulus in self._stimuli(then)), None)
+        found = next((firing for firing in self.firings(first) if firing.stimulus in self._stimuli(then)), None)
         if found is None:
             return None
         return Link(LinkKind.TRIGGER, (found.stimulus,), found.position, is_before=found.is_before)
@@ -158,7 +158,7 @@ class Dataflow:
             for stimulus in self._stimuli(process):
                 activated.setdefault(stimulus, []).append(process)
         for process in self.system.processes:
-            for stimulus in (firing.stimulus for firing in self._triggers(process)):
+            for stimulus in (firing.stimulus for firing in self.firings(process)):
                 yield from ((process, stimulus, other) for other in activated.get(stimulus, ()) if other != process)
 
     def by_name(self, process: str, names_of: NamesOf) -> _Accesses:
@@ -170,13 +170,13 @@ class Dataflow:
 
     def fired_at(self, stimulus: str) -> list[ActivityPosition]:
         """The positions at which processes fire a stimulus."""
-        found = (each for process in self.system.processes for each in self._triggers(process))
+        found = (each for process in self.system.processes for each in self.firings(process))
         return [firing.position for firing in found if firing.stimulus == stimulus]
 
     def _stimuli(self, process: str) -> tuple[str, ...]:
         return self.system.processes[process].stimuli
 
-    def _triggers(self, process: str) -> list[Firing]:
+    def firings(self, process: str) -> list[Firing]:
         """The stimuli that a process fires, in order, by triggers and by the events that it raises."""
         if self._fired is None:
             reactions = self._reactions()

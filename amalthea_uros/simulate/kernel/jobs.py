@@ -1,0 +1,232 @@
+"""What a job does: the operations of its program, up to its next execution."""
+
+from __future__ import annotations
+
+from amalthea_uros.simulate.kernel.accounts import tell_of
+from amalthea_uros.simulate.kernel.activation import end_job, fire
+from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode, step_mode
+from amalthea_uros.simulate.kernel.cores import change_level, run
+from amalthea_uros.simulate.kernel.following import follow
+from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
+from amalthea_uros.simulate.layout import (
+    AT,
+    CAPACITY,
+    CAUSE,
+    CORE_DOMAIN,
+    EVENTS,
+    EVENTS_END,
+    FILL,
+    IS_DUE,
+    JOBS,
+    JOBS_END,
+    LEFT,
+    MASKS,
+    NEEDS_STEP,
+    OBSERVATIONS,
+    OBSERVATIONS_END,
+    OPERATION_SIZE,
+    ORDERED_PARTS,
+    OVERFLOWS,
+    PARTS,
+    PARTS_LEFT,
+    PARTS_TOTAL,
+    PASSES,
+    RUNS,
+    STEPS,
+    STREAM_AT,
+    STREAM_END,
+    WAITING_MESSAGES,
+    WORD,
+    YIELDS,
+)
+from amalthea_uros.simulate.memory import Memory
+from amalthea_uros.simulate.operations import (
+    AGAIN,
+    CHOOSE,
+    CLEAR_EVENT,
+    COUNT,
+    DRAW,
+    END,
+    ENDLESS,
+    ENTER,
+    EXECUTE,
+    FIRE,
+    GO_ON,
+    JUMP,
+    MASK,
+    NEXT,
+    NOTE,
+    POINT,
+    RECEIVE,
+    REPEAT,
+    REQUEST,
+    ROWS_FULL,
+    SEND,
+    SET_EVENT,
+    SET_MODE,
+    SHUFFLE,
+    STEP_MODE,
+    STREAM_EMPTY,
+    TAKE_MESSAGE,
+    TEST,
+    UNLOCK,
+    UNMASK,
+    WAIT_EVENT,
+)
+
+#: Who does more at one instant does not end.
+MOST_STEPS = 10_000_000
+
+
+def go_on(m: Memory, core: int) -> int:
+    """Have the job of a core go on to its next execution, or until somebody else may be more urgent."""
+    process = m[core + RUNS]
+    due = m[core + CORE_DOMAIN] + IS_DUE
+    while True:
+        at = m[process + AT]
+        operation = m[at]
+        if operation == EXECUTE:
+            m[process + AT] = at + OPERATION_SIZE
+            _execute(m, core, process, m[at + 1])
+            return GO_ON
+        if m[JOBS] >= m[JOBS_END] or m[OBSERVATIONS] >= m[OBSERVATIONS_END] or m[EVENTS] >= m[EVENTS_END]:
+            return ROWS_FULL
+        if operation == END:
+            end_job(m, core)
+            return GO_ON
+        m[STEPS] += 1
+        if m[STEPS] > MOST_STEPS:
+            m[CAUSE] = process
+            return ENDLESS
+        if operation == DRAW:
+            stream = m[at + 1]
+            if m[stream + STREAM_AT] == m[stream + STREAM_END]:
+                m[CAUSE] = stream
+                return STREAM_EMPTY
+            m[process + AT] = at + OPERATION_SIZE
+            duration = _draw(m, stream)
+            if duration > 0:
+                _execute(m, core, process, duration)
+                return GO_ON
+            continue
+        code = _carry_out(m, core, process, at)
+        if code:
+            return code - 1
+        if m[due]:
+            return GO_ON
+
+
+def _execute(m: Memory, core: int, process: int, duration: int) -> None:
+    m[process + LEFT] = duration
+    m[core + NEEDS_STEP] = 0
+    run(m, core, process)
+
+
+def _draw(m: Memory, stream: int) -> int:
+    value = m[m[stream + STREAM_AT]]
+    m[stream + STREAM_AT] += 1
+    return value
+
+
+def _carry_out(m: Memory, core: int, process: int, at: int) -> int:
+    """Carry out an operation that takes no time; 0 if the job goes on, otherwise a reason to stop plus 1."""
+    operation, first, second = m[at], m[at + 1], m[at + 2]
+    following = at + OPERATION_SIZE
+    if operation >= ENTER:
+        follow(m, process, operation, first, second)
+    elif operation == COUNT:
+        following = following if counts(m, first) else second
+    elif operation == JUMP:
+        following = first
+    elif operation == TEST:
+        following = following if holds(m, first) else second
+    elif operation == CHOOSE or operation == SHUFFLE or operation == REPEAT:
+        stream = first if operation == CHOOSE else second
+        if m[stream + STREAM_AT] == m[stream + STREAM_END]:
+            m[CAUSE] = stream
+            return STREAM_EMPTY + 1
+        value = _draw(m, stream)
+        if operation == CHOOSE:
+            following = m[second + value]
+        elif operation == SHUFFLE:
+            _shuffle(m, first, value)
+        else:
+            m[first + PASSES] = value
+    elif operation == NEXT:
+        following = _next_part(m, first) if m[first + PARTS_LEFT] else second
+    elif operation == AGAIN:
+        following = following if m[first + PASSES] > 0 else second
+        m[first + PASSES] -= 1
+    elif operation == NOTE:
+        tell_of(m, first, process, second)
+    elif operation == MASK or operation == UNMASK:
+        m[process + MASKS] += 1 if operation == MASK else -1
+        change_level(m, process)
+    elif operation == FIRE:
+        code = fire(m, first, process)
+        if code:
+            return code + 1
+    elif operation == POINT:
+        m[process + YIELDS] = 1
+        change_level(m, process)
+    elif operation == SEND or operation == RECEIVE:
+        _change_channel(m, first, second if operation == SEND else -second)
+    elif operation == SET_MODE:
+        set_mode(m, first, second)
+    elif operation == STEP_MODE:
+        step_mode(m, first, second)
+    elif operation == TAKE_MESSAGE:
+        if m[first + WAITING_MESSAGES] > 0:
+            m[first + WAITING_MESSAGES] -= 1
+        else:
+            following = second
+    else:
+        # Who waits goes on after this operation.
+        m[process + AT] = following
+        return 0 if _cooperate(m, core, process, operation, first, second) else GO_ON + 1
+    m[process + AT] = following
+    return 0
+
+
+def _cooperate(m: Memory, core: int, process: int, operation: int, first: int, second: int) -> bool:
+    """Carry out an operation that concerns other processes; the result says whether the job goes on."""
+    if operation == REQUEST:
+        return request(m, core, process, first, second)
+    if operation == UNLOCK:
+        unlock(m, process, first)
+        return True
+    if operation == SET_EVENT or operation == CLEAR_EVENT:
+        change_events(m, process, first, operation == SET_EVENT)
+        return True
+    if operation == WAIT_EVENT:
+        return await_events(m, core, process, first)
+    return serve(m, core, process, operation, first, second)
+
+
+def _change_channel(m: Memory, channel: int, elements: int) -> None:
+    """Put elements into a channel or take them out; what does not fit is lost."""
+    fill, capacity = max(0, m[channel + FILL] + elements), m[channel + CAPACITY]
+    if 0 < capacity < fill:
+        m[channel + OVERFLOWS] += fill - capacity
+        fill = capacity
+    m[channel + FILL] = fill
+
+
+def _shuffle(m: Memory, group: int, word: int) -> None:
+    """Begin a group in the order that a word stands for."""
+    total = m[group + PARTS_TOTAL]
+    m[group + WORD] = word
+    m[group + PARTS_LEFT] = total
+    for index in range(total):
+        m[m[group + PARTS] + index] = m[m[group + ORDERED_PARTS] + index]
+
+
+def _next_part(m: Memory, group: int) -> int:
+    """Where a part of a group begins that has not been executed yet."""
+    left, parts = m[group + PARTS_LEFT], m[group + PARTS]
+    chosen = parts + m[group + WORD] % left
+    m[group + WORD] //= left
+    m[group + PARTS_LEFT] = left - 1
+    part = m[chosen]
+    m[chosen] = m[parts + left - 1]
+    return part

@@ -1,0 +1,100 @@
+"""The loop over instants."""
+
+from __future__ import annotations
+
+from amalthea_uros.simulate.kernel.activation import fire, publish_all
+from amalthea_uros.simulate.kernel.budgets import replenish
+from amalthea_uros.simulate.kernel.cores import dispatch, dispatch_all, pause, stop
+from amalthea_uros.simulate.kernel.jobs import go_on
+from amalthea_uros.simulate.layout import (
+    ARRIVAL,
+    ARRIVAL_SIZE,
+    ARRIVALS_END,
+    CORES,
+    CORES_END,
+    DOMAINS,
+    DOMAINS_END,
+    IS_DUE,
+    ITS_CORES,
+    ITS_CORES_END,
+    NEEDS_STEP,
+    NOW,
+    RUNS,
+    SERVER_AT,
+    SERVERS,
+    SERVERS_END,
+    STEPS,
+    STOP,
+    UNTIL,
+)
+from amalthea_uros.simulate.memory import Memory
+from amalthea_uros.simulate.operations import WINDOW
+
+
+def play(m: Memory) -> int:
+    """Play until something needs the driver; the result says what."""
+    first_core, last_core, has_servers = m[CORES], m[CORES_END], m[SERVERS] != m[SERVERS_END]
+    first_domain, last_domain = m[DOMAINS], m[DOMAINS_END]
+    while True:
+        needs_step = True
+        while needs_step:
+            needs_step = False
+            for place in range(first_core, last_core):
+                core = m[place]
+                if m[core + NEEDS_STEP]:
+                    code = go_on(m, core)
+                    if code:
+                        return code
+            if m[ARRIVAL] < m[ARRIVALS_END] and m[m[ARRIVAL]] == m[NOW]:
+                code = _arrive(m)
+                if code:
+                    return code
+            if has_servers:
+                _replenish(m)
+            for place in range(first_domain, last_domain):
+                domain = m[place]
+                if m[domain + IS_DUE]:
+                    m[domain + IS_DUE] = 0
+                    needs_step = True
+                    if m[domain + ITS_CORES_END] - m[domain + ITS_CORES] == 1:
+                        dispatch(m, domain)
+                    else:
+                        dispatch_all(m, domain)
+        now = m[m[ARRIVAL]] if m[ARRIVAL] < m[ARRIVALS_END] else m[UNTIL]
+        for place in range(first_core, last_core):
+            now = min(now, m[m[place] + STOP])
+        if has_servers:
+            for place in range(m[SERVERS], m[SERVERS_END]):
+                now = min(now, m[m[place] + SERVER_AT])
+        if now >= m[UNTIL]:
+            return WINDOW
+        m[NOW] = now
+        m[STEPS] = 0
+        for place in range(first_core, last_core):
+            if m[m[place] + STOP] == now:
+                stop(m, m[place])
+
+
+def _arrive(m: Memory) -> int:
+    """The stimuli occur that come from outside at this instant."""
+    now, place, end = m[NOW], m[ARRIVAL], m[ARRIVALS_END]
+    while place < end and m[place] == now:
+        publish_all(m, m[place + 1])
+        place += ARRIVAL_SIZE
+    while m[ARRIVAL] < place:
+        code = fire(m, m[m[ARRIVAL] + 1], 0)
+        if code:
+            return code
+        m[ARRIVAL] += ARRIVAL_SIZE
+    return 0
+
+
+def _replenish(m: Memory) -> None:
+    """The budgets come back that are due."""
+    for place in range(m[SERVERS], m[SERVERS_END]):
+        server = m[place]
+        if m[server + SERVER_AT] <= m[NOW]:
+            for core in range(m[CORES], m[CORES_END]):
+                if m[m[core] + RUNS]:
+                    pause(m, m[core], m[m[core] + RUNS])
+            replenish(m, server)

@@ -1,0 +1,243 @@
+"""Waiting for semaphores, events of the operating system and answers: on the core (polling) or off it."""
+
+from __future__ import annotations
+
+from amalthea_uros.simulate.kernel.accounts import NO_NOTE, emit, enter_state, tell, tell_of
+from amalthea_uros.simulate.kernel.budgets import rest, wake
+from amalthea_uros.simulate.kernel.cores import change_level, is_before, leave_core, pause, run
+from amalthea_uros.simulate.layout import (
+    ANSWERED,
+    ASKED,
+    BEGUN,
+    CEILING,
+    CORE,
+    DOMAIN,
+    ENTITY,
+    EVENT_LIST,
+    EVENT_LIST_END,
+    EVENTS_SET,
+    HELD,
+    HELD_SINCE,
+    HOLD_SIZE,
+    HOLDS,
+    INSTANCE,
+    IS_ACTIVE_WAIT,
+    IS_DUE,
+    IS_TRACED,
+    LEFT,
+    NEEDS_ALL,
+    NEEDS_STEP,
+    NEVER,
+    NOW,
+    OF_PROCESS,
+    ORDER,
+    PROCESSES,
+    PROCESSES_END,
+    SEMAPHORE_ENTITY,
+    SEMAPHORE_NUMBER,
+    SEQUENCE,
+    SERVER,
+    STATE,
+    STOP,
+    TICKET,
+    USED,
+    USERS,
+    WAITS_ANSWER,
+    WAITS_EVENTS,
+    WAITS_FOR,
+    WANTED,
+)
+from amalthea_uros.simulate.memory import Memory
+from amalthea_uros.simulate.operations import (
+    ACTIVE,
+    ASK,
+    EXCLUSIVE,
+    PARKING,
+    POLLING,
+    READY,
+    RUNNING,
+    SERVE,
+    SERVED,
+    WAITING,
+)
+
+#: The kinds of events, as in `trace.table.EventKind`.
+_POLL, _RUN, _RELEASE_PARKING, _WAIT, _RELEASE = 5, 6, 9, 10, 11
+_REQUEST, _LOCK, _UNLOCK, _ASSIGNED, _WAITING, _RELEASED = 40, 41, 42, 43, 44, 45
+_SET, _CLEAR, _WAIT_EVENT = 50, 51, 52
+
+
+def wait(m: Memory, core: int, process: int, is_active: bool) -> None:
+    """Have the process of a core wait."""
+    if is_active:
+        enter_state(m, process, POLLING)
+        tell(m, _POLL, core, process)
+        m[process + LEFT] = NEVER - m[NOW]
+        m[core + NEEDS_STEP] = 0
+        run(m, core, process)
+        return
+    enter_state(m, process, WAITING)
+    tell(m, _WAIT, core, process)
+    m[process + LEFT] = 0
+    change_level(m, process)
+    leave_core(m, core)
+    if m[process + SERVER]:
+        rest(m, m[process + SERVER])
+
+
+def release(m: Memory, process: int) -> None:
+    """What a process waits for has come."""
+    core = m[process + CORE]
+    if m[process + STATE] == POLLING:
+        pause(m, core, process)
+        enter_state(m, process, RUNNING)
+        tell(m, _RUN, core, process)
+        m[core + NEEDS_STEP] = 1
+        m[core + STOP] = NEVER
+    elif m[process + STATE] == PARKING:
+        enter_state(m, process, READY)
+        tell(m, _RELEASE_PARKING, core, process)
+    else:
+        enter_state(m, process, READY)
+        tell(m, _RELEASE, core, process)
+        m[ORDER] += 1
+        m[process + SEQUENCE] = m[ORDER]
+        if m[process + SERVER]:
+            wake(m, m[process + SERVER])
+    m[process + LEFT] = 0
+    change_level(m, process)
+
+
+# Semaphores.
+
+
+def request(m: Memory, core: int, process: int, semaphore: int, flags: int) -> bool:
+    """Request a semaphore; the result says whether the job goes on."""
+    amount = m[semaphore + USERS] if flags & EXCLUSIVE else 1
+    tell_of(m, _REQUEST, process, m[semaphore + SEMAPHORE_ENTITY])
+    if m[semaphore + USED] + amount <= m[semaphore + USERS]:
+        _grant(m, process, semaphore, amount)
+        return True
+    m[process + WAITS_FOR] = semaphore
+    m[process + WANTED] = amount
+    tell_of(m, _WAITING, process, m[semaphore + SEMAPHORE_ENTITY])
+    wait(m, core, process, flags & ACTIVE != 0)
+    return False
+
+
+def _hold(m: Memory, process: int, semaphore: int) -> int:
+    """What a process holds of a semaphore."""
+    return m[process + HOLDS] + m[semaphore + SEMAPHORE_NUMBER] * HOLD_SIZE
+
+
+def _grant(m: Memory, process: int, semaphore: int, amount: int) -> None:
+    """A process gets a semaphore."""
+    hold, entity = _hold(m, process, semaphore), m[semaphore + SEMAPHORE_ENTITY]
+    m[semaphore + USED] += amount
+    m[hold + HELD] += amount
+    m[hold + HELD_SINCE] = m[NOW]
+    if m[IS_TRACED]:
+        emit(m, _LOCK, entity, 0, entity, 0, NO_NOTE)
+        tell_of(m, _ASSIGNED, process, entity)
+    if m[semaphore + CEILING] >= 0:
+        change_level(m, process)
+
+
+def unlock(m: Memory, process: int, semaphore: int) -> None:
+    """Release a semaphore; of those that wait, the most urgent ones get it."""
+    hold, entity = _hold(m, process, semaphore), m[semaphore + SEMAPHORE_ENTITY]
+    if m[hold + HELD] == 0:
+        return
+    # Who holds it exclusively has all of it.
+    amount = m[hold + HELD] if m[hold + HELD] == m[semaphore + USERS] else 1
+    m[semaphore + USED] -= amount
+    m[hold + HELD] -= amount
+    if m[IS_TRACED]:
+        tell_of(m, _RELEASED, process, entity)
+        emit(m, _UNLOCK, entity, 0, entity, 0, NO_NOTE)
+    if m[semaphore + CEILING] >= 0:
+        change_level(m, process)
+    best = _first_waiting(m, semaphore)
+    while best:
+        m[best + WAITS_FOR] = 0
+        _grant(m, best, semaphore, m[best + WANTED])
+        release(m, best)
+        best = _first_waiting(m, semaphore)
+
+
+def _first_waiting(m: Memory, semaphore: int) -> int:
+    """The most urgent process that waits for a semaphore and can have it; 0 if there is none."""
+    best, free = 0, m[semaphore + USERS] - m[semaphore + USED]
+    for place in range(m[PROCESSES], m[PROCESSES_END]):
+        process = m[place]
+        if m[process + WAITS_FOR] == semaphore and m[process + WANTED] <= free:
+            if best == 0 or is_before(m, process, best):
+                best = process
+    return best
+
+
+# Events of the operating system.
+
+
+def change_events(m: Memory, process: int, row: int, is_set: bool) -> None:
+    """Set events of one process or of all, or clear those of the process itself."""
+    only = m[row + OF_PROCESS] if is_set else process
+    for entry in range(m[row + EVENT_LIST], m[row + EVENT_LIST_END], 2):
+        if m[IS_TRACED]:
+            owner = m[only + ENTITY] if only else NO_NOTE
+            emit(m, _SET if is_set else _CLEAR, m[process + ENTITY], m[process + INSTANCE], m[entry + 1], 0, owner)
+        for place in range(m[PROCESSES], m[PROCESSES_END]):
+            if only == 0 or m[place] == only:
+                m[m[m[place] + EVENTS_SET] + m[entry]] = 1 if is_set else 0
+    for place in range(m[PROCESSES], m[PROCESSES_END]):
+        other = m[place]
+        if m[other + WAITS_EVENTS] and _are_set(m, other, m[other + WAITS_EVENTS]):
+            m[other + WAITS_EVENTS] = 0
+            release(m, other)
+
+
+def _are_set(m: Memory, process: int, row: int) -> bool:
+    """Whether all, or any, of some events of a process are set."""
+    number, total = 0, 0
+    for entry in range(m[row + EVENT_LIST], m[row + EVENT_LIST_END], 2):
+        total += 1
+        number += m[m[process + EVENTS_SET] + m[entry]]
+    return number == total if m[row + NEEDS_ALL] else number > 0
+
+
+def await_events(m: Memory, core: int, process: int, row: int) -> bool:
+    """Wait for events; the result says whether the job goes on."""
+    for entry in range(m[row + EVENT_LIST], m[row + EVENT_LIST_END], 2):
+        tell_of(m, _WAIT_EVENT, process, m[entry + 1])
+    if _are_set(m, process, row):
+        return True
+    m[process + WAITS_EVENTS] = row
+    wait(m, core, process, m[row + IS_ACTIVE_WAIT] != 0)
+    return False
+
+
+# Runnables that others ask for.
+
+
+def serve(m: Memory, core: int, process: int, operation: int, service: int, flags: int) -> bool:
+    """Ask for a runnable, wait for its answer, or execute it; the result says whether the job goes on.
+
+    An execution of the runnable answers everything that was asked before it began.
+    """
+    if operation == ASK:
+        m[service + ASKED] += 1
+        m[process + TICKET] = m[service + ASKED]
+    elif operation == SERVE:
+        m[service + BEGUN] = m[service + ASKED]
+    elif operation == SERVED:
+        m[service + ANSWERED] = max(m[service + ANSWERED], m[service + BEGUN])
+        for place in range(m[PROCESSES], m[PROCESSES_END]):
+            other = m[place]
+            if m[other + WAITS_ANSWER] == service and m[other + TICKET] <= m[service + ANSWERED]:
+                m[other + WAITS_ANSWER] = 0
+                release(m, other)
+    elif m[process + TICKET] > m[service + ANSWERED]:
+        m[process + WAITS_ANSWER] = service
+        wait(m, core, process, flags & ACTIVE != 0)
+        return False
+    return True
