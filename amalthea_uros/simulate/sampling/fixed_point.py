@@ -1,0 +1,36 @@
+"""Arithmetic of binary fractions: a word of 64 bits stands for its value divided by 2**64, at least 0 and less than 1."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Words = NDArray[np.uint64]
+
+_HALF = np.uint64(32)
+#: Selects the lower half of a word.
+LOWER_HALF = np.uint64(2**32 - 1)
+
+
+def scaled(fractions: Words, factor: int | Words, dither: Words | None = None) -> Words:
+    """The products of fractions and a number, rounded down.
+
+    Parameters
+    ----------
+    factor : less than 2**64
+    dither : 32 bits each; uniform random ones make the mean of the results that of the exact products. Not for factors from 2**32 on,
+        where rounding does not matter
+    """
+    high, low = fractions >> _HALF, fractions & LOWER_HALF
+    if isinstance(factor, int) and factor < 2**32:
+        product = high * np.uint64(factor) + (low * np.uint64(factor) >> _HALF)
+        return (product if dither is None else product + dither) >> _HALF
+    whole = np.asarray(factor, np.uint64)
+    top, bottom = whole >> _HALF, whole & LOWER_HALF
+    # None of the sums overflows: a product of two halves leaves room for one more half.
+    middle = high * bottom + (low * bottom >> _HALF)
+    return high * top + (middle >> _HALF) + (low * top + (middle & LOWER_HALF) >> _HALF)
