@@ -28,7 +28,8 @@ def scaled(fractions: Words, factor: int | Words, dither: Words | None = None) -
     high, low = fractions >> _HALF, fractions & LOWER_HALF
     if isinstance(factor, int) and factor < 2**32:
         product = high * np.uint64(factor) + (low * np.uint64(factor) >> _HALF)
-        return (product if dither is None else product + dither) >> _HALF
+        found: Words = (product if dither is None else product + dither) >> _HALF
+        return found
     whole = np.asarray(factor, np.uint64)
     top, bottom = whole >> _HALF, whole & LOWER_HALF
     # None of the sums overflows: a product of two halves leaves room for one more half.

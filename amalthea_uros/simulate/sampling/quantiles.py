@@ -100,10 +100,12 @@ def _check(distribution: Distribution[int]) -> None:
             if average in (lower, upper):
                 raise UnknownValueError("the average of a Weibull distribution equals its minimum or its maximum")
             if not 0 < exceeding < 1000:
-                raise UnknownValueError("the probability that a Weibull distribution exceeds its maximum is not between 0 and 1")
+                raise UnknownValueError(
+                    "the probability that a Weibull distribution exceeds its maximum is not between 0 and 1"
+                )
         case Gauss(mean=mean, deviation=deviation):
             if not (isfinite(mean) and isfinite(deviation)) or deviation < 0:
-                raise UnknownValueError("mean and standard deviation of a normal distribution are not finite, or the latter is negative")
+                raise UnknownValueError("the mean or the standard deviation of a normal distribution is invalid")
             if abs(mean) + 7 * deviation > GREATEST:
                 raise UnknownValueError("a value of a distribution is out of range")
         case Beta(alpha=alpha, beta=beta):
@@ -116,7 +118,9 @@ def _measured(histogram: Histogram[int]) -> Variate:
     if not buckets:
         raise UnknownValueError("a histogram has no occurrences")
     if any(bucket.occurrences < 0 for bucket in buckets) or any(bucket.lower > bucket.upper for bucket in buckets):
-        raise UnknownValueError("an interval of a histogram has a negative number of occurrences or a minimum above its maximum")
+        raise UnknownValueError(
+            "an interval of a histogram has a negative number of occurrences or a minimum above its maximum"
+        )
     if sum(bucket.occurrences for bucket in buckets) >= GREATEST:
         raise UnknownValueError("the number of occurrences in a histogram is out of range")
     return Measured(
