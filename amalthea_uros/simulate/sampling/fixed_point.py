@@ -27,11 +27,15 @@ def scaled(fractions: Words, factor: int | Words, dither: Words | None = None) -
     """
     high, low = fractions >> _HALF, fractions & LOWER_HALF
     if isinstance(factor, int) and factor < 2**32:
-        product = high * np.uint64(factor) + (low * np.uint64(factor) >> _HALF)
-        found: Words = (product if dither is None else product + dither) >> _HALF
-        return found
-    whole = np.asarray(factor, np.uint64)
+        product: Words = high * np.uint64(factor) + (low * np.uint64(factor) >> _HALF)
+        if dither is not None:
+            product += dither
+        product >>= _HALF
+        return product
+    whole: Words = np.asarray(factor, np.uint64)
     top, bottom = whole >> _HALF, whole & LOWER_HALF
-    # None of the sums overflows: a product of two halves leaves room for one more half.
-    middle = high * bottom + (low * bottom >> _HALF)
-    return high * top + (middle >> _HALF) + (low * top + (middle & LOWER_HALF) >> _HALF)
+    # None of the sums overflows: a product of two halves leaves room for two more halves.
+    middle: Words = high * bottom + (low * bottom >> _HALF)
+    lower: Words = low * top + (middle & LOWER_HALF)
+    found: Words = high * top + (middle >> _HALF) + (lower >> _HALF)
+    return found

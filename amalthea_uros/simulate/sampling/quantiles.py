@@ -46,7 +46,7 @@ def variate(distribution: Distribution[int]) -> Variate:
     ------
     UnknownValueError : its parameters contradict each other or are out of range.
     """
-    _check(distribution)
+    check(distribution)
     match distribution:
         case Constant(value):
             return Equal(value, value)
@@ -86,8 +86,13 @@ def sampling_assumption(distribution: Distribution[int] | Distribution[float]) -
     return None
 
 
-def _check(distribution: Distribution[int]) -> None:
-    """Refuse contradictory parameters."""
+def check(distribution: Distribution[int]) -> None:
+    """Refuse contradictory parameters.
+
+    Raises
+    ------
+    UnknownValueError : they contradict each other or are out of range.
+    """
     lower, upper = lowest(distribution), highest(distribution)
     if lower is not None and upper is not None and lower > upper:
         raise UnknownValueError("the minimum of a distribution is greater than its maximum")

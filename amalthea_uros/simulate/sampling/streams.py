@@ -16,7 +16,7 @@ import numpy as np
 from amalthea_uros.perf.distributions import Distribution, Gauss, highest, lowest
 from amalthea_uros.simulate.options import Mode
 from amalthea_uros.simulate.sampling.fixed_point import scaled
-from amalthea_uros.simulate.sampling.quantiles import GREATEST, variate
+from amalthea_uros.simulate.sampling.quantiles import GREATEST, check, variate
 from amalthea_uros.simulate.sampling.random_source import RandomSource
 from amalthea_uros.simulate.sampling.variate import UnknownValueError, Variate
 from amalthea_uros.timing.means import mean
@@ -170,11 +170,11 @@ def values(distribution: Distribution[int], mode: Mode, source: RandomSource) ->
     ------
     UnknownValueError : the parameters of the distribution contradict each other, or it does not have the value of the mode.
     """
+    if mode is not Mode.SAMPLED:
+        check(distribution)
+        return Same(round(_value(distribution, mode)))
     sampled = variate(distribution)
-    if mode is Mode.SAMPLED:
-        constant = sampled.lowest == sampled.highest
-        return Same(sampled.lowest) if constant else Sampled(sampled, source)
-    return Same(round(_value(distribution, mode)))
+    return Same(sampled.lowest) if sampled.lowest == sampled.highest else Sampled(sampled, source)
 
 
 def durations(distribution: Distribution[int], per_unit: Fraction, mode: Mode, source: RandomSource) -> Stream:
