@@ -1,0 +1,82 @@
+"""Points in time in ascending order, from one limit to the next.
+
+A stimulus is a generator of blocks whose sizes do not depend on the limits. So neither do the occurrences.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Times = NDArray[np.int64]
+
+#: Times up to this, and sums of two of them, fit into 64 bits.
+LONGEST = 2**61
+#: Occurrences in a block, at most.
+_BLOCK = 4096
+
+
+class UnknownArrivalError(Exception):
+    """When a stimulus occurs is unknown, or cannot be simulated; the text says why."""
+
+
+class Block(NamedTuple):
+    """Some occurrences in ascending order.
+
+    Attributes
+    ----------
+    end : no later block has an occurrence before this time
+    """
+
+    end: int
+    times: Times
+
+
+Blocks: TypeAlias = Iterator[Block]
+
+
+class Occurrences:
+    """The occurrences of a stimulus, in time units; those before 0 are left out.
+
+    Attributes
+    ----------
+    assumptions : on which they are based, in sentences
+    """
+
+    def __init__(self, blocks: Blocks, assumptions: tuple[str, ...] = ()) -> None:
+        self.assumptions = assumptions
+        self._blocks = blocks
+        self._end = 0
+        self._pending = np.empty(0, np.int64)
+
+    def until(self, limit: int) -> Times:
+        """The occurrences from the last limit on, before this one."""
+        found = [self._pending]
+        while self._end < limit:
+            block = next(self._blocks, None)
+            if block is None:
+                self._end = limit
+                break
+            self._end = block.end
+            found.append(block.times[np.searchsorted(block.times, 0) :])
+        times = np.concatenate(found) if len(found) > 1 else found[0]
+        reached = int(np.searchsorted(times, limit))
+        self._pending = times[reached:]
+        return times[:reached]
+
+
+def block_size(longest: int) -> int:
+    """How many steps of a length a block can have, so that times fit into 64 bits.
+
+    Raises
+    ------
+    UnknownArrivalError : not even one.
+    """
+    if longest > LONGEST:
+        raise UnknownArrivalError("a time of the stimulus exceeds the supported range")
+    return max(1, min(_BLOCK, LONGEST // max(1, longest)))

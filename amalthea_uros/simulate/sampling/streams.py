@@ -1,0 +1,245 @@
+"""Streams of whole numbers that a simulation draws from, one for each place of the model that draws.
+
+How many values are taken at a time does not change them. In the modes that do not sample, a stream is constant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import ceil, floor, isfinite
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from amalthea_uros.perf.distributions import Distribution, Gauss, highest, lowest
+from amalthea_uros.simulate.options import Mode
+from amalthea_uros.simulate.sampling.fixed_point import scaled
+from amalthea_uros.simulate.sampling.quantiles import GREATEST, check, variate
+from amalthea_uros.simulate.sampling.random_source import RandomSource
+from amalthea_uros.simulate.sampling.variate import UnknownValueError, Variate
+from amalthea_uros.timing.means import mean
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Words = NDArray[np.uint64]
+    Integers = NDArray[np.int64]
+
+
+class Stream(Protocol):
+    """Whole numbers one after another."""
+
+    @property
+    def lowest(self) -> int:
+        """No value is less."""
+
+    @property
+    def highest(self) -> int:
+        """No value is greater."""
+
+    def take(self, count: int) -> Integers:
+        """The next values."""
+
+
+@dataclass(frozen=True, slots=True)
+class Same:
+    """Always the same value."""
+
+    value: int
+
+    @property
+    def lowest(self) -> int:
+        """See `Stream`."""
+        return self.value
+
+    @property
+    def highest(self) -> int:
+        """See `Stream`."""
+        return self.value
+
+    def take(self, count: int) -> Integers:
+        """See `Stream`."""
+        return np.full(count, self.value, np.int64)
+
+
+@dataclass(frozen=True, slots=True)
+class Sampled:
+    """Values of a distribution."""
+
+    variate: Variate
+    source: RandomSource
+
+    @property
+    def lowest(self) -> int:
+        """See `Stream`."""
+        return self.variate.lowest
+
+    @property
+    def highest(self) -> int:
+        """See `Stream`."""
+        return self.variate.highest
+
+    def take(self, count: int) -> Integers:
+        """See `Stream`."""
+        return self.variate.of(self.source.words(count))
+
+
+@dataclass(frozen=True, slots=True)
+class Converted:
+    """Values of another stream that are not negative, multiplied by a factor and rounded to the nearest whole number."""
+
+    stream: Stream
+    factor: Fraction
+
+    @property
+    def lowest(self) -> int:
+        """See `Stream`."""
+        return floor(self.stream.lowest * self.factor)
+
+    @property
+    def highest(self) -> int:
+        """See `Stream`."""
+        return ceil(self.stream.highest * self.factor)
+
+    def take(self, count: int) -> Integers:
+        """See `Stream`."""
+        values = self.stream.take(count)
+        whole, rest = divmod(self.factor, 1)
+        found = values * np.int64(whole)
+        if rest:
+            # Twice the product plus 1, halved.
+            twice = scaled(values.view(np.uint64) << np.uint64(1), floor(rest * 2**64))
+            found += ((twice + np.uint64(1)) >> np.uint64(1)).view(np.int64)
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """Indices with given probabilities.
+
+    Attributes
+    ----------
+    ends : the sum of the probabilities up to each index but the last, as a binary fraction
+    """
+
+    ends: Words
+    source: RandomSource
+
+    @property
+    def lowest(self) -> int:
+        """See `Stream`."""
+        return 0
+
+    @property
+    def highest(self) -> int:
+        """See `Stream`."""
+        return len(self.ends)
+
+    def take(self, count: int) -> Integers:
+        """See `Stream`."""
+        return np.searchsorted(self.ends, self.source.words(count), side="right").astype(np.int64)
+
+
+@dataclass(frozen=True, slots=True)
+class RandomNumbers:
+    """Whole numbers from 0 to 2**63 - 1, e.g. to shuffle with."""
+
+    source: RandomSource
+
+    @property
+    def lowest(self) -> int:
+        """See `Stream`."""
+        return 0
+
+    @property
+    def highest(self) -> int:
+        """See `Stream`."""
+        return 2**63 - 1
+
+    def take(self, count: int) -> Integers:
+        """See `Stream`."""
+        return (self.source.words(count) >> np.uint64(1)).view(np.int64)
+
+
+def values(distribution: Distribution[int], mode: Mode, source: RandomSource) -> Stream:
+    """Values of a distribution; in the other modes the greatest (worst), the least (best) or the mean, rounded.
+
+    Raises
+    ------
+    UnknownValueError : the parameters of the distribution contradict each other, or it does not have the value of the mode.
+    """
+    if mode is not Mode.SAMPLED:
+        check(distribution)
+        return Same(round(_value(distribution, mode)))
+    sampled = variate(distribution)
+    return Same(sampled.lowest) if sampled.lowest == sampled.highest else Sampled(sampled, source)
+
+
+def durations(distribution: Distribution[int], per_unit: Fraction, mode: Mode, source: RandomSource) -> Stream:
+    """Execution times: ticks, converted to time units.
+
+    They are rounded to the nearest time unit; up in the worst case, and down in the best. A normal distribution without a minimum
+    is truncated at 0.
+
+    Parameters
+    ----------
+    per_unit : time units of a tick
+
+    Raises
+    ------
+    UnknownValueError : as for `values`; a number of ticks is negative, or the time exceeds the supported range.
+    """
+    ticks = _truncated_at_0(distribution)
+    stream = values(ticks, mode, source)
+    if stream.lowest < 0:
+        raise UnknownValueError("a number of ticks is negative")
+    if stream.highest * per_unit > GREATEST:
+        raise UnknownValueError("an execution time exceeds the supported range")
+    if isinstance(stream, Same):
+        exact = (stream.value if mode is Mode.SAMPLED else _value(ticks, mode)) * per_unit
+        return Same({Mode.WORST: ceil, Mode.BEST: floor}.get(mode, round)(exact))
+    return stream if per_unit == 1 else Converted(stream, per_unit)
+
+
+def choices(weights: Sequence[float | Fraction], mode: Mode, source: RandomSource) -> Stream:
+    """Indices with a probability in proportion to the weights; if not sampled, the first of the most probable ones.
+
+    Raises
+    ------
+    UnknownValueError : a weight is negative or not finite, or all are 0.
+    """
+    if not all(isfinite(weight) and weight >= 0 for weight in weights):
+        raise UnknownValueError("the probability of a branch is negative or not finite")
+    exact = [Fraction(weight) for weight in weights]
+    total = sum(exact)
+    if not total:
+        raise UnknownValueError("all branches have the probability 0")
+    possible = [index for index, weight in enumerate(exact) if weight]
+    if mode is not Mode.SAMPLED or len(possible) == 1:
+        return Same(exact.index(max(exact)))
+    ends = [sum(exact[: index + 1], Fraction(0)) / total for index in range(possible[-1])]
+    return Chosen(np.array([floor(end * 2**64) for end in ends], np.uint64), source)
+
+
+def permutations(source: RandomSource) -> Stream:
+    """Random numbers that decide an order, in all modes."""
+    return RandomNumbers(source)
+
+
+def _value(distribution: Distribution[int], mode: Mode) -> int | Fraction:
+    """The value that a mode always takes."""
+    if mode is Mode.AVERAGE:
+        return mean(distribution)
+    found = highest(distribution) if mode is Mode.WORST else lowest(distribution)
+    if found is None:
+        raise UnknownValueError(f"a distribution has no {'maximum' if mode is Mode.WORST else 'minimum'}")
+    return found
+
+
+def _truncated_at_0(distribution: Distribution[int]) -> Distribution[int]:
+    match distribution:
+        case Gauss(lower=None, upper=None | int() as upper) if upper is None or upper >= 0:
+            return replace(distribution, lower=0)
+    return distribution
