@@ -211,7 +211,7 @@ class TimingContext:
                 demand = model.of_process(scheduled.process, scheduled.core)
                 if not states_execution_time(scheduled.process, self.system):
                     raise UnknownDemandError("it has no execution time, and neither have the runnables that it calls")
-                scheduler = self._deciding(name, scheduled.core)
+                scheduler = self.deciding(name, scheduled.core)
                 if scheduler is not None:
                     decision = model.of_decision(scheduler, scheduled.core)
                     self.decisions[name] = decision
@@ -231,7 +231,7 @@ class TimingContext:
             found.setdefault(allocation.task, allocation.scheduler)
         return found
 
-    def _deciding(self, task: str, core: str) -> Scheduler | None:
+    def deciding(self, task: str, core: str) -> Scheduler | None:
         """The scheduler that decides when a task is activated or ends, if its decisions take time on the core."""
         scheduler = self.system.schedulers.get(self._scheduler_of.get(task, ""))
         if scheduler is None or not scheduler.overhead:

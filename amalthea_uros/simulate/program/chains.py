@@ -1,0 +1,202 @@
+"""The routes of event chains: their stages as records, and what they add to the programs of the processes that they pass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+from amalthea_uros.perf.activities import Communication, Trigger
+from amalthea_uros.perf.events import EventChain
+from amalthea_uros.perf.software import Process
+from amalthea_uros.simulate.layout import (
+    BEFORE_STAGE,
+    CAPTURE,
+    CHAIN_ENTITY,
+    IS_LAST,
+    LINK,
+    NEEDED,
+    OUT,
+    ROUTE,
+    ROUTE_NUMBER,
+    ROUTE_SIZE,
+    STAGE_SIZE,
+    STEP,
+    TAKEN,
+    VALUE,
+)
+from amalthea_uros.simulate.operations import ENTER, LEAVE, MARK, PUBLISH, PUT, REACH, RESPOND, TAKE
+from amalthea_uros.simulate.program.body import Hooks, Operation
+from amalthea_uros.simulate.program.obstacles import NotSimulatedError
+from amalthea_uros.simulate.program.resources import Resources
+from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
+from amalthea_uros.timing.dataflow.events import JobPhase, UnresolvedError
+from amalthea_uros.timing.dataflow.links import LinkKind
+from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.dataflow.routes import Route, routes
+from amalthea_uros.timing.dataflow.stages import At, Fire, Pass, Read, Stage, Write, stages
+from amalthea_uros.trace.table import EntityKind
+
+#: Links whose effect is not followed, because the model does not say when it takes place.
+_NOT_FOLLOWED = (LinkKind.OS_EVENT, LinkKind.SERVER_CALL, LinkKind.TOPIC)
+
+
+@dataclass(frozen=True, slots=True)
+class FollowedRoute:
+    """A way through a chain that is followed; its number is that in observations.
+
+    Attributes
+    ----------
+    events : the way, of all ways through the chain
+    """
+
+    chain: str
+    events: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class ChainCompiler:
+    """Makes the chains of a system something that the kernel follows.
+
+    Attributes
+    ----------
+    hooks : by process
+    captures, let_stages : by process: the stages whose output each activation keeps, and those that write at the end of the period
+    left_out : why a chain is not followed
+    """
+
+    resources: Resources
+    processes: dict[str, int]
+    hooks: dict[str, Hooks] = field(default_factory=dict)
+    captures: dict[str, list[int]] = field(default_factory=dict)
+    let_stages: dict[str, list[int]] = field(default_factory=dict)
+    routes: list[FollowedRoute] = field(default_factory=list)
+    left_out: dict[str, str] = field(default_factory=dict)
+
+    def add(self, chain: EventChain) -> None:
+        """Follow a chain, or note why that is not possible."""
+        try:
+            found = [(events, route) for events, every in self._ways(chain).items() for route in every]
+            for _, route in found:
+                self._check(route)
+            for events, route in found:
+                self._route(chain, events, route)
+        except (UnfoldError, UnresolvedError, NotSimulatedError) as error:
+            self.left_out[chain.name] = str(error)
+
+    def _ways(self, chain: EventChain) -> dict[tuple[str, ...], list[Route]]:
+        context = self.resources.context
+        unfolded, _ = unfold(chain, context.system)
+        events = context.system.events_by_name
+        return {way: routes([events[name] for name in way], context.dataflow) for way in sequences(unfolded)}
+
+    def _check(self, route: Route) -> None:
+        for link, (first, then) in zip(route.links, pairwise(route.events), strict=True):
+            if link.kind in _NOT_FOLLOWED:
+                raise NotSimulatedError(f"from {first!r} to {then!r} it follows {link.kind}, which is not followed")
+        for occurrence in route.occurrences:
+            if occurrence.process.name not in self.processes:
+                raise NotSimulatedError(f"it passes {occurrence.process.name!r}, which is not simulated")
+
+    def _route(self, chain: EventChain, events: tuple[str, ...], found: Route) -> None:
+        image = self.resources.image
+        route = image.record(ROUTE_SIZE, {ROUTE_NUMBER: len(self.routes)})
+        self.routes.append(FollowedRoute(chain.name, events))
+        entity = self.resources.entities.number(EntityKind.CHAIN, chain.name)
+        parts = stages(found, self.resources.context.settings.communication)
+        records: list[int] = []
+        for number, stage in enumerate(parts):
+            is_last = number == len(parts) - 1
+            needed = (1 << len(self._positions(stage))) - 1
+            fields = {ROUTE: route, CHAIN_ENTITY: entity, STEP: number, NEEDED: needed, IS_LAST: int(is_last), CAPTURE: -1}
+            fields |= dict.fromkeys((VALUE, TAKEN, LINK, OUT), -1)
+            if records:
+                fields[BEFORE_STAGE] = records[-1]
+            records.append(image.record(STAGE_SIZE, fields))
+        for stage, record in zip(parts, records, strict=True):
+            self._stage(stage, record)
+
+    def _positions(self, stage: Stage) -> list[ActivityPosition]:
+        """The positions that a job must reach, each once."""
+        found = {position.number: position for position in stage.positions}
+        # One bit is for each, in a word of 64.
+        return [found[number] for number in sorted(found)][:60]
+
+    def _stage(self, stage: Stage, record: int) -> None:
+        hooks = self.hooks.setdefault(stage.process.name, Hooks())
+        self._enter(stage, record, hooks)
+        for index, position in enumerate(self._positions(stage)):
+            hooks.before.setdefault(position.number, []).append((REACH, record, 1 << index))
+        if isinstance(stage.enter, At):
+            self._begin(stage.enter, record, hooks)
+        self._leave(stage, record, hooks)
+
+    def _enter(self, stage: Stage, record: int, hooks: Hooks) -> None:
+        """Where a stage takes what it passes on."""
+        is_captured, position, has_snapshot = stage.is_triggered, None, False
+        match stage.enter:
+            case Read(communication=communication, position=where) if not stage.is_triggered:
+                is_captured = communication is Communication.LET
+                position = None if is_captured else where
+                has_snapshot = communication is Communication.IMPLICIT
+            case Pass():
+                position = stage.positions[0]
+        is_first = isinstance(stage.enter, At)
+        hooks.start.append((ENTER, record, int(position is None and not is_first)))
+        if is_captured:
+            captures = self.captures.setdefault(stage.process.name, [])
+            words = self.resources.image.words
+            words[record + CAPTURE] = len(captures)
+            captures.append(words[record + BEFORE_STAGE])
+        if position is not None:
+            hooks.before.setdefault(position.number, []).append((TAKE, record, int(has_snapshot)))
+
+    def _begin(self, at: At, record: int, hooks: Hooks) -> None:
+        """Where the stimulus of the chain occurs."""
+        when, position = at.occurrence.when, at.occurrence.position
+        if at.communication is Communication.LET or when is JobPhase.ACTIVATION:
+            hooks.start.append((MARK, record, 1))
+        elif when is JobPhase.START:
+            hooks.start.append((MARK, record, 0))
+        elif position is None:
+            hooks.end.append((MARK, record, 0))
+        else:
+            self._at(when, position, hooks).append((MARK, record, 0))
+
+    def _leave(self, stage: Stage, record: int, hooks: Hooks) -> None:
+        """Where a stage passes on what it has, or responds."""
+        match stage.leave:
+            case Write(communication=Communication.LET):
+                self._publish(stage.process, record, hooks)
+            case Write(communication=Communication.EXPLICIT, position=ActivityPosition() as position):
+                hooks.after.setdefault(position.number, []).append((PUT, record, 0))
+            case Write() | Fire(position=None):
+                hooks.end.append((LEAVE, record, 0))
+            case Fire(position=ActivityPosition() as position, is_before=is_before):
+                # Before the operation that fires: a trigger fires at its own operation, an event when its activity ends.
+                side = hooks.before if is_before or not _raises_event(position) else hooks.after
+                side.setdefault(position.number, []).append((PUT, record, 0))
+            case Pass():
+                hooks.after.setdefault(stage.positions[-1].number, []).append((PUT, record, 0))
+            case At(communication=Communication.LET):
+                self._publish(stage.process, record, hooks)
+            case At(occurrence=occurrence):
+                if occurrence.position is not None:
+                    self._at(occurrence.when, occurrence.position, hooks).append((RESPOND, record, 0))
+                elif occurrence.when is JobPhase.END:
+                    hooks.end.append((RESPOND, record, 0))
+                else:
+                    hooks.start.append((RESPOND, record, 0))
+            case boundary:
+                raise NotSimulatedError(f"it leaves a process in a way that is not followed: {type(boundary).__name__}")
+
+    def _publish(self, process: Process, record: int, hooks: Hooks) -> None:
+        hooks.end.append((PUBLISH, record, 0))
+        self.let_stages.setdefault(process.name, []).append(record)
+
+    def _at(self, when: JobPhase, position: ActivityPosition, hooks: Hooks) -> list[Operation]:
+        side = hooks.before if when is JobPhase.BEFORE else hooks.after
+        return side.setdefault(position.number, [])
+
+
+def _raises_event(position: ActivityPosition) -> bool:
+    return not isinstance(position.activity, Trigger)

@@ -1,0 +1,145 @@
+"""Mode labels as numbers: the index of a literal, or the number itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from amalthea_uros.perf.conditions import ChannelFillIs, Comparison, Condition, ModeLabelsAre, ModeValueIs, Relation, Undecided
+from amalthea_uros.perf.software import ModeLabel
+from amalthea_uros.perf.system import System
+from amalthea_uros.simulate.kernel import conditions
+from amalthea_uros.simulate.layout import (
+    ALTERNATIVE_SIZE,
+    ALTERNATIVES,
+    ALTERNATIVES_END,
+    CAPACITY,
+    CHANNEL_SIZE,
+    COMPARISON_SIZE,
+    COMPARISONS,
+    COMPARISONS_END,
+    CONDITION_SIZE,
+    FILL,
+    IS_CONSTANT,
+    LEFT_VALUE,
+    LITERALS,
+    MODE_SIZE,
+    MODE_VALUE,
+    RELATION,
+    RIGHT_CONSTANT,
+    RIGHT_VALUE,
+)
+from amalthea_uros.simulate.program.image import Image
+from amalthea_uros.simulate.program.obstacles import NotSimulatedError
+
+_RELATIONS = {
+    Relation.EQUAL: conditions.EQUAL,
+    Relation.NOT_EQUAL: conditions.NOT_EQUAL,
+    Relation.LESS: conditions.LESS,
+    Relation.LESS_OR_EQUAL: conditions.LESS_OR_EQUAL,
+    Relation.GREATER: conditions.GREATER,
+    Relation.GREATER_OR_EQUAL: conditions.GREATER_OR_EQUAL,
+}
+#: A literal that no enumeration has.
+_NO_LITERAL = -1
+
+
+@dataclass(slots=True)
+class Modes:
+    """The mode labels and channels in memory, and the conditions on them.
+
+    Attributes
+    ----------
+    known : values of mode labels that do not change
+    """
+
+    system: System
+    image: Image
+    known: Mapping[str, str]
+    labels: dict[str, int] = field(default_factory=dict)
+    channels: dict[str, int] = field(default_factory=dict)
+    _literals: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    _unset: set[str] = field(default_factory=set)
+    _conditions: dict[Condition, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        literals = {mode.name: mode.literals for mode in self.system.software.modes}
+        for label in self.system.software.mode_labels:
+            self._literals[label.name] = literals.get(label.mode or "", ())
+            self.labels[label.name] = self._label(label)
+        for channel in self.system.software.channels:
+            fields = {FILL: channel.default_elements, CAPACITY: channel.capacity}
+            self.channels[channel.name] = self.image.record(CHANNEL_SIZE, fields)
+
+    def _label(self, label: ModeLabel) -> int:
+        value = self.known.get(label.name, label.initial)
+        fields = {LITERALS: len(self._literals[label.name]), IS_CONSTANT: int(label.name in self.known)}
+        if value is None:
+            self._unset.add(label.name)
+        else:
+            fields[MODE_VALUE] = self.value(label.name, value)
+        return self.image.record(MODE_SIZE, fields)
+
+    def label(self, name: str) -> int:
+        """The place of a mode label."""
+        if name not in self.labels:
+            raise NotSimulatedError(f"the mode label {name!r} is not defined in the model")
+        return self.labels[name]
+
+    def channel(self, name: str) -> int:
+        """The place of a channel."""
+        if name not in self.channels:
+            raise NotSimulatedError(f"the channel {name!r} is not defined in the model")
+        return self.channels[name]
+
+    def value(self, label: str, text: str) -> int:
+        """The number of a value of a mode label."""
+        literals = self._literals.get(label, ())
+        if literals:
+            return literals.index(text) if text in literals else _NO_LITERAL
+        try:
+            return int(text)
+        except ValueError:
+            raise NotSimulatedError(f"the value {text!r} of the mode label {label!r} is not a whole number") from None
+
+    def condition(self, condition: Condition) -> int:
+        """The place of a condition."""
+        if condition not in self._conditions:
+            if not all(condition.alternatives):
+                raise NotSimulatedError("a condition compares nothing")
+            compared = [[self._comparison(each) for each in every] for every in condition.alternatives]
+            alternatives = []
+            for comparisons in compared:
+                first = len(self.image.words)
+                for fields in comparisons:
+                    self.image.record(COMPARISON_SIZE, fields)
+                alternatives.append({COMPARISONS: first, COMPARISONS_END: len(self.image.words)})
+            first = len(self.image.words)
+            for fields in alternatives:
+                self.image.record(ALTERNATIVE_SIZE, fields)
+            ends = {ALTERNATIVES: first, ALTERNATIVES_END: len(self.image.words)}
+            self._conditions[condition] = self.image.record(CONDITION_SIZE, ends)
+        return self._conditions[condition]
+
+    def _comparison(self, comparison: Comparison) -> dict[int, int]:
+        match comparison:
+            case ModeValueIs(label=label, relation=relation, value=value):
+                left = self._compared(label, relation)
+                return {LEFT_VALUE: left, RIGHT_CONSTANT: self.value(label, value), RELATION: _RELATIONS[relation]}
+            case ModeLabelsAre(first=first, relation=relation, second=second):
+                if self._literals.get(first) != self._literals.get(second):
+                    raise NotSimulatedError(f"the mode labels {first!r} and {second!r} are compared, but have different modes")
+                left, right = self._compared(first, relation), self._compared(second, relation)
+                return {LEFT_VALUE: left, RIGHT_VALUE: right, RELATION: _RELATIONS[relation]}
+            case ChannelFillIs(channel=channel, relation=relation, level=level):
+                return {LEFT_VALUE: self.channel(channel) + FILL, RIGHT_CONSTANT: level, RELATION: _RELATIONS[relation]}
+            case Undecided(reason=reason):
+                raise NotSimulatedError(f"a condition cannot be decided: {reason}")
+
+    def _compared(self, label: str, relation: Relation) -> int:
+        place = self.label(label)
+        if label in self._unset:
+            raise NotSimulatedError(f"the mode label {label!r}, on which a condition depends, has no initial value")
+        if self._literals[label] and relation not in (Relation.EQUAL, Relation.NOT_EQUAL):
+            raise NotSimulatedError(f"the literals of the mode label {label!r} have no order, but are compared by {relation}")
+        return place + MODE_VALUE

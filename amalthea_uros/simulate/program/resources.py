@@ -1,0 +1,189 @@
+"""What programs refer to: streams, counters, semaphores, events of the operating system, server runnables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from amalthea_uros.perf.activities import ClearEvent, ServerCall, SetEvent, WaitEvent, Waiting, walk
+from amalthea_uros.perf.distributions import Distribution, Statistics
+from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.simulate.layout import (
+    COUNTER_SIZE,
+    EVENT_LIST,
+    EVENT_LIST_END,
+    EVENT_ROW_SIZE,
+    EVERY,
+    FIRST_EFFECT,
+    IS_ACTIVE_WAIT,
+    NEEDS_ALL,
+    NEVER,
+    OF_PROCESS,
+    SEMAPHORE_ENTITY,
+    SEMAPHORE_NUMBER,
+    SEMAPHORE_SIZE,
+    SERVICE_SIZE,
+    STREAM_NUMBER,
+    STREAM_SIZE,
+    USED,
+    USERS,
+    CEILING,
+    DEADLINE_CEILING,
+)
+from amalthea_uros.simulate.options import Mode, Options
+from amalthea_uros.simulate.program.entities import Entities
+from amalthea_uros.simulate.program.image import Image
+from amalthea_uros.simulate.program.obstacles import NotSimulatedError
+from amalthea_uros.simulate.sampling.random_source import RandomSource
+from amalthea_uros.simulate.sampling.streams import Same, Stream, choices, durations, permutations, values
+from amalthea_uros.simulate.sampling.variate import UnknownValueError
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.counters import first_effect
+from amalthea_uros.timing.multiframe import Frame
+from amalthea_uros.timing.server_calls import servers
+from amalthea_uros.trace.table import EntityKind
+
+
+@dataclass(slots=True)
+class Resources:
+    """What the programs of all processes refer to, each thing once.
+
+    Attributes
+    ----------
+    units : time units per picosecond
+    streams : in the order of their numbers
+    executing : the processes that execute each runnable
+    """
+
+    context: TimingContext
+    options: Options
+    image: Image
+    entities: Entities
+    units: int
+    streams: list[Stream] = field(default_factory=list)
+    stream_records: list[int] = field(default_factory=list)
+    semaphores: dict[str, int] = field(default_factory=dict)
+    os_events: dict[str, int] = field(default_factory=dict)
+    services: dict[str, int] = field(default_factory=dict)
+    executing: Mapping[str, tuple[str, ...]] = field(init=False)
+    _counters: dict[int, int] = field(default_factory=dict)
+    _phases: dict[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        system = self.context.system
+        for number, semaphore in enumerate(system.os.semaphores):
+            fields = {
+                USED: semaphore.initial_users,
+                USERS: semaphore.users,
+                CEILING: -1,
+                DEADLINE_CEILING: NEVER,
+                SEMAPHORE_NUMBER: number,
+                SEMAPHORE_ENTITY: self.entities.number(EntityKind.SEMAPHORE, semaphore.name),
+            }
+            self.semaphores[semaphore.name] = self.image.record(SEMAPHORE_SIZE, fields)
+        self.os_events = {event.name: number for number, event in enumerate(system.software.os_events)}
+        everything = (activity for body in system.software.bodies for activity in walk(body))
+        asked = {activity.runnable: None for activity in everything if isinstance(activity, ServerCall) and activity.waits}
+        self.executing = servers(system)
+        self.services = {name: self.image.record(SERVICE_SIZE) for name in asked}
+
+    # Times.
+
+    def ticks(self, ticks: Distribution[int], core: str, factor: Fraction, place: str) -> Stream:
+        """The times that ticks, or units that take `factor` ticks each, take on a core."""
+        settings, model = self.context.settings, self.context.demand_model
+        tick = model.time_of_tick(settings.scale * settings.growth * factor, core) * Fraction(self.units, model.time_base(core))
+        return self._durations(ticks, tick, place)
+
+    def frame(self, frame: Frame, core: str, place: str) -> Stream:
+        """The times of something of which minimum, mean and maximum are known, in the time base of a core."""
+        unit = Fraction(self.units, self.context.demand_model.time_base(core))
+        average = min(max(float(frame.average), frame.best), frame.worst)
+        return self._durations(Statistics(lower=frame.best, average=average, upper=frame.worst), unit, place)
+
+    def _durations(self, ticks: Distribution[int], unit: Fraction, place: str) -> Stream:
+        try:
+            return durations(ticks, unit, self.options.mode, self._source(place))
+        except UnknownValueError as error:
+            raise NotSimulatedError(str(error)) from None
+
+    # Choices.
+
+    def count(self, distribution: Distribution[int], place: str) -> int:
+        """The record of a stream of numbers of passes."""
+        try:
+            return self.stream(values(distribution, self.options.mode, self._source(place)))
+        except UnknownValueError as error:
+            raise NotSimulatedError(str(error)) from None
+
+    def choice(self, weights: Sequence[float], place: str) -> int:
+        """The record of a stream of branches."""
+        equal = weights if any(weights) else [1.0] * len(weights)
+        try:
+            return self.stream(choices(equal, Mode.SAMPLED, self._source(place)))
+        except UnknownValueError as error:
+            raise NotSimulatedError(str(error)) from None
+
+    def order(self, place: str) -> int:
+        """The record of a stream of orders."""
+        return self.stream(permutations(self._source(place)))
+
+    def stream(self, stream: Stream) -> int:
+        """The record of a stream."""
+        self.stream_records.append(self.image.record(STREAM_SIZE, {STREAM_NUMBER: len(self.streams)}))
+        self.streams.append(stream)
+        return self.stream_records[-1]
+
+    def _source(self, place: str) -> RandomSource:
+        return RandomSource(self.options.seed, place)
+
+    # Counters.
+
+    def counter(self, owner: object, counter: Counter | None) -> int:
+        """The record of the counter of an element of the model, which all that pass the element share; 0: every time counts."""
+        if counter is None:
+            return 0
+        if counter.prescaler < 1:
+            raise NotSimulatedError("a counter has no prescaler, or a negative one")
+        if id(owner) not in self._counters:
+            first = first_effect(counter) if counter.is_phase_known else self._phase(counter)
+            fields = {EVERY: counter.prescaler, FIRST_EFFECT: first}
+            self._counters[id(owner)] = self.image.record(COUNTER_SIZE, fields)
+        return self._counters[id(owner)]
+
+    def _phase(self, counter: Counter) -> int:
+        """The occurrence that takes effect first, where nobody has stated it: any, drawn at random; not sampled, the first one."""
+        if self.options.mode is not Mode.SAMPLED:
+            self.context.notes.assume("what comes from outside with an unknown phase comes at its first possibility")
+            return 1
+        self.context.notes.assume("what comes from outside with an unknown phase has one at random, which the seed decides")
+        place = f"phase of {counter.source}"
+        if place not in self._phases:
+            self._phases[place] = int(self._source(place).words(1)[0])
+        return self._phases[place] % counter.prescaler + 1
+
+    # Events of the operating system.
+
+    def event_row(self, activity: SetEvent | ClearEvent | WaitEvent, processes: dict[str, int]) -> int:
+        """The record of the events that an activity sets, clears or waits for."""
+        pairs: list[int] = []
+        for name in activity.events:
+            if name not in self.os_events:
+                raise NotSimulatedError(f"the OS event {name!r} is not defined in the model")
+            pairs += (self.os_events[name], self.entities.number(EntityKind.OS_EVENT, name))
+        first, end = self.image.items(pairs)
+        fields = {EVENT_LIST: first, EVENT_LIST_END: end}
+        match activity:
+            case SetEvent(process=process) if process is not None:
+                if process not in processes:
+                    raise NotSimulatedError(f"it sets events of {process!r}, which is not simulated")
+                fields[OF_PROCESS] = processes[process]
+            case WaitEvent(all_of_them=all_of_them, waiting=waiting):
+                fields |= {NEEDS_ALL: int(all_of_them), IS_ACTIVE_WAIT: int(waiting is Waiting.ACTIVE)}
+        return self.image.record(EVENT_ROW_SIZE, fields)
+
+
+def constant(stream: Stream) -> int | None:
+    """The only value of a stream; None if it has several."""
+    return stream.value if isinstance(stream, Same) else None
