@@ -132,9 +132,10 @@ class MetricObservation:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CountObservation:
-    """How often something happened to the jobs of a process: to all, and at most to one of them."""
+    """How often something happened to the jobs of a process: to all of them, and at least and at most to one of them."""
 
     total: int
+    min: int
     max: int
 
 
@@ -190,6 +191,11 @@ class ProcessObservation:
     def response_time(self) -> MetricObservation | None:
         """The response time; None if no job ended."""
         return self.metrics.get(JobMetric.RESPONSE_TIME)
+
+    @property
+    def is_time(self) -> bool:
+        """Whether the margin is a time, as that of a requirement can be."""
+        return True
 
     @property
     def margin(self) -> Fraction | None:
@@ -342,6 +348,17 @@ class Simulation:
     def missed(self) -> tuple[Judged, ...]:
         """The processes, requirements and constraints that are observed as missed."""
         return tuple(item for item in self.judged if item.verdict is ObservedVerdict.MISSED)
+
+    @property
+    def not_observed(self) -> tuple[Judged, ...]:
+        """Those on which nothing was observed that allows a verdict."""
+        return tuple(item for item in self.judged if item.verdict is ObservedVerdict.NOT_OBSERVED)
+
+    @property
+    def tightest(self) -> Judged | None:
+        """The process, requirement or constraint that was kept with the least time left; None if there is none."""
+        kept = [item for item in self.judged if item.verdict is ObservedVerdict.OK and item.is_time]
+        return min(kept, key=lambda item: item.margin or 0, default=None)
 
     def record(self) -> dict[str, Cell]:
         """The values as one row of a table, such as `Task_5ms.response_time.max_ps`; times in whole picoseconds."""

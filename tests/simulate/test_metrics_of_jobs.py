@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from amalthea_uros.simulate.metrics.distributions import Distributions
 from amalthea_uros.simulate.metrics.histogram import MAX_BINS, BinCounts
 from amalthea_uros.simulate.metrics.jobs import BETWEEN, OWN, JobMetrics, add_rows
+from amalthea_uros.simulate.results import CountObservation
 from amalthea_uros.simulate.rows import Job
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import MICROSECOND as US
@@ -115,8 +116,8 @@ def test_a_process_without_jobs_has_no_metrics():
 def test_preemptions_and_migrations_are_counted():
     metrics = JobMetrics(1)
     add_rows(array([row(0, 0, 0, 0, 5, 5, preemptions=2), row(0, 1, 9, 9, 20, 5, preemptions=3, migrations=1)]), [metrics])
-    assert (metrics.preemptions.total, metrics.preemptions.max) == (5, 3)
-    assert (metrics.migrations.total, metrics.migrations.max) == (1, 1)
+    assert metrics.preemptions == CountObservation(total=5, min=2, max=3)
+    assert metrics.migrations == CountObservation(total=1, min=0, max=1)
 
 
 def test_units_of_a_clock_are_exact_picoseconds():

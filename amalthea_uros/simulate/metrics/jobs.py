@@ -106,9 +106,9 @@ class JobMetrics:
 
     def _counted(self, column: Job) -> CountObservation:
         if self.count == 0:
-            return CountObservation(total=0, max=0)
-        index = len(OWN) + _COUNTS.index(column)
-        return CountObservation(total=self._of_jobs.totals[index], max=int(self._of_jobs.maxima[index]))
+            return CountObservation(total=0, min=0, max=0)
+        index, found = len(OWN) + _COUNTS.index(column), self._of_jobs
+        return CountObservation(total=found.totals[index], min=int(found.minima[index]), max=int(found.maxima[index]))
 
 
 def add_rows(rows: Numbers, processes: Sequence[JobMetrics]) -> None:
