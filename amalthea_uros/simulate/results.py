@@ -33,6 +33,9 @@ class ObservedVerdict(StrEnum):
     NOT_OBSERVED = "not_observed"
 
 
+_BEST_FIRST = (ObservedVerdict.OK, ObservedVerdict.NOT_OBSERVED, ObservedVerdict.MISSED)
+
+
 class ChainQuantity(StrEnum):
     """An end-to-end latency of a chain, as observed at each stimulus or at each response; docs/chains.md defines them."""
 
@@ -389,7 +392,7 @@ class Simulation:
     def _cells(self) -> Iterator[tuple[str, Cell]]:
         yield from (("duration_ps", self.duration), ("seed", self.seed), ("mode", str(self.mode)))
         for core in self.cores:
-            yield f"{core.name}.load", float(core.load)
+            yield f"{core.name}.core_load", float(core.load)
         for process in self.processes:
             yield f"{process.name}.jobs", process.jobs
             yield f"{process.name}.load", float(process.load)
@@ -397,8 +400,9 @@ class Simulation:
             yield f"{process.name}.verdict", process.verdict
         for name, quantity, found in self._observations():
             yield from ((f"{name}.{quantity}.{column}", value) for column, value in _times(found).items())
-        for requirement in self.requirements:
-            yield f"{requirement.name}.verdict", requirement.verdict
+        # Of several limits with one name, the worst verdict counts: the last cell.
+        for requirement in sorted(self.requirements, key=lambda each: _BEST_FIRST.index(each.verdict)):
+            yield f"{requirement.name}.{requirement.quantity.replace(' ', '_')}.verdict", requirement.verdict
         yield "lost_activations", self.lost_activations
 
 

@@ -68,9 +68,16 @@ def test_a_record_has_one_cell_for_each_value():
     assert record["Control.response_time.max_ps"] == 29 * US
     assert record["Control.response_time.avg_ps"] == 16_650_000
     assert record["way.reduced_reaction_time.max_ps"] == 20 * MS
-    assert record["Core.load"] == pytest.approx(0.0167)
+    assert record["Core.core_load"] == pytest.approx(0.0167)
     assert record["lost_activations"] == 0
     assert all(isinstance(cell, int | float | str | None) for cell in record.values())
+
+
+def test_of_several_limits_with_one_name_a_record_has_the_worst_verdict():
+    kept, missed = (limited(TimeLimit(metric=TimeMetric.RESPONSE_TIME, value=value * US)) for value in (30, 28))
+    record = replace(SIMULATION, requirements=Results([missed, kept])).record()
+    assert record["R.response_time.verdict"] == "observed_missed"
+    assert record["Control.verdict"] == "observed_ok"
 
 
 def test_times_that_are_no_whole_picoseconds_are_rounded_to_the_nearest_one():
