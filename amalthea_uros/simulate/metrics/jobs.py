@@ -71,6 +71,7 @@ class JobMetrics:
     def add(self, jobs: Numbers) -> None:
         """Take jobs in: a column for each, in the order of their ends, and a row for each of `Job`."""
         self._of_jobs.add(_own(jobs), jobs[Job.INSTANCE], jobs[Job.ACTIVATION])
+        # The first of these jobs follows the last one before them.
         for earlier, later in ((self._last, jobs[:, : self._last.shape[1]]), (jobs[:, :-1], jobs[:, 1:])):
             self._between_jobs.add(_between(earlier, later), later[Job.INSTANCE], later[Job.ACTIVATION])
         self._last = jobs[:, -1:].copy()
