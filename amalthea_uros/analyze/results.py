@@ -4,60 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from enum import StrEnum
 from fractions import Fraction
-from typing import TYPE_CHECKING, Protocol, SupportsIndex, TypeVar, overload
+from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.by_name import Results as Results
 from amalthea_uros.analyze.verdicts import Failure, Verdict
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.timing.job_metric import JobMetric as JobMetric
 from amalthea_uros.units import Frequency, Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.solution import Solution
     from amalthea_uros.analyze.summary import Summary
-
-
-class HasName(Protocol):
-    """An object with a name."""
-
-    @property
-    def name(self) -> str:
-        """The name."""
-
-
-N = TypeVar("N", bound=HasName)
-
-
-class Results(tuple[N, ...]):
-    """Results in their order, also found by name: `results["Task_5ms"]`."""
-
-    __slots__ = ()
-
-    @overload
-    def __getitem__(self, key: SupportsIndex | str) -> N: ...
-    @overload
-    def __getitem__(self, key: slice) -> tuple[N, ...]: ...
-    def __getitem__(self, key: SupportsIndex | str | slice) -> N | tuple[N, ...]:
-        """The result with a name, or at an index.
-
-        Raises
-        ------
-        KeyError : there is no such result; the text lists similar names.
-        """
-        if not isinstance(key, str):
-            return super().__getitem__(key)
-        found = next((result for result in self if result.name == key), None)
-        if found is None:
-            near = get_close_matches(key, self.names, n=3)
-            advice = f"did you mean {', '.join(map(repr, near))}?" if near else f"known: {', '.join(self.names) or 'none'}"
-            raise KeyError(f"no result named {key!r}; {advice}")
-        return found
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The names, in order."""
-        return tuple(result.name for result in self)
 
 
 class Claim(StrEnum):
@@ -94,27 +53,6 @@ class Response:
     terms: Mapping[str, Time] = field(default_factory=dict)
     reason: str = ""
     is_overload: bool = False
-
-
-class JobMetric(StrEnum):
-    """A time that every job has, or that lies between every two consecutive jobs.
-
-    The names are those of AMALTHEA, and for what it has no name, those of the field's simulators.
-    """
-
-    NET_EXECUTION_TIME = "net_execution_time"
-    GROSS_EXECUTION_TIME = "gross_execution_time"
-    RESPONSE_TIME = "response_time"
-    INITIAL_PENDING_TIME = "initial_pending_time"
-    READY_TIME = "ready_time"
-    PREEMPTION_TIME = "preemption_time"
-    WAITING_TIME = "waiting_time"
-    ACTIVATE_TO_ACTIVATE = "activate_to_activate"
-    START_TO_START = "start_to_start"
-    END_TO_END = "end_to_end"
-    END_TO_START = "end_to_start"
-    SLACK_TIME = "slack_time"
-    LATENESS = "lateness"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

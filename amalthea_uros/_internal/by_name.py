@@ -1,0 +1,48 @@
+"""Results in their order that are also found by their names."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import Protocol, SupportsIndex, TypeVar, overload
+
+
+class HasName(Protocol):
+    """An object with a name."""
+
+    @property
+    def name(self) -> str:
+        """The name."""
+
+
+N = TypeVar("N", bound=HasName)
+
+
+class Results(tuple[N, ...]):
+    """Results in their order, also found by name: `results["Task_5ms"]`."""
+
+    __slots__ = ()
+
+    @overload
+    def __getitem__(self, key: SupportsIndex | str) -> N: ...
+    @overload
+    def __getitem__(self, key: slice) -> tuple[N, ...]: ...
+    def __getitem__(self, key: SupportsIndex | str | slice) -> N | tuple[N, ...]:
+        """The result with a name, or at an index.
+
+        Raises
+        ------
+        KeyError : there is no such result; the text lists similar names.
+        """
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        found = next((result for result in self if result.name == key), None)
+        if found is None:
+            near = get_close_matches(key, self.names, n=3)
+            advice = f"did you mean {', '.join(map(repr, near))}?" if near else f"known: {', '.join(self.names) or 'none'}"
+            raise KeyError(f"no result named {key!r}; {advice}")
+        return found
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names, in order."""
+        return tuple(result.name for result in self)

@@ -1,0 +1,148 @@
+"""A simulation for people."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil, floor
+
+from amalthea_uros.report.findings import joined
+from amalthea_uros.report.latencies import HEADING
+from amalthea_uros.report.simulated import SimulationShown, closing_line, duration_text, limit_text, value_text
+from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.simulate.results import (
+    ChainObservation,
+    ChainQuantity,
+    MetricObservation,
+    ObservedVerdict,
+    ProcessObservation,
+    Simulation,
+)
+from amalthea_uros.units import NANOSECOND, time_text
+
+_BADNESS = (ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED, ObservedVerdict.OK, None)
+
+
+def write(result: SimulationShown, terminal: Terminal) -> None:
+    """Write tables of loads, response times, chains and requirements, worst first, with assumptions and what was observed."""
+    simulation = result.simulation
+    run = f"{duration_text(simulation.duration)}, seed {simulation.seed}, mode {simulation.mode}"
+    terminal.line(f"{terminal.style('Simulation', '1')} of {joined(result.paths)}: {run}")
+    _cores(terminal, simulation)
+    _processes(terminal, simulation)
+    if result.with_metrics:
+        _metrics(terminal, simulation)
+    _chains(terminal, simulation)
+    _requirements(terminal, simulation)
+    if simulation.assumptions:
+        terminal.heading("Assumptions")
+        for sentence in simulation.assumptions:
+            terminal.line(f"  {sentence}")
+    terminal.heading(closing_line(simulation))
+
+
+def _cores(terminal: Terminal, simulation: Simulation) -> None:
+    used = [core for core in simulation.cores if core.load]
+    if used:
+        terminal.heading("Load")
+        terminal.table(("core", "load"), [(core.name, _percent(core.load)) for core in used], right=(1,))
+
+
+def _percent(load: Fraction) -> str:
+    return f"{float(load):.3%}"
+
+
+def _processes(terminal: Terminal, simulation: Simulation) -> None:
+    terminal.heading("Observed response times")
+    rows = [
+        (
+            process.name,
+            process.core or "-",
+            f"{process.jobs:,}",
+            _percent(process.load),
+            *_min_mean_max(process.response_time),
+            _deadline(process),
+            f"{process.lost_activations:,}",
+            _verdict(process.verdict),
+            process.reason,
+        )
+        for process in sorted(simulation.processes, key=_urgency)
+    ]
+    headings = ("process", "core", "jobs", "load", "min", "mean", "max", "deadline", "lost", "verdict", "")
+    terminal.table(headings, rows, right=range(2, 9))
+
+
+def _urgency(process: ProcessObservation) -> tuple[int, Fraction]:
+    """Bad verdicts first, then those that use up most of their deadline."""
+    use = process.response_time.max / process.deadline if process.response_time and process.deadline else Fraction(0)
+    return (_BADNESS.index(process.verdict), -use)
+
+
+def _min_mean_max(found: MetricObservation | None) -> tuple[str, ...]:
+    return ("-",) * 3 if found is None else tuple(time_text(round(value)) for value in (found.min, found.mean, found.max))
+
+
+def _deadline(process: ProcessObservation) -> str:
+    if process.deadline is None:
+        return "-"
+    return f"{'period ' if process.is_implicit else ''}{time_text(process.deadline)}"
+
+
+def _verdict(verdict: ObservedVerdict | None) -> str:
+    return "-" if verdict is None else verdict.replace("_", " ")
+
+
+def _metrics(terminal: Terminal, simulation: Simulation) -> None:
+    for process in simulation.processes:
+        terminal.heading(f"Metrics of {process.name} (us)")
+        rows = [
+            (name.replace("_", " "), _microseconds(found.min), _microseconds(found.mean), _microseconds(found.max, is_max=True))
+            for name, found in process.metrics.items()
+        ]
+        terminal.table(("metric", "min", "avg", "max"), rows or [("none", *[""] * 3)], right=(1, 2, 3))
+
+
+def _microseconds(value: Fraction, is_max: bool = False) -> str:
+    """A time in microseconds with three digits, so that minimum and maximum are rounded outwards; means are cut off."""
+    nanoseconds = (ceil if is_max else floor)(value / NANOSECOND)
+    whole, digits = divmod(abs(nanoseconds), 1000)
+    return f"{'-' if nanoseconds < 0 else ''}{whole}.{digits:03}"
+
+
+def _chains(terminal: Terminal, simulation: Simulation) -> None:
+    if simulation.chains:
+        terminal.heading(HEADING)
+        rows = [_chain(chain) for chain in simulation.chains]
+        headings = ("chain", "observations", "min", "mean", "reaction", "data age", "unanswered", "")
+        terminal.table(headings, rows, right=range(1, 7))
+
+
+def _chain(chain: ChainObservation) -> tuple[str, ...]:
+    age = _min_mean_max(chain.quantities.get(ChainQuantity.REDUCED_DATA_AGE))
+    missing = f"{chain.not_evaluated:,} latencies too long to be observed" if chain.not_evaluated else ""
+    return (
+        chain.name,
+        f"{chain.observations:,}",
+        *_min_mean_max(chain.quantities.get(ChainQuantity.REDUCED_REACTION_TIME)),
+        age[2],
+        f"{chain.unanswered:,}",
+        chain.reason or missing,
+    )
+
+
+def _requirements(terminal: Terminal, simulation: Simulation) -> None:
+    if not simulation.requirements:
+        return
+    terminal.heading("Requirements")
+    rows = [
+        (
+            requirement.name,
+            f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity,
+            limit_text(requirement),
+            value_text(requirement, requirement.value),
+            _verdict(requirement.verdict),
+            value_text(requirement, requirement.margin) if requirement.margin is not None else "",
+            requirement.reason,
+        )
+        for requirement in sorted(simulation.requirements, key=lambda each: _BADNESS.index(each.verdict))
+    ]
+    terminal.table(("requirement", "what", "limit", "observed", "verdict", "margin", ""), rows, right=(3, 5))

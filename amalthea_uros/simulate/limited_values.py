@@ -1,0 +1,128 @@
+"""What a requirement limits, as it was observed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from amalthea_uros.perf.constraints import (
+    CountLimit,
+    CountMetric,
+    Limit,
+    LoadLimit,
+    LoadMetric,
+    RatioLimit,
+    RatioMetric,
+    TimeLimit,
+    TimeMetric,
+)
+from amalthea_uros.simulate.results import MetricObservation, ProcessObservation
+from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.units import Time
+
+_METRICS = {
+    TimeMetric.RESPONSE_TIME: JobMetric.RESPONSE_TIME,
+    TimeMetric.NET_EXECUTION_TIME: JobMetric.NET_EXECUTION_TIME,
+    TimeMetric.GROSS_EXECUTION_TIME: JobMetric.GROSS_EXECUTION_TIME,
+    TimeMetric.RUNNING_TIME: JobMetric.RUNNING_TIME,
+    # On one core: it is the running time unless jobs migrate.
+    TimeMetric.CORE_EXECUTION_TIME: JobMetric.RUNNING_TIME,
+    TimeMetric.READY_TIME: JobMetric.READY_TIME,
+    TimeMetric.WAITING_TIME: JobMetric.WAITING_TIME,
+    TimeMetric.POLLING_TIME: JobMetric.POLLING_TIME,
+    TimeMetric.PARKING_TIME: JobMetric.PARKING_TIME,
+    TimeMetric.START_DELAY: JobMetric.INITIAL_PENDING_TIME,
+    TimeMetric.LATENESS: JobMetric.LATENESS,
+    TimeMetric.ACTIVATE_TO_ACTIVATE: JobMetric.ACTIVATE_TO_ACTIVATE,
+    TimeMetric.START_TO_START: JobMetric.START_TO_START,
+    TimeMetric.END_TO_END: JobMetric.END_TO_END,
+    TimeMetric.END_TO_START: JobMetric.END_TO_START,
+}
+_SHARES = {
+    LoadMetric.RUNNING: JobMetric.RUNNING_TIME,
+    LoadMetric.READY: JobMetric.READY_TIME,
+    LoadMetric.WAITING: JobMetric.WAITING_TIME,
+    LoadMetric.PARKING: JobMetric.PARKING_TIME,
+    LoadMetric.POLLING: JobMetric.POLLING_TIME,
+}
+_RATIOS = {
+    RatioMetric.NORMALIZED_RESPONSE_TIME: JobMetric.RESPONSE_TIME,
+    RatioMetric.NORMALIZED_LATENESS: JobMetric.LATENESS,
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LimitedValues:
+    """The observed values of something.
+
+    Attributes
+    ----------
+    low, high : the smallest and the greatest one; None if there is none, for the `reason`
+    pending : what has already passed of one that had not ended at the end of the run
+    is_complete : whether all values are known
+    reason : why values are missing
+    """
+
+    low: Fraction | None = None
+    high: Fraction | None = None
+    pending: Fraction = Fraction(0)
+    is_complete: bool = True
+    reason: str = ""
+
+    @classmethod
+    def of(cls, found: MetricObservation | None, reason: str) -> LimitedValues:
+        """Those of a time, or the reason why there is none."""
+        return cls(reason=reason) if found is None else cls(low=found.min, high=found.max)
+
+    @classmethod
+    def only(cls, value: Fraction | int) -> LimitedValues:
+        """Those of something that has one value in a run."""
+        return cls(low=Fraction(value), high=Fraction(value))
+
+
+def limited_values(limit: Limit, process: ProcessObservation, duration: Time) -> LimitedValues:
+    """What a requirement on a process limits; each job has to keep a limit of a time or of a number of preemptions or migrations."""
+    match limit:
+        case TimeLimit(metric=TimeMetric.CORE_EXECUTION_TIME) if process.migrations.total:
+            return LimitedValues(reason="jobs migrate, and their execution times on each core are not observed")
+        case TimeLimit(metric=TimeMetric.RESPONSE_TIME):
+            found = process.response_time
+            pending = process.longest_unfinished
+            if found is None:
+                return LimitedValues(pending=pending, reason=_missing(process))
+            return LimitedValues(low=found.min, high=found.max, pending=pending)
+        case TimeLimit(metric=metric) if metric in _METRICS:
+            return LimitedValues.of(process.metrics.get(_METRICS[metric]), _missing(process, _METRICS[metric]))
+        case CountLimit(metric=CountMetric.PREEMPTIONS) if process.jobs:
+            return LimitedValues(low=Fraction(process.preemptions.min), high=Fraction(process.preemptions.max))
+        case CountLimit(metric=CountMetric.FULL_MIGRATIONS) if process.jobs:
+            return LimitedValues(low=Fraction(process.migrations.min), high=Fraction(process.migrations.max))
+        case CountLimit(metric=CountMetric.LOST_ACTIVATIONS):
+            return LimitedValues.only(process.lost_activations)
+        case CountLimit(metric=CountMetric.ACTIVATIONS):
+            return LimitedValues(reason="the number of activations depends on the duration of the run")
+        case LoadLimit(core=core) if core not in (None, process.core):
+            return LimitedValues(reason=f"the load of {process.name!r} on {core!r} is not observed")
+        case LoadLimit(metric=LoadMetric.LOAD):
+            return LimitedValues.only(process.load)
+        case LoadLimit(metric=metric) if metric in _SHARES:
+            times = process.metrics.get(_SHARES[metric])
+            return LimitedValues.only(0 if times is None else times.total / duration)
+        case RatioLimit(metric=metric) if metric in _RATIOS:
+            return _normalized(process, _RATIOS[metric])
+    return LimitedValues(reason=f"the simulation does not observe the {limit.metric}")
+
+
+def _normalized(process: ProcessObservation, metric: JobMetric) -> LimitedValues:
+    """A time relative to the deadline."""
+    found, deadline = process.metrics.get(metric), process.deadline
+    if found is None or not deadline:
+        return LimitedValues(reason=_missing(process, JobMetric.LATENESS))
+    return LimitedValues(low=found.min / deadline, high=found.max / deadline)
+
+
+def _missing(process: ProcessObservation, metric: JobMetric = JobMetric.RESPONSE_TIME) -> str:
+    """Why a metric of a process was not observed."""
+    if not process.jobs:
+        return f"no job of {process.name!r} ended"
+    return f"{process.name!r} has no deadline" if metric is JobMetric.LATENESS else f"only one job of {process.name!r} ended"

@@ -1,0 +1,150 @@
+"""Distributions of several quantities that are observed together, such as the times of each job of a process.
+
+Numbers, minima, maxima, sums and histograms are exact. Squares are summed in floating point, as deviations from the first value, so
+that the standard deviation of small variations of great values does not suffer from cancellation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amalthea_uros.simulate.metrics.histogram import BinCounts
+from amalthea_uros.simulate.results import Histogram, MetricObservation, Occurrence
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.int64]
+
+_HALF = 32
+
+
+@dataclass(slots=True, kw_only=True)
+class Distributions:
+    """The distributions of some quantities; each observation has one value of each.
+
+    Attributes
+    ----------
+    size : number of quantities
+    base : time units in a picosecond
+    with_histograms : the quantities of which histograms are kept
+    count : number of observations
+    minima, maxima : of each quantity
+    totals : exact sums
+    lowest, highest : the observations with the minima and the maxima, the first ones of these: instance, time
+    """
+
+    size: int
+    base: int
+    with_histograms: tuple[int, ...]
+    count: int = 0
+    minima: Numbers = field(init=False)
+    maxima: Numbers = field(init=False)
+    totals: list[int] = field(init=False)
+    lowest: list[tuple[int, int]] = field(init=False)
+    highest: list[tuple[int, int]] = field(init=False)
+    _histograms: dict[int, BinCounts] = field(init=False)
+    _reference: Numbers = field(init=False)
+    _squares: NDArray[np.float64] = field(init=False)
+
+    def __post_init__(self) -> None:
+        limits = np.iinfo(np.int64)
+        self.minima = np.full(self.size, limits.max)
+        self.maxima = np.full(self.size, limits.min)
+        self.totals = [0] * self.size
+        self.lowest, self.highest = [(0, 0)] * self.size, [(0, 0)] * self.size
+        # Bins that are narrower than a picosecond could not be told apart.
+        self._histograms = {index: BinCounts((self.base - 1).bit_length()) for index in self.with_histograms}
+        self._squares = np.zeros(self.size)
+
+    def add(self, values: Numbers, instances: Numbers, times: Numbers) -> None:
+        """Take observations in.
+
+        Parameters
+        ----------
+        values : a row for each quantity, a column for each observation
+        instances, times : of each observation
+        """
+        if values.shape[1] == 0:
+            return
+        if self.count == 0:
+            self._reference = values[:, 0].copy()
+        self.count += values.shape[1]
+        self._note_extremes(values, instances, times)
+        self.totals = [total + more for total, more in zip(self.totals, _exact_sums(values), strict=True)]
+        deviations = (values - self._reference[:, None]).astype(np.float64)
+        self._squares += np.einsum("ij,ij->i", deviations, deviations)
+        for index, histogram in self._histograms.items():
+            histogram.add(values[index], int(self.minima[index]), int(self.maxima[index]))
+
+    def merge(self, other: Distributions) -> None:
+        """Take the observations of another one in."""
+        if other.count == 0:
+            return
+        if self.count == 0:
+            self._reference = other._reference.copy()
+        # The squares of the other one, about the reference of this one.
+        moved = (other._reference - self._reference).astype(np.float64)
+        sums = np.array([float(t - other.count * int(r)) for t, r in zip(other.totals, other._reference, strict=True)])
+        self._squares += other._squares + 2 * moved * sums + other.count * moved**2
+        self.count += other.count
+        self.totals = [one + more for one, more in zip(self.totals, other.totals, strict=True)]
+        for index in range(self.size):
+            if other.minima[index] < self.minima[index]:
+                self.minima[index], self.lowest[index] = other.minima[index], other.lowest[index]
+            if other.maxima[index] > self.maxima[index]:
+                self.maxima[index], self.highest[index] = other.maxima[index], other.highest[index]
+        for index, histogram in self._histograms.items():
+            histogram.merge(other._histograms[index], int(self.minima[index]), int(self.maxima[index]))
+
+    def observation(self, index: int) -> MetricObservation | None:
+        """What was observed of a quantity, in picoseconds; None if that is nothing."""
+        if self.count == 0:
+            return None
+        mean = Fraction(self.totals[index], self.count)
+        squares = float(self._squares[index]) / self.count - float(mean - int(self._reference[index])) ** 2
+        return MetricObservation(
+            count=self.count,
+            min=Fraction(int(self.minima[index]), self.base),
+            mean=mean / self.base,
+            max=Fraction(int(self.maxima[index]), self.base),
+            std=sqrt(max(0.0, squares)) / self.base,
+            at_min=self._occurrence(self.lowest[index]),
+            at_max=self._occurrence(self.highest[index]),
+            histogram=self._histogram(index),
+        )
+
+    def _note_extremes(self, values: Numbers, instances: Numbers, times: Numbers) -> None:
+        for index, low in enumerate(values.min(axis=1).tolist()):
+            if low < self.minima[index]:
+                where = values[index].argmin()
+                self.minima[index], self.lowest[index] = low, (int(instances[where]), int(times[where]))
+        for index, high in enumerate(values.max(axis=1).tolist()):
+            if high > self.maxima[index]:
+                where = values[index].argmax()
+                self.maxima[index], self.highest[index] = high, (int(instances[where]), int(times[where]))
+
+    def _occurrence(self, found: tuple[int, int]) -> Occurrence:
+        instance, time = found
+        return Occurrence(instance=instance, time=Fraction(time, self.base))
+
+    def _histogram(self, index: int) -> Histogram | None:
+        found = self._histograms.get(index)
+        if found is None:
+            return None
+        width = Fraction(1 << found.shift, self.base)
+        return Histogram(start=found.first * width, width=width, counts=tuple(found.counts.tolist()))
+
+
+def _exact_sums(values: Numbers) -> list[int]:
+    """The sum of each row: of both halves of the values, because the sum of the values can exceed 64 bits."""
+    largest = max(abs(int(values.min())), abs(int(values.max())))
+    if largest * values.shape[1] < 2**63:
+        return [int(total) for total in values.sum(axis=1)]
+    upper, lower = (values >> _HALF).sum(axis=1), (values & (1 << _HALF) - 1).sum(axis=1)
+    return [(int(high) << _HALF) + int(low) for high, low in zip(upper, lower, strict=True)]

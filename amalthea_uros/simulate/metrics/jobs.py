@@ -1,0 +1,156 @@
+"""The times of jobs, from the rows about jobs that have ended.
+
+AMALTHEA defines most of them by the states of the BTF state chart; its net execution time includes waiting and polling, and leaves out
+only the time in which other processes execute instead (READY, PARKING). The preemption time is the initial pending time and the time in
+READY: while the job does not execute because others do.
+
+Consecutive jobs of a process are those that end one after the other. Activations that are lost are no jobs: the time between two
+activations is that between two jobs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amalthea_uros.simulate.metrics.distributions import Distributions
+from amalthea_uros.simulate.results import CountObservation, MetricObservation
+from amalthea_uros.simulate.rows import Job
+from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.units import Time
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.int64]
+
+#: What each job has, in the order of the rows of `_own`; the numbers of preemptions and migrations follow.
+OWN = (
+    JobMetric.NET_EXECUTION_TIME,
+    JobMetric.GROSS_EXECUTION_TIME,
+    JobMetric.RESPONSE_TIME,
+    JobMetric.INITIAL_PENDING_TIME,
+    JobMetric.READY_TIME,
+    JobMetric.PREEMPTION_TIME,
+    JobMetric.RUNNING_TIME,
+    JobMetric.WAITING_TIME,
+    JobMetric.POLLING_TIME,
+    JobMetric.PARKING_TIME,
+)
+_COUNTS = (Job.PREEMPTIONS, Job.MIGRATIONS)
+#: What lies between two consecutive jobs, in the order of the rows of `_between`.
+BETWEEN = (JobMetric.ACTIVATE_TO_ACTIVATE, JobMetric.START_TO_START, JobMetric.END_TO_END, JobMetric.END_TO_START)
+#: So many jobs at a time stay in the cache of a processor.
+_CACHED = 2048
+_OWN_HISTOGRAMS = (OWN.index(JobMetric.NET_EXECUTION_TIME), OWN.index(JobMetric.RESPONSE_TIME))
+
+
+@dataclass(slots=True)
+class JobMetrics:
+    """The metrics of the jobs of a process.
+
+    Attributes
+    ----------
+    base : time units in a picosecond
+    """
+
+    base: int
+    _of_jobs: Distributions = field(init=False)
+    _between_jobs: Distributions = field(init=False)
+    #: The last job so far, as a column; no column before the first job.
+    _last: Numbers = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._of_jobs = Distributions(size=len(OWN) + len(_COUNTS), base=self.base, with_histograms=_OWN_HISTOGRAMS)
+        self._between_jobs = Distributions(size=len(BETWEEN), base=self.base, with_histograms=())
+        self._last = np.empty((len(Job), 0), np.int64)
+
+    def add(self, jobs: Numbers) -> None:
+        """Take jobs in: a column for each, in the order of their ends, and a row for each of `Job`."""
+        self._of_jobs.add(_own(jobs), jobs[Job.INSTANCE], jobs[Job.ACTIVATION])
+        # The first of these jobs follows the last one before them.
+        for earlier, later in ((self._last, jobs[:, : self._last.shape[1]]), (jobs[:, :-1], jobs[:, 1:])):
+            self._between_jobs.add(_between(earlier, later), later[Job.INSTANCE], later[Job.ACTIVATION])
+        self._last = jobs[:, -1:].copy()
+
+    @property
+    def count(self) -> int:
+        """The number of jobs."""
+        return self._of_jobs.count
+
+    def total(self, metric: JobMetric) -> int:
+        """The sum over all jobs of a time that each of them has, in time units."""
+        return self._of_jobs.totals[OWN.index(metric)]
+
+    @property
+    def preemptions(self) -> CountObservation:
+        """How often jobs were preempted."""
+        return self._counted(Job.PREEMPTIONS)
+
+    @property
+    def migrations(self) -> CountObservation:
+        """How often jobs moved to another core."""
+        return self._counted(Job.MIGRATIONS)
+
+    def observations(self, deadline: Time | None) -> Mapping[JobMetric, MetricObservation]:
+        """What was observed of each metric; slack time and lateness only if there is a deadline, in picoseconds."""
+        found = {metric: self._of_jobs.observation(index) for index, metric in enumerate(OWN)}
+        found |= {metric: self._between_jobs.observation(index) for index, metric in enumerate(BETWEEN)}
+        response = found[JobMetric.RESPONSE_TIME]
+        if deadline is not None and response is not None:
+            found[JobMetric.SLACK_TIME] = response.up_to(deadline)
+            found[JobMetric.LATENESS] = response.beyond(deadline)
+        return {metric: observation for metric in JobMetric if (observation := found.get(metric)) is not None}
+
+    def _counted(self, column: Job) -> CountObservation:
+        if self.count == 0:
+            return CountObservation(total=0, min=0, max=0)
+        index, found = len(OWN) + _COUNTS.index(column), self._of_jobs
+        return CountObservation(total=found.totals[index], min=int(found.minima[index]), max=int(found.maxima[index]))
+
+
+def add_rows(rows: Numbers, processes: Sequence[JobMetrics]) -> None:
+    """Take a chunk of rows in, of all processes, in the order of the ends of their jobs."""
+    # Numbers of 16 bits are sorted by radix.
+    numbers = rows[:, Job.PROCESS].astype(np.int16 if len(processes) <= 2**15 else np.int64)
+    order = np.argsort(numbers, kind="stable")
+    ends = np.cumsum(np.bincount(rows[:, Job.PROCESS], minlength=len(processes))).tolist()
+    for process, first, end in zip(processes, [0, *ends], ends, strict=False):
+        for start in range(first, end, _CACHED):
+            jobs = np.take(rows, order[start : min(start + _CACHED, end)], axis=0)
+            process.add(np.ascontiguousarray(jobs.T))
+
+
+def _own(jobs: Numbers) -> Numbers:
+    found = np.empty((len(OWN) + len(_COUNTS), jobs.shape[1]), np.int64)
+    net, gross, response, pending, ready, preemption, running, waiting, polling, parking, *counts = found
+    running[:], waiting[:], polling[:], parking[:] = (
+        jobs[column] for column in (Job.RUNNING, Job.WAITING, Job.POLLING, Job.PARKING)
+    )
+    np.subtract(jobs[Job.END], jobs[Job.START], out=gross)
+    np.subtract(jobs[Job.END], jobs[Job.ACTIVATION], out=response)
+    np.subtract(jobs[Job.START], jobs[Job.ACTIVATION], out=pending)
+    np.add(running, waiting, out=net)
+    net += polling
+    np.subtract(gross, net, out=ready)
+    ready -= parking
+    np.add(pending, ready, out=preemption)
+    for row, column in zip(counts, _COUNTS, strict=True):
+        row[:] = jobs[column]
+    return found
+
+
+def _between(earlier: Numbers, later: Numbers) -> Numbers:
+    found = np.empty((len(BETWEEN), later.shape[1]), np.int64)
+    ends = (
+        (Job.ACTIVATION, Job.ACTIVATION),
+        (Job.START, Job.START),
+        (Job.END, Job.END),
+        (Job.END, Job.START),
+    )
+    for row, (begin, end) in zip(found, ends, strict=True):
+        np.subtract(later[end], earlier[begin], out=row)
+    return found

@@ -1,0 +1,413 @@
+"""The results of a simulation: what was observed in one run; none of it is a bound of what can occur.
+
+Values are exact: picoseconds as fractions, because a clock tick need not be a whole number of them. Reports and tables round them
+to the nearest picosecond.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from amalthea_uros._internal.by_name import Results
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.simulate.options import Mode
+from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.units import Time, time_text
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: A cell of a table of runs.
+Cell: TypeAlias = int | float | str | None
+
+
+class ObservedVerdict(StrEnum):
+    """Whether a limit was kept in the run; that it was kept is no proof that it always is."""
+
+    OK = "observed_ok"
+    MISSED = "observed_missed"
+    NOT_OBSERVED = "not_observed"
+
+
+_BEST_FIRST = (ObservedVerdict.OK, ObservedVerdict.NOT_OBSERVED, ObservedVerdict.MISSED)
+
+
+class ChainQuantity(StrEnum):
+    """An end-to-end latency of a chain, as observed at each stimulus or at each response; docs/chains.md defines them."""
+
+    REACTION_TIME = "reaction_time"
+    REDUCED_REACTION_TIME = "reduced_reaction_time"
+    DATA_AGE = "data_age"
+    REDUCED_DATA_AGE = "reduced_data_age"
+    FIRST_TO_FIRST = "first_to_first"
+    FIRST_TO_LAST = "first_to_last"
+    LAST_TO_FIRST = "last_to_first"
+    LAST_TO_LAST = "last_to_last"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Occurrence:
+    """Where something was observed.
+
+    Attributes
+    ----------
+    instance : number of the job or of the stimulus, from 0
+    time : of the activation of the job, or of the stimulus; picoseconds from the start of the run
+    """
+
+    instance: int
+    time: Fraction
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Histogram:
+    """Numbers of values in bins of equal width, in picoseconds; a value at an edge is in the bin that starts there."""
+
+    start: Fraction
+    width: Fraction
+    counts: tuple[int, ...]
+
+    @property
+    def edges(self) -> tuple[Fraction, ...]:
+        """The edges of the bins, one more than there are bins."""
+        return tuple(self.start + number * self.width for number in range(len(self.counts) + 1))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MetricObservation:
+    """The values of a time in a run, in picoseconds.
+
+    Attributes
+    ----------
+    count : number of values, at least 1
+    std : standard deviation, in floating point
+    at_min, at_max : the first occurrences of minimum and maximum
+    histogram : None for times of which none is kept
+    """
+
+    count: int
+    min: Fraction
+    mean: Fraction
+    max: Fraction
+    std: float
+    at_min: Occurrence
+    at_max: Occurrence
+    histogram: Histogram | None = field(default=None, repr=False)
+
+    @property
+    def jitter(self) -> Fraction:
+        """The difference between maximum and minimum."""
+        return self.max - self.min
+
+    @property
+    def total(self) -> Fraction:
+        """The sum of all values."""
+        return self.mean * self.count
+
+    def beyond(self, limit: Time) -> MetricObservation:
+        """By how much the values exceed a limit; negative if they do not."""
+        return MetricObservation(
+            count=self.count,
+            min=self.min - limit,
+            mean=self.mean - limit,
+            max=self.max - limit,
+            std=self.std,
+            at_min=self.at_min,
+            at_max=self.at_max,
+        )
+
+    def up_to(self, limit: Time) -> MetricObservation:
+        """What is left up to a limit; negative if the values exceed it."""
+        return MetricObservation(
+            count=self.count,
+            min=limit - self.max,
+            mean=limit - self.mean,
+            max=limit - self.min,
+            std=self.std,
+            at_min=self.at_max,
+            at_max=self.at_min,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CountObservation:
+    """How often something happened to the jobs of a process: to all of them, and at least and at most to one of them."""
+
+    total: int
+    min: int
+    max: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoreObservation:
+    """A core.
+
+    Attributes
+    ----------
+    load : the part of the duration in which it executed something or polled, from 0 to 1
+    """
+
+    name: str
+    load: Fraction
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProcessObservation:
+    """A task or interrupt service routine.
+
+    Attributes
+    ----------
+    core : None if it can run on several ones
+    jobs : number of jobs that ended
+    load : the part of the duration in which it executed or polled, from 0 to 1
+    metrics : of the jobs that ended; those without any value are absent
+    lost_activations : beyond the activation limit
+    unfinished : number of jobs that had not ended at the end of the run
+    longest_unfinished : time from the activation of the first of them to the end of the run
+    deadline : the stated one, or else the period; None for activations without a period
+    is_implicit : whether the deadline is the period
+    verdict : None if there is no deadline, and no activation was lost
+    reason : what is wrong, or why nothing was observed
+    """
+
+    name: str
+    is_isr: bool
+    core: str | None
+    jobs: int
+    load: Fraction
+    metrics: Mapping[JobMetric, MetricObservation] = field(repr=False)
+    preemptions: CountObservation
+    migrations: CountObservation
+    lost_activations: int = 0
+    unfinished: int = 0
+    longest_unfinished: Fraction = Fraction(0)
+    deadline: Time | None = None
+    is_implicit: bool = False
+    verdict: ObservedVerdict | None = None
+    reason: str = ""
+
+    @property
+    def response_time(self) -> MetricObservation | None:
+        """The response time; None if no job ended."""
+        return self.metrics.get(JobMetric.RESPONSE_TIME)
+
+    @property
+    def is_time(self) -> bool:
+        """Whether the margin is a time, as that of a requirement can be."""
+        return True
+
+    @property
+    def margin(self) -> Fraction | None:
+        """Distance of the longest response time from the deadline; negative if it is later."""
+        if self.deadline is None or self.response_time is None:
+            return None
+        return self.deadline - self.response_time.max
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RouteObservation:
+    """A way through a chain.
+
+    Attributes
+    ----------
+    text : the events and the links between them
+    quantities : those without any value are absent
+    stimuli, responses : numbers of occurrences
+    unanswered : number of stimuli to which there was no response up to the end of the run
+    longest_unanswered : time from the first of them to the end of the run, or less if it is too long ago
+    not_evaluated : number of stimuli and responses too far apart to be kept: values of them are missing
+    """
+
+    text: str
+    quantities: Mapping[ChainQuantity, MetricObservation] = field(repr=False)
+    stimuli: int
+    responses: int
+    unanswered: int = 0
+    longest_unanswered: Fraction = Fraction(0)
+    not_evaluated: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChainObservation:
+    """A chain.
+
+    Attributes
+    ----------
+    quantities : over all values of all routes, so that the worst route counts; those without any value are absent
+    routes : the ways through the chain
+    reason : why something was not observed
+    """
+
+    name: str
+    quantities: Mapping[ChainQuantity, MetricObservation] = field(repr=False)
+    routes: tuple[RouteObservation, ...]
+    reason: str = ""
+
+    @property
+    def observations(self) -> int:
+        """The number of stimuli to which there was a response, on all routes."""
+        found = self.quantities.get(ChainQuantity.REDUCED_REACTION_TIME)
+        return 0 if found is None else found.count
+
+    @property
+    def unanswered(self) -> int:
+        """The number of stimuli to which there was no response up to the end of the run, on all routes."""
+        return sum(route.unanswered for route in self.routes)
+
+    @property
+    def longest_unanswered(self) -> Fraction:
+        """The longest time for which a stimulus had been without a response at the end of the run."""
+        return max((route.longest_unanswered for route in self.routes), default=Fraction(0))
+
+    @property
+    def not_evaluated(self) -> int:
+        """The number of stimuli and responses of which values are missing, on all routes."""
+        return sum(route.not_evaluated for route in self.routes)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RequirementObservation:
+    """The verdict on a requirement or a constraint.
+
+    Attributes
+    ----------
+    limit, value : of a time, in picoseconds, or of a number; None if it is unknown
+    is_time : whether they are times
+    reason : why it is missed although the value does not show it, or not observed
+    """
+
+    name: str
+    object: str
+    quantity: str
+    is_upper: bool
+    limit: Fraction | None
+    verdict: ObservedVerdict
+    value: Fraction | None = None
+    is_time: bool = True
+    reason: str = ""
+
+    @property
+    def margin(self) -> Fraction | None:
+        """Distance of the value from the limit; negative if the limit is missed."""
+        if self.value is None or self.limit is None:
+            return None
+        return self.limit - self.value if self.is_upper else self.value - self.limit
+
+
+Judged: TypeAlias = ProcessObservation | RequirementObservation
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Simulation:
+    """What was observed in a run.
+
+    Attributes
+    ----------
+    duration : model time
+    assumptions : on which the run is based
+    findings : what the simulation does not take into account
+    """
+
+    duration: Time
+    seed: int
+    mode: Mode
+    cores: Results[CoreObservation]
+    processes: Results[ProcessObservation]
+    chains: Results[ChainObservation] = field(default_factory=Results)
+    requirements: Results[RequirementObservation] = field(default_factory=Results)
+    assumptions: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+
+    def __getitem__(self, process: str) -> ProcessObservation:
+        """The observations of a process by its name.
+
+        Raises
+        ------
+        KeyError : there is no such process; the text lists similar names.
+        """
+        return self.processes[process]
+
+    def __repr__(self) -> str:
+        jobs = sum(process.jobs for process in self.processes)
+        return (
+            f"<Simulation of {time_text(self.duration)}, {self.mode}, seed {self.seed}: {jobs} jobs, {len(self.missed)} missed>"
+        )
+
+    @property
+    def lost_activations(self) -> int:
+        """The number of lost activations of all processes."""
+        return sum(process.lost_activations for process in self.processes)
+
+    @property
+    def judged(self) -> tuple[Judged, ...]:
+        """The processes, requirements and constraints with a verdict."""
+        return (*(process for process in self.processes if process.verdict is not None), *self.requirements)
+
+    @property
+    def missed(self) -> tuple[Judged, ...]:
+        """The processes, requirements and constraints that are observed as missed."""
+        return tuple(item for item in self.judged if item.verdict is ObservedVerdict.MISSED)
+
+    @property
+    def not_observed(self) -> tuple[Judged, ...]:
+        """Those on which nothing was observed that allows a verdict."""
+        return tuple(item for item in self.judged if item.verdict is ObservedVerdict.NOT_OBSERVED)
+
+    @property
+    def tightest(self) -> Judged | None:
+        """The process, requirement or constraint that was kept with the least time left; None if there is none."""
+        kept = [item for item in self.judged if item.verdict is ObservedVerdict.OK and item.is_time]
+        return min(kept, key=lambda item: item.margin or 0, default=None)
+
+    def record(self) -> dict[str, Cell]:
+        """The values as one row of a table, such as `Task_5ms.response_time.max_ps`; times in whole picoseconds."""
+        return dict(self._cells())
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The metrics of all processes and the latencies of all chains as a table; needs the package pandas.
+
+        Raises
+        ------
+        ImportError : pandas is not installed; the text says how to install it.
+        """
+        try:
+            import pandas as pd
+        except ImportError as error:
+            raise ImportError("a data frame needs pandas; install it with: pip install pandas") from error
+        rows = [
+            {"object": name, "quantity": quantity, "count": found.count, **_times(found)}
+            for name, quantity, found in self._observations()
+        ]
+        return pd.DataFrame(rows, columns=["object", "quantity", "count", *_COLUMNS])
+
+    def _observations(self) -> Iterator[tuple[str, str, MetricObservation]]:
+        items: list[tuple[str, Mapping[Any, MetricObservation]]] = [(each.name, each.metrics) for each in self.processes]
+        items += [(each.name, each.quantities) for each in self.chains]
+        yield from ((name, str(quantity), found) for name, values in items for quantity, found in values.items())
+
+    def _cells(self) -> Iterator[tuple[str, Cell]]:
+        yield from (("duration_ps", self.duration), ("seed", self.seed), ("mode", str(self.mode)))
+        for core in self.cores:
+            yield f"{core.name}.core_load", float(core.load)
+        for process in self.processes:
+            yield f"{process.name}.jobs", process.jobs
+            yield f"{process.name}.load", float(process.load)
+            yield f"{process.name}.lost_activations", process.lost_activations
+            yield f"{process.name}.verdict", process.verdict
+        for name, quantity, found in self._observations():
+            yield from ((f"{name}.{quantity}.{column}", value) for column, value in _times(found).items())
+        # Of several limits with one name, the worst verdict counts: the last cell.
+        for requirement in sorted(self.requirements, key=lambda each: _BEST_FIRST.index(each.verdict)):
+            yield f"{requirement.name}.{requirement.quantity.replace(' ', '_')}.verdict", requirement.verdict
+        yield "lost_activations", self.lost_activations
+
+
+_COLUMNS = ("min_ps", "avg_ps", "max_ps", "std_ps")
+
+
+def _times(found: MetricObservation) -> dict[str, int | float]:
+    return dict(zip(_COLUMNS, (round(found.min), round(found.mean), round(found.max), found.std), strict=True))

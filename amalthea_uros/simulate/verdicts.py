@@ -1,0 +1,182 @@
+"""Verdicts on deadlines, requirements and constraints by what was observed.
+
+That a limit was kept in a run is no proof that it always is: the verdict is *observed as kept*, never *met*. That it was missed is one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from amalthea_uros._internal.by_name import Results
+from amalthea_uros.perf.constraints import (
+    Bound,
+    ChainSynchronization,
+    DataAgeConstraint,
+    DelayConstraint,
+    EventSynchronization,
+    LatencyConstraint,
+    LatencyKind,
+    OrderConstraint,
+    RepetitionConstraint,
+    Requirement,
+    TimeLimit,
+)
+from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.system import System
+from amalthea_uros.simulate.limited_values import LimitedValues, limited_values
+from amalthea_uros.simulate.results import (
+    ChainObservation,
+    ChainQuantity,
+    ObservedVerdict,
+    ProcessObservation,
+    RequirementObservation,
+)
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.deadlines import implicit_deadline
+from amalthea_uros.timing.releases import response_time_limits
+from amalthea_uros.units import Time, time_text
+
+_UNOBSERVED = {
+    DelayConstraint: "delays between events",
+    RepetitionConstraint: "repetitions of events",
+    EventSynchronization: "the distance of events",
+    ChainSynchronization: "the distance of the ends of chains",
+    DataAgeConstraint: "the age of the data of single labels",
+    OrderConstraint: "the order of runnables",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Deadline:
+    """A deadline relative to the activation; `is_implicit` if it is the period."""
+
+    value: Time
+    is_implicit: bool
+
+
+def deadline_of(process: str, context: TimingContext) -> Deadline | None:
+    """The deadline of a process: of its allocation, or its strictest response-time limit, or its period."""
+    allocated = [each.deadline for each in context.system.mapping.tasks if each.task == process and each.deadline is not None]
+    stated = min(allocated) if allocated else response_time_limits(context.system).get(process)
+    if stated is not None:
+        return Deadline(stated, is_implicit=False)
+    events = context.stated_activations(process)
+    period = None if events is None else implicit_deadline(events)
+    return None if period is None else Deadline(period, is_implicit=True)
+
+
+def judge_process(process: ProcessObservation) -> ProcessObservation:
+    """The observations of a process with the verdict on its deadline and on lost activations."""
+    if process.lost_activations:
+        number = process.lost_activations
+        reason = f"{number:,} activation{'' if number == 1 else 's'} lost"
+        return replace(process, verdict=ObservedVerdict.MISSED, reason=reason)
+    if process.deadline is None:
+        return process
+    if process.longest_unfinished > process.deadline:
+        reason = f"a job had not ended {time_text(process.longest_unfinished)} after its activation"
+        return replace(process, verdict=ObservedVerdict.MISSED, reason=reason)
+    if process.margin is None:
+        return replace(process, verdict=ObservedVerdict.NOT_OBSERVED, reason="no job ended")
+    return replace(process, verdict=ObservedVerdict.OK if process.margin >= 0 else ObservedVerdict.MISSED)
+
+
+def judge_requirements(
+    system: System, processes: Results[ProcessObservation], chains: Results[ChainObservation], duration: Time
+) -> Iterator[RequirementObservation]:
+    """The verdicts on all requirements, then on all constraints."""
+    constraints = system.constraints
+    for requirement in constraints.requirements:
+        yield _requirement(requirement, processes, duration)
+    for constraint in (*constraints.constraints, *constraints.data_ages, *constraints.orders):
+        if isinstance(constraint, LatencyConstraint):
+            yield from _latency(constraint, chains)
+        else:
+            reason = f"the simulation does not observe {_UNOBSERVED[type(constraint)]}"
+            yield _not_observed(constraint, type(constraint).__name__, reason)
+
+
+def _requirement(requirement: Requirement, processes: Results[ProcessObservation], duration: Time) -> RequirementObservation:
+    limit = requirement.limit
+    process = next((each for each in processes if each.name == requirement.process), None)
+    if process is not None:
+        values = limited_values(limit, process, duration)
+    elif requirement.runnable is not None:
+        values = LimitedValues(reason="the simulation does not observe single runnables")
+    else:
+        values = LimitedValues(reason="the process that it limits is not defined, or was left out when reading")
+    return _judged(
+        RequirementObservation(
+            name=requirement.name,
+            object=requirement.process or requirement.runnable or "",
+            quantity=str(limit.metric),
+            is_upper=limit.bound is Bound.UPPER,
+            # As the number is written: the nearest number in base 2 can be on the other side of an equal value.
+            limit=Fraction(str(limit.value)),
+            is_time=isinstance(limit, TimeLimit),
+            verdict=ObservedVerdict.NOT_OBSERVED,
+        ),
+        values,
+    )
+
+
+def _latency(constraint: LatencyConstraint, chains: Results[ChainObservation]) -> Iterator[RequirementObservation]:
+    is_age = constraint.kind is LatencyKind.AGE
+    kind = "data age" if is_age else "reaction"
+    chain = next((each for each in chains if each.name == constraint.chain), None)
+    limits = ((constraint.maximum, True), (constraint.minimum, False))
+    stated = [(limit, is_upper) for limit, is_upper in limits if limit is not None]
+    if chain is None:
+        yield _not_observed(constraint, kind, f"the chain {constraint.chain!r} is not defined in the model")
+    elif not stated:
+        yield _not_observed(constraint, kind, "it states no limit")
+    else:
+        values = _latencies(chain, is_age)
+        for limit, is_upper in stated:
+            found = RequirementObservation(
+                name=constraint.name,
+                object=chain.name,
+                quantity=kind,
+                is_upper=is_upper,
+                limit=Fraction(limit),
+                verdict=ObservedVerdict.NOT_OBSERVED,
+            )
+            yield _judged(found, values)
+
+
+def _latencies(chain: ChainObservation, is_age: bool) -> LimitedValues:
+    """What a latency constraint limits: data age at each response, or reaction at each stimulus, also if there is none."""
+    quantity = ChainQuantity.REDUCED_DATA_AGE if is_age else ChainQuantity.REDUCED_REACTION_TIME
+    values = LimitedValues.of(chain.quantities.get(quantity), chain.reason or "there was no response to a stimulus")
+    if chain.not_evaluated:
+        reason = f"{chain.not_evaluated:,} latencies are longer than those that can be observed"
+        values = replace(values, is_complete=False, reason=reason)
+    return values if is_age else replace(values, pending=chain.longest_unanswered)
+
+
+def _judged(found: RequirementObservation, values: LimitedValues) -> RequirementObservation:
+    """A limit compared with observed values."""
+    if found.is_upper and found.limit is not None and values.pending > found.limit:
+        longest = max(values.pending, values.high or Fraction(0))
+        reason = "" if longest == values.high else "not ended at the end of the run"
+        return replace(found, value=longest, verdict=ObservedVerdict.MISSED, reason=reason)
+    compared = replace(found, value=values.high if found.is_upper else values.low)
+    if compared.margin is None:
+        return replace(compared, reason=values.reason)
+    if compared.margin < 0:
+        return replace(compared, verdict=ObservedVerdict.MISSED)
+    return replace(compared, verdict=ObservedVerdict.OK) if values.is_complete else replace(compared, reason=values.reason)
+
+
+def _not_observed(constraint: Named, quantity: str, reason: str) -> RequirementObservation:
+    return RequirementObservation(
+        name=constraint.name,
+        object="",
+        quantity=quantity,
+        is_upper=True,
+        limit=None,
+        verdict=ObservedVerdict.NOT_OBSERVED,
+        reason=reason,
+    )
