@@ -16,6 +16,7 @@ FAMILIES = {
     "BLD": "Building a model",
     "EXT": "Extracting the performance model",
     "ANA": "Analysing response times",
+    "SIM": "Simulating systems",
     "CHN": "Analysing event chains",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",

@@ -71,13 +71,19 @@ class TimingContext:
     @classmethod
     def of(cls, system: System, settings: Settings | None = None) -> TimingContext:
         """The timing context of a system."""
+        context = cls.of_scheduling(system, settings)
+        context._find_demands()
+        context._find_locks()
+        return context
+
+    @classmethod
+    def of_scheduling(cls, system: System, settings: Settings | None = None) -> TimingContext:
+        """The same without demands and critical sections, for what follows the activities one by one."""
         context = cls(with_direct_calls(system), settings or Settings())
         if context.system is not system:
             context.notes.assume("clients execute the runnables of synchronous servers that no process calls")
         context._note_settings()
         context._schedule()
-        context._find_demands()
-        context._find_locks()
         return context
 
     @cached_property

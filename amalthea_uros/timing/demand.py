@@ -161,7 +161,9 @@ class DemandModel:
                     is_certain = position.is_certain and position.counter is not None and is_always(position.counter)
                     certain[key] = certain.get(key, False) or is_certain
         time_base = self.settings.scale * self.time_base(core)
-        frames = [(key[1], self.memory.frame(core, *key, count_of(1), time_base), is_certain) for key, is_certain in certain.items()]
+        frames = [
+            (key[1], self.memory.frame(core, *key, count_of(1), time_base), is_certain) for key, is_certain in certain.items()
+        ]
         return [(kind, frame if is_certain else _at_most(frame)) for kind, frame, is_certain in frames]
 
     def _positions(self, process: Process) -> Sequence[ActivityPosition]:

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import gcd, lcm
 
+from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.os import Policy, Scheduler
-from amalthea_uros.perf.software import Task
+from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Stimulus
 from amalthea_uros.simulate.arrivals import Occurrences, UnknownArrivalError, occurrences
 from amalthea_uros.simulate.layout import (
@@ -107,10 +108,10 @@ from amalthea_uros.simulate.program.scheduling import Dispatched, Dispatching
 from amalthea_uros.simulate.sampling.random_source import RandomSource
 from amalthea_uros.simulate.sampling.streams import Stream
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.critical_sections import protection_of
 from amalthea_uros.timing.preemption import preemption
 from amalthea_uros.timing.scheduling import EqualPriority, standard_policy
 from amalthea_uros.timing.stated_demand import states_execution_time
-from amalthea_uros.perf.software import Preemption
 from amalthea_uros.trace.table import Entity, EntityKind
 from amalthea_uros.units import Time
 
@@ -139,7 +140,8 @@ class Program:
     streams, stream_records : what is drawn from, and the records by which programs know it
     arrivals : of each stimulus that comes from outside: its record, and when it occurs
     processes : the names of the processes in the order of their numbers in rows
-    records : the records of processes and cores, by name
+    records, cores, channels : the records of processes, cores and channels, by name
+    queues : the records of everything that is activated
     left_out : why a process is not simulated
     chains_left_out : why a chain is not followed
     """
@@ -153,6 +155,7 @@ class Program:
     records: dict[str, int]
     cores: dict[str, int]
     channels: dict[str, int]
+    queues: tuple[int, ...]
     entities: tuple[Entity, ...]
     routes: tuple[FollowedRoute, ...]
     left_out: dict[str, str]
@@ -239,6 +242,7 @@ class _Builder:
             records=self.processes,
             cores=self.cores,
             channels=self.modes.channels,
+            queues=(*self.processes.values(), *self.decisions.values()),
             entities=self.entities.all,
             routes=tuple(chains.routes),
             left_out=self.left_out,
@@ -269,9 +273,8 @@ class _Builder:
                 self._set(self.cores[core], {CORE_DOMAIN: domain})
 
     def _place_servers(self, here: dict[str, Dispatched]) -> None:
-        used = {item.scheduled.server for item in here.values()}
-        for name, server in self.dispatching.servers.items():
-            if name in used or any(other.server == name for other in self.dispatching.servers.values()):
+        for name in self.dispatching.servers:
+            if any(self._is_within(item.scheduled.server, name) for item in here.values()):
                 self.servers[name] = self.image.record(SERVER_SIZE)
         for name, record in self.servers.items():
             server = self.dispatching.servers[name]
@@ -398,11 +401,12 @@ class _Builder:
             self._set(domain, fields)
 
     def _place_ceilings(self, here: dict[str, Dispatched]) -> None:
-        words, protection = self.image.words, self.context.protection_of
-        for semaphore in self.context.system.os.semaphores:
+        words, system = self.image.words, self.context.system
+        uses = {name: protection_of(system.processes[name], system) for name in here}
+        for semaphore in system.os.semaphores:
             if not semaphore.ceiling:
                 continue
-            users = [self.processes[name] for name in here if semaphore.name in protection(name).semaphores]
+            users = [self.processes[name] for name in here if semaphore.name in uses[name].semaphores]
             deadlines = [words[user + RELATIVE_DEADLINE] for user in users if words[user + IS_BY_DEADLINE]]
             fields = {
                 CEILING: max((words[user + OWN_LEVEL] for user in users), default=0) + 1,
@@ -414,8 +418,6 @@ class _Builder:
 
     def _hook_firings(self, chains: ChainCompiler, here: dict[str, Dispatched]) -> None:
         """Stimuli that events fire; triggers fire theirs by themselves."""
-        from amalthea_uros.perf.activities import Trigger
-
         if not any(isinstance(stimulus, EventTriggered) for stimulus in self.context.system.stimuli.stimuli):
             return
         for name in here:
@@ -430,8 +432,8 @@ class _Builder:
         system = self.context.system
         activated: dict[str, list[str]] = {}
         for name, item in here.items():
-            for stimulus in item.scheduled.process.stimuli:
-                activated.setdefault(stimulus, []).append(name)
+            for stimulus_name in item.scheduled.process.stimuli:
+                activated.setdefault(stimulus_name, []).append(name)
         order = {name: number for number, name in enumerate(here)}
         external: list[tuple[int, int, Occurrences]] = []
         for name, record in self.stimuli.items():
@@ -451,7 +453,10 @@ class _Builder:
 
     def _occurrences(self, stimulus: Stimulus) -> Occurrences:
         source = RandomSource(self.options.seed, f"stimulus {stimulus.name}")
-        return occurrences(stimulus, self.context.system, self.options.mode, source, self.resources.units)
+        found = occurrences(stimulus, self.context.system, self.options.mode, source, self.resources.units)
+        for sentence in found.assumptions:
+            self.context.notes.assume(sentence)
+        return found
 
     def _stimulus(self, stimulus: Stimulus, record: int, targets: Sequence[str]) -> None:
         first, end = self.image.items(self.processes[target] for target in targets)

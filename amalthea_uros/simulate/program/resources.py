@@ -10,7 +10,9 @@ from amalthea_uros.perf.activities import ClearEvent, ServerCall, SetEvent, Wait
 from amalthea_uros.perf.distributions import Distribution, Statistics
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.simulate.layout import (
+    CEILING,
     COUNTER_SIZE,
+    DEADLINE_CEILING,
     EVENT_LIST,
     EVENT_LIST_END,
     EVENT_ROW_SIZE,
@@ -28,13 +30,12 @@ from amalthea_uros.simulate.layout import (
     STREAM_SIZE,
     USED,
     USERS,
-    CEILING,
-    DEADLINE_CEILING,
 )
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.program.entities import Entities
 from amalthea_uros.simulate.program.image import Image
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
+from amalthea_uros.simulate.sampling.quantiles import sampling_assumption
 from amalthea_uros.simulate.sampling.random_source import RandomSource
 from amalthea_uros.simulate.sampling.streams import Same, Stream, choices, durations, permutations, values
 from amalthea_uros.simulate.sampling.variate import UnknownValueError
@@ -103,6 +104,8 @@ class Resources:
         return self._durations(Statistics(lower=frame.best, average=average, upper=frame.worst), unit, place)
 
     def _durations(self, ticks: Distribution[int], unit: Fraction, place: str) -> Stream:
+        if self.options.mode is Mode.SAMPLED and (sentence := sampling_assumption(ticks)):
+            self.context.notes.assume(sentence)
         try:
             return durations(ticks, unit, self.options.mode, self._source(place))
         except UnknownValueError as error:

@@ -1,0 +1,146 @@
+"""Simulations of whole systems."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from amalthea_uros._internal.by_name import Results
+from amalthea_uros.perf.software import Isr
+from amalthea_uros.perf.system import System
+from amalthea_uros.simulate import machine_code
+from amalthea_uros.simulate.layout import (
+    ACTIVATION,
+    BUSY,
+    LOST,
+    OVERFLOWS,
+    SINCE,
+    STATE,
+    TIME_POLLING,
+    TIME_RUNNING,
+)
+from amalthea_uros.simulate.metrics import chains, jobs
+from amalthea_uros.simulate.metrics.chains import RouteMetrics
+from amalthea_uros.simulate.metrics.jobs import JobMetrics
+from amalthea_uros.simulate.operations import POLLING, RUNNING
+from amalthea_uros.simulate.options import Options
+from amalthea_uros.simulate.player import EndlessJobError, Player
+from amalthea_uros.simulate.program.build import Program, build_program
+from amalthea_uros.simulate.results import ChainObservation, CoreObservation, ProcessObservation, Simulation
+from amalthea_uros.simulate.verdicts import deadline_of, judge_process, judge_requirements
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.deadlines import ASSUMPTION
+from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.phases import with_stated_phases
+from amalthea_uros.trace.sinks import TraceSink
+from amalthea_uros.trace.suspensions import Suspensions
+from amalthea_uros.trace.table import Entity, EventTable
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+#: Opens what the events of a run are written to, when the entities are known.
+OpenSink: TypeAlias = "Callable[[Sequence[Entity]], TraceSink]"
+
+#: More activations than this are quicker played by machine code, also if that has to be loaded first.
+_WORTH_LOADING = 20_000
+#: And more than this also if it has to be made first.
+_WORTH_COMPILING = 400_000
+
+
+def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] = ()) -> Simulation:
+    """Simulate a system once.
+
+    Processes and chains that cannot be simulated are findings; the others are simulated as if they did not exist.
+
+    Parameters
+    ----------
+    sinks : for the events of `options.traced`
+    """
+    context = TimingContext.of_scheduling(with_stated_phases(system, options.settings.phases), options.settings)
+    program = build_program(context, options)
+    run = _Run(context, options, program)
+    with ExitStack() as stack:
+        run.play([stack.enter_context(open_sink(program.entities)) for open_sink in sinks])
+    return run.result()
+
+
+@dataclass(slots=True)
+class _Run:
+    """A run, and what is observed in it."""
+
+    context: TimingContext
+    options: Options
+    program: Program
+    player: Player = field(init=False)
+    jobs: list[JobMetrics] = field(init=False)
+    routes: list[RouteMetrics] = field(init=False)
+    sinks: Sequence[TraceSink] = ()
+    suspensions: Suspensions = field(init=False)
+
+    def __post_init__(self) -> None:
+        program = self.program
+        self.jobs = [JobMetrics(program.units) for _ in program.processes]
+        self.routes = [RouteMetrics(program.units) for _ in program.routes]
+        self.suspensions = Suspensions(program.entities)
+        traced = self.options.traced or (0, 0)
+        self.player = Player(
+            program,
+            until=self.end,
+            is_compiled=_is_worth_compiling(program, self.end),
+            jobs=lambda rows: jobs.add_rows(rows, self.jobs),
+            observations=lambda rows: chains.add_rows(rows, self.routes),
+            events=self._write,
+            traced=(traced[0] * program.units, traced[1] * program.units),
+        )
+
+    @property
+    def end(self) -> int:
+        """The end of the run in time units."""
+        return self.options.duration * self.program.units
+
+    def play(self, sinks: Sequence[TraceSink]) -> None:
+        """Play to the end, and write the events."""
+        self.sinks = sinks
+        try:
+            self.player.run()
+        except EndlessJobError as error:
+            name = next(name for name, record in self.program.records.items() if record == error.args[0])
+            message = f"{name!r} executes activities forever without taking time; the run ends there"
+            self.context.notes.error("SIM003", message, self.context.system.processes[name])
+
+    def _write(self, rows: NDArray[np.int64]) -> None:
+        """Hand events on to all sinks."""
+        table = self.suspensions.inserted(_event_table(rows, self.program))
+        for sink in self.sinks:
+            sink.write(table)
+
+    def result(self) -> Simulation:
+        """What was observed."""
+        system, program, notes = self.context.system, self.program, self.context.notes
+        self._note_left_out()
+        processes = Results(map(judge_process, self._processes()))
+        found = Results(self._chain(name) for name in system.chains)
+        duration = self.options.duration
+        requirements = Results(judge_requirements(system, processes, found, duration))
+        memory = self.player.memory
+        cores = (
+            CoreObservation(name=name, load=Fraction(int(memory[record + BUSY]) + self._running_on(record), self.end))
+            for name, record in program.cores.items()
+        )
+        return Simulation(
+            duration=duration,
+            seed=self.options.seed,
+            mode=self.options.mode,
+            cores=Results(cores),
+            processes=processes,
+            chains=found,
+            requirements=requirements,
+            assumptions=tuple(notes.assumptions),
+            findings=tuple(finding for finding in notes.found if finding.rule not in _OF_ANALYSES),
+        )
