@@ -10,13 +10,14 @@ import click
 
 from amalthea_uros.cli.output import Output, output_option, refuse_input, show_findings, write_outputs
 from amalthea_uros.cli.parsed import Parsed
-from amalthea_uros.cli.settings_options import set_option, settings_options
+from amalthea_uros.cli.pictures import Pictures
+from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
 from amalthea_uros.report.wording import counted
 from amalthea_uros.services.campaign.run import Outcome, Record, count_runs
 from amalthea_uros.services.campaign.tables import table_format, write_table
 from amalthea_uros.services.changes import sweep as sweeping
 from amalthea_uros.services.changes.change import Change
-from amalthea_uros.services.simulate import CampaignResult, SimulationResult, simulate_campaign, simulate_files
+from amalthea_uros.services.simulate import CampaignResult, plan_simulation, run_simulation, simulate_campaign
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time, parse_time
@@ -76,6 +77,27 @@ def _window(text: str) -> tuple[Time, Time]:
 @click.option(
     "--trace-window", type=Parsed("FROM..TO", _window), help="Write only the events of this part of the run, e.g. 10ms..20ms."
 )
+@click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what all processes do in a part of the run, as SVG.")
+@click.option(
+    "--timeline",
+    "timelines",
+    multiple=True,
+    type=Assignment("PROCESS=FILE", Path),
+    help="Draw the states of a process in a part of the run, as SVG; may be repeated.",
+)
+@click.option(
+    "--histogram",
+    "histograms",
+    multiple=True,
+    type=Assignment("NAME=FILE", Path),
+    help="Draw the response times of a process, the latencies of a chain, or another of its quantities, e.g. "
+    "Task.start_to_start=start.svg; may be repeated.",
+)
+@click.option(
+    "--window",
+    type=Parsed("FROM..TO", _window),
+    help="Part of the run for --gantt and --timeline; default: around the job that comes closest to its deadline.",
+)
 @click.option(
     "--sweep",
     "sweeps",
@@ -106,6 +128,10 @@ def command(
     with_metrics: bool,
     traces: tuple[Path, ...],
     trace_window: tuple[Time, Time] | None,
+    gantt: Path | None,
+    timelines: tuple[tuple[str, Path], ...],
+    histograms: tuple[tuple[str, Path], ...],
+    window: tuple[Time, Time] | None,
     sweeps: tuple[sweeping.Sweep, ...],
     runs: int,
     jobs: int | None,
@@ -120,9 +146,10 @@ def command(
     fails; with Ctrl-C, the runs that are finished are shown and the exit code is 130.
     """
     is_campaign = bool(sweeps) or runs > 1
-    _check_targets(table, traces)
-    if traces and is_campaign:
-        raise click.UsageError("--trace is for a single run, not for --sweep or --runs")
+    pictures = Pictures(gantt, timelines, histograms, window)
+    _check_targets(table, traces, pictures)
+    if is_campaign and (traces or pictures.paths):
+        raise click.UsageError("traces and pictures are made of a single run, without --sweep and --runs")
     if trace_window is not None and not traces:
         raise click.UsageError("--trace-window needs --trace FILE")
     traced = (trace_window or (0, duration)) if traces else None
@@ -131,24 +158,23 @@ def command(
         campaign = _campaign(paths, options, changes, sweeps, runs, jobs, cluster)
         _show_campaign(campaign, table, outputs)
         sys.exit(_campaign_code(campaign))
-    result = simulate_files(paths, options, changes=changes, trace_paths=traces, with_metrics=with_metrics)
-    _show(result, table, outputs)
-    sys.exit(1 if result.is_failed else 0)
-
-
-def _check_targets(table: Path | None, traces: Sequence[Path]) -> None:
-    """Refuse files that cannot be written before the simulation, which may take long."""
-    for path in traces:
-        refuse_input(path, f"--trace {path}")
-    if table is not None:
-        refuse_input(table, f"--table {table}")
-        table_format(table)
-
-
-def _show(result: SimulationResult, table: Path | None, outputs: Sequence[Output]) -> None:
+    plan = plan_simulation(paths, options, changes)
+    pictures.check(plan)
+    result = run_simulation(plan, traces, with_metrics=with_metrics)
     show_findings(result.findings)
     _write_table(table, [result.simulation.record()])
     write_outputs(outputs, result)
+    pictures.write(result)
+    sys.exit(1 if result.is_failed else 0)
+
+
+def _check_targets(table: Path | None, traces: Sequence[Path], pictures: Pictures) -> None:
+    """Refuse files that cannot be written before the simulation, which may take long."""
+    for path in (*traces, *pictures.paths):
+        refuse_input(path, str(path))
+    if table is not None:
+        refuse_input(table, f"--table {table}")
+        table_format(table)
 
 
 def _campaign(

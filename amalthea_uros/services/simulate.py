@@ -40,6 +40,25 @@ _VERDICT, _MISSED, _LOST = ".verdict", "observed_missed", "lost_activations"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationPlan:
+    """What is to be simulated.
+
+    Attributes
+    ----------
+    system : with the changes
+    options : with the changes of settings
+    differences : what the changes did
+    findings : problems found while reading the files
+    """
+
+    paths: tuple[Path, ...]
+    system: System
+    options: Options
+    differences: tuple[Difference, ...]
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SimulationResult:
     """The simulation of some files, with what it rests on.
 
@@ -130,13 +149,50 @@ def _received_job(system: bytes, options: Options, changes: tuple[Change, ...]) 
     return SimulationJob(system_from(system), options, changes)
 
 
+def plan_simulation(paths: StrPath | Iterable[StrPath], options: Options, changes: Sequence[Change] = ()) -> SimulationPlan:
+    """Read what is to be simulated, and change it.
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    InvalidArgumentError : the changes or settings name what does not exist, or are wrong.
+    """
+    files = as_paths(paths)
+    opened = open_system(files)
+    differences = describe(opened.system, options.settings, changes)
+    system, settings = apply(opened.system, options.settings, changes)
+    require_settings(settings, system)
+    return SimulationPlan(
+        paths=files,
+        system=system,
+        options=replace(options, settings=settings),
+        differences=differences,
+        findings=opened.findings,
+    )
+
+
+def run_simulation(
+    plan: SimulationPlan, trace_paths: Iterable[StrPath] = (), *, with_metrics: bool = False
+) -> SimulationResult:
+    """Simulate what was planned; parameters and errors as for `simulate_files`."""
+    simulation = _simulated(plan.system, plan.options, [*map(_trace_opener, trace_paths)])
+    return SimulationResult(
+        paths=plan.paths,
+        system=plan.system,
+        options=plan.options,
+        simulation=simulation,
+        findings=(*plan.findings, *simulation.findings),
+        differences=plan.differences,
+        with_metrics=with_metrics,
+    )
+
+
 def simulate_files(
     paths: StrPath | Iterable[StrPath],
     options: Options,
     *,
     changes: Sequence[Change] = (),
     trace_paths: Iterable[StrPath] = (),
-    sinks: Sequence[OpenSink] = (),
     with_metrics: bool = False,
 ) -> SimulationResult:
     """Simulate an `app.yaml` or AMALTHEA models.
@@ -145,7 +201,6 @@ def simulate_files(
     ----------
     changes : of the system and the settings, made before the run
     trace_paths : files for the events; the suffix says which format
-    sinks : other places for the events
     with_metrics : show the metrics of all processes
 
     Raises
@@ -154,22 +209,7 @@ def simulate_files(
     WriteError : a trace cannot be written.
     InvalidArgumentError : the changes or settings name what does not exist or are wrong, or the format of a trace is not known.
     """
-    files = as_paths(paths)
-    opened = open_system(files)
-    differences = describe(opened.system, options.settings, changes)
-    system, settings = apply(opened.system, options.settings, changes)
-    require_settings(settings, system)
-    options = replace(options, settings=settings)
-    simulation = _simulated(system, options, (*map(_trace_opener, trace_paths), *sinks))
-    return SimulationResult(
-        paths=files,
-        system=system,
-        options=options,
-        simulation=simulation,
-        findings=(*opened.findings, *simulation.findings),
-        differences=differences,
-        with_metrics=with_metrics,
-    )
+    return run_simulation(plan_simulation(paths, options, changes), trace_paths, with_metrics=with_metrics)
 
 
 def simulate(
