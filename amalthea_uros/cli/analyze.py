@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from dataclasses import replace
-from fractions import Fraction
 from pathlib import Path
-from typing import Any, TypeVar
 
 import click
 
 from amalthea_uros.analyze.results import EXPLAINED, Quantity
 from amalthea_uros.analyze.summary import Schedulable
 from amalthea_uros.cli.output import Output, output_option, show_findings, shows_text, write_outputs
-from amalthea_uros.perf.activities import Communication
+from amalthea_uros.cli.settings_options import Assignment, settings_options
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail, explain
-from amalthea_uros.timing.settings import Memory, Settings
-from amalthea_uros.units import Frequency, Time, parse_frequency, parse_time
-
-T = TypeVar("T")
-
-_COMMUNICATION = {str(how).lower(): how for how in Communication}
+from amalthea_uros.timing.settings import Settings
 
 #: The closing verdicts that make the exit code 1.
 _FAILING = {
@@ -32,56 +24,9 @@ _FAILING = {
 }
 
 
-class Assignment(click.ParamType[tuple[str, T]]):
-    """Text of the form NAME=VALUE; a function that raises a `ValueError` for wrong text converts the value."""
-
-    def __init__(self, form: str, convert: Callable[[str], T]) -> None:
-        self.name = form
-        self._convert = convert
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, T]:
-        """Parse one value."""
-        if isinstance(value, tuple):
-            return value
-        name, _, text = str(value).partition("=")
-        if not name or not text:
-            self.fail(f"{value!r} is not of the form {self.name}", param, ctx)
-        try:
-            return name, self._convert(text)
-        except ValueError as error:
-            self.fail(str(error), param, ctx)
-
-
-def _clock(text: str) -> Frequency:
-    frequency = parse_frequency(text)
-    if frequency <= 0:
-        raise ValueError("a frequency must be greater than zero")
-    return frequency
-
-
-def _phase(text: str) -> Time:
-    phase = parse_time(text)
-    if phase < 0:
-        raise ValueError("a phase must not be negative")
-    return phase
-
-
 @click.command("analyze")
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL_OR_YAML...")
-@click.option(
-    "--frequency",
-    "frequencies",
-    multiple=True,
-    type=Assignment("CORE=FREQUENCY", _clock),
-    help="Clock of a core, e.g. Core_0=300MHz; may be repeated.",
-)
-@click.option(
-    "--scale",
-    type=click.FloatRange(min=0, min_open=True),
-    default=1.0,
-    show_default=True,
-    help="Factor by which all execution times are multiplied.",
-)
+@settings_options
 @click.option(
     "--mode",
     "modes",
@@ -89,34 +34,13 @@ def _phase(text: str) -> Time:
     type=Assignment("LABEL=VALUE", str),
     help="Constant value of a mode label; may be repeated.",
 )
-@click.option(
-    "--memory",
-    type=click.Choice([str(memory) for memory in Memory]),
-    default=str(Memory.NONE),
-    show_default=True,
-    help="Execution time of label accesses: none, latency of each access (explicit), or one copy per job (implicit).",
-)
 @click.option("--chain", metavar="CHAIN", help="Show all values of one event chain, and the links between its events.")
-@click.option(
-    "--communication",
-    type=click.Choice(["modelled", *_COMMUNICATION]),
-    default="modelled",
-    show_default=True,
-    help="When labels are read and written; modelled: as in the model, implicit by default.",
-)
 @click.option(
     "--method",
     type=click.Choice(["auto", "all"]),
     default="auto",
     show_default=True,
     help="With --chain: show the tightest values (auto), or those of all methods.",
-)
-@click.option(
-    "--phase",
-    "phases",
-    multiple=True,
-    type=Assignment("CALLBACK=TIME", _phase),
-    help="Time at which the first message of a callback is taken, e.g. Message_Factor=5ms; may be repeated.",
 )
 @click.option(
     "--explain",
@@ -149,14 +73,10 @@ def _phase(text: str) -> Time:
 @output_option(AnalysisResult)
 def command(
     paths: tuple[Path, ...],
-    frequencies: tuple[tuple[str, Frequency], ...],
-    scale: float,
+    settings: Settings,
     modes: tuple[tuple[str, str], ...],
-    memory: str,
     chain: str | None,
-    communication: str,
     method: str,
-    phases: tuple[tuple[str, Time], ...],
     explained: str | None,
     quantity: str,
     with_sensitivity: bool,
@@ -171,17 +91,9 @@ def command(
     (exact, or a safe bound), and the assumptions are listed. The last line says whether all deadlines, requirements and constraints
     are met; the exit code is 1 if one of them is missed, an activation is lost, or a core is overloaded.
     """
-    settings = Settings(
-        dict(frequencies),
-        Fraction(str(scale)),
-        modes=dict(modes),
-        memory=Memory(memory),
-        communication=_COMMUNICATION.get(communication),
-        phases=dict(phases),
-    )
     result = analyze_files(
         paths,
-        settings,
+        replace(settings, modes=dict(modes)),
         with_sensitivity=with_sensitivity,
         with_priorities=with_priorities,
         all_methods=method == "all",

@@ -25,6 +25,7 @@ COMMANDS = {
     "migrate": "Convert models to another AMALTHEA version.",
     "rules": "List the rules of check.",
     "schema": "Print the JSON Schema of app.yaml.",
+    "simulate": "Simulate the system, once or for many variants and seeds.",
 }
 
 

@@ -71,14 +71,29 @@ def write_outputs(outputs: Iterable[Output], result: object, as_text: object | N
     UsageError : a file is one of those that the command reads.
     """
     for output in outputs:
-        if output.path is not None and resolved(output.path) in _inputs():
-            raise click.UsageError(f"--output {output.format}={output.path} would replace a file that is read.")
+        if output.path is not None:
+            refuse_input(output.path, f"--output {output.format}={output.path}")
     for output in outputs:
         shown = result if as_text is None or output.format != formats.TEXT else as_text
         if output.path is None:
             formats.write(output.format, shown, sys.stdout)
         else:
             _write_file(output.path, output.format, shown)
+
+
+def refuse_input(path: Path, option: str) -> None:
+    """Refuse a file for output that the command reads.
+
+    Parameters
+    ----------
+    option : how the user gave it
+
+    Raises
+    ------
+    UsageError : the file would be replaced.
+    """
+    if resolved(path) in _inputs():
+        raise click.UsageError(f"{option} would replace a file that is read.")
 
 
 def _inputs() -> set[Path]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TypeAlias
 
@@ -412,3 +412,21 @@ def inner_activities(activity: Activity) -> tuple[tuple[Activity, ...], ...]:
         case Switch():
             return (*(case.activities for case in activity.cases), activity.default or ())
     return ()
+
+
+def transformed(activities: tuple[Activity, ...], change: Callable[[Activity], Activity]) -> tuple[Activity, ...]:
+    """The activities with all changed that contain no others, also those inside groups, branches and loops."""
+    return tuple(_transformed(activity, change) for activity in activities)
+
+
+def _transformed(activity: Activity, change: Callable[[Activity], Activity]) -> Activity:
+    match activity:
+        case Group(activities=inner) | Loop(activities=inner):
+            return replace(activity, activities=transformed(inner, change))
+        case ProbabilitySwitch(branches=branches):
+            chances = tuple(replace(branch, activities=transformed(branch.activities, change)) for branch in branches)
+            return replace(activity, branches=chances)
+        case Switch(cases=cases, default=default):
+            changed = tuple(replace(case, activities=transformed(case.activities, change)) for case in cases)
+            return replace(activity, cases=changed, default=None if default is None else transformed(default, change))
+    return change(activity)

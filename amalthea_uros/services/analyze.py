@@ -12,9 +12,8 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import open_system
-from amalthea_uros.services.names import require
+from amalthea_uros.services.names import require, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
-from amalthea_uros.timing.phases import sources
 from amalthea_uros.timing.settings import Settings
 
 if TYPE_CHECKING:
@@ -92,11 +91,7 @@ def analyze_files(
     files, settings = as_paths(paths), settings or Settings()
     opened = open_system(files)
     system = opened.system
-    require("core", settings.frequencies, system.cores)
-    require("process", settings.factors, system.processes)
-    if settings.phases:
-        require("callback with a phase", settings.phases, sources(system))
-    require("mode label", settings.modes, [label.name for label in system.software.mode_labels])
+    require_settings(settings, system)
     analysis = analyze_system(system, settings)
     return AnalysisResult(
         paths=files,

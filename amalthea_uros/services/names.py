@@ -6,6 +6,9 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.phases import sources
+from amalthea_uros.timing.settings import Settings
 
 #: Longer lists of names are cut.
 _MOST_NAMES = 20
@@ -22,6 +25,15 @@ def require(kind: str, names: Iterable[str], known: Iterable[str]) -> None:
     for name in names:
         if name not in existing:
             raise InvalidArgumentError(f"unknown {kind} {name!r}; {_advice(kind, name, existing)}")
+
+
+def require_settings(settings: Settings, system: System) -> None:
+    """Refuse settings for what a system does not have; raises as `require`."""
+    require("core", settings.frequencies, system.cores)
+    require("process", settings.factors, system.processes)
+    if settings.phases:
+        require("callback with a phase", settings.phases, sources(system))
+    require("mode label", settings.modes, [label.name for label in system.software.mode_labels])
 
 
 def _advice(kind: str, name: str, existing: list[str]) -> str:

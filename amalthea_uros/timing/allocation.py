@@ -14,7 +14,7 @@ def allocated_cores(system: System) -> Mapping[str, frozenset[str]]:
     """The cores on which each process can run; processes without a core are left out."""
     found: dict[str, set[str]] = {}
     for task in system.mapping.tasks:
-        served = _cores(task.scheduler, system)
+        served = scheduler_cores(task.scheduler, system)
         found.setdefault(task.task, set()).update(core for core in served if not task.cores or core in task.cores)
     for isr in system.mapping.isrs:
         controller = system.interrupt_controllers.get(isr.controller)
@@ -22,7 +22,7 @@ def allocated_cores(system: System) -> Mapping[str, frozenset[str]]:
     return {process: frozenset(cores) for process, cores in found.items() if cores}
 
 
-def _cores(scheduler: str, system: System) -> tuple[str, ...]:
+def scheduler_cores(scheduler: str, system: System) -> tuple[str, ...]:
     """The cores of a scheduler: its own, or those of the nearest scheduler above that has cores."""
     return next((each.cores for each in upwards(scheduler, system) if each.cores), ())
 

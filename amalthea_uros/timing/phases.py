@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from math import prod
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.perf.activities import Activity, Call, Group, Loop, ProbabilitySwitch, Switch, Trigger, walk
+from amalthea_uros.perf.activities import Activity, Call, Trigger, transformed, walk
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
@@ -146,7 +147,13 @@ def _with_counters(system: System, change: Callable[[Process, Counter], Counter]
     """The system with the counters in the jobs of its processes changed."""
 
     def changed(process: Process) -> tuple[Activity, ...]:
-        return _activities(process.activities, lambda counter: change(process, counter))
+        return transformed(process.activities, partial(with_counter, process))
+
+    def with_counter(process: Process, activity: Activity) -> Activity:
+        match activity:
+            case Call(counter=Counter() as counter) | Trigger(counter=Counter() as counter):
+                return replace(activity, counter=change(process, counter))
+        return activity
 
     software = system.software
     return replace(
@@ -157,27 +164,3 @@ def _with_counters(system: System, change: Callable[[Process, Counter], Counter]
             isrs=tuple(replace(isr, activities=changed(isr)) for isr in software.isrs),
         ),
     )
-
-
-def _activities(activities: tuple[Activity, ...], change: Callable[[Counter], Counter]) -> tuple[Activity, ...]:
-    return tuple(_activity(activity, change) for activity in activities)
-
-
-def _activity(activity: Activity, change: Callable[[Counter], Counter]) -> Activity:
-    match activity:
-        case Call(counter=Counter() as counter) | Trigger(counter=Counter() as counter):
-            return replace(activity, counter=change(counter))
-        case Group(activities=inner) | Loop(activities=inner):
-            return replace(activity, activities=_activities(inner, change))
-        case ProbabilitySwitch(branches=branches):
-            return replace(
-                activity,
-                branches=tuple(replace(branch, activities=_activities(branch.activities, change)) for branch in branches),
-            )
-        case Switch(cases=cases, default=default):
-            return replace(
-                activity,
-                cases=tuple(replace(case, activities=_activities(case.activities, change)) for case in cases),
-                default=None if default is None else _activities(default, change),
-            )
-    return activity

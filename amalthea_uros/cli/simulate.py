@@ -1,0 +1,225 @@
+"""`amuros simulate`: what the system does in time, observed in one run or many."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from amalthea_uros.cli.output import Output, output_option, refuse_input, show_findings, write_outputs
+from amalthea_uros.cli.parsed import Parsed
+from amalthea_uros.cli.pictures import Pictures
+from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
+from amalthea_uros.report.wording import counted
+from amalthea_uros.services.campaign.run import Outcome, Record, count_runs
+from amalthea_uros.services.campaign.tables import table_format, write_table
+from amalthea_uros.services.changes import sweep as sweeping
+from amalthea_uros.services.changes.change import Change
+from amalthea_uros.services.simulate import CampaignResult, plan_simulation, run_simulation, simulate_campaign
+from amalthea_uros.simulate.options import Mode, Options
+from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import Time, parse_time
+
+#: As a shell reports a process that Ctrl-C ended: 128 and the number of the signal.
+_INTERRUPTED = 130
+
+_FILE = click.Path(path_type=Path, dir_okay=False)
+
+
+def _duration(text: str) -> Time:
+    duration = parse_time(text)
+    if duration <= 0:
+        raise ValueError("a duration must be greater than zero")
+    return duration
+
+
+def _window(text: str) -> tuple[Time, Time]:
+    start, separator, end = text.partition("..")
+    if not separator:
+        raise ValueError(f"{text!r} is not of the form FROM..TO; an example: 10ms..20ms")
+    times = parse_time(start), parse_time(end)
+    if not 0 <= times[0] < times[1]:
+        raise ValueError(f"{text!r} is not a range of times from 0 on")
+    return times
+
+
+@click.command("simulate")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL_OR_YAML...")
+@click.option(
+    "--duration",
+    type=Parsed("TIME", _duration),
+    default="1 s",
+    show_default=True,
+    help="Model time of a run, e.g. 5min.",
+)
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all random values.")
+@click.option(
+    "--mode",
+    type=click.Choice([str(mode) for mode in Mode]),
+    default=str(Mode.SAMPLED),
+    show_default=True,
+    help="How values that vary are chosen: at random, or always the longest demand and shortest distance (worst), the contrary "
+    "(best), or the means (average).",
+)
+@set_option
+@settings_options
+@click.option("--metrics", "with_metrics", is_flag=True, help="Show minimum, mean and maximum of all metrics of each process.")
+@click.option(
+    "--trace",
+    "traces",
+    multiple=True,
+    type=_FILE,
+    metavar="FILE",
+    help="Write the events to a file, of which the suffix says the format, e.g. run.btf; may be repeated.",
+)
+@click.option(
+    "--trace-window", type=Parsed("FROM..TO", _window), help="Write only the events of this part of the run, e.g. 10ms..20ms."
+)
+@click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what all processes do in a part of the run, as SVG.")
+@click.option(
+    "--timeline",
+    "timelines",
+    multiple=True,
+    type=Assignment("PROCESS=FILE", Path),
+    help="Draw the states of a process in a part of the run, as SVG; may be repeated.",
+)
+@click.option(
+    "--histogram",
+    "histograms",
+    multiple=True,
+    type=Assignment("NAME=FILE", Path),
+    help="Draw the response times of a process, the latencies of a chain, or another of its quantities, e.g. "
+    "Task.start_to_start=start.svg; may be repeated.",
+)
+@click.option(
+    "--window",
+    type=Parsed("FROM..TO", _window),
+    help="Part of the run for --gantt and --timeline; default: around the job that comes closest to its deadline.",
+)
+@click.option(
+    "--sweep",
+    "sweeps",
+    multiple=True,
+    type=Parsed("OBJECT.KEY=VALUES", sweeping.parse_sweep),
+    help=f"Simulate with each of several values, a range or a list, e.g. {sweeping.EXAMPLE}; if repeated, with all combinations.",
+)
+@click.option(
+    "--runs",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    help="Number of runs of each variant, with the seeds from --seed on.",
+)
+@click.option("--jobs", type=click.IntRange(min=1), help="Number of runs at the same time; default: one for each core.")
+@click.option(
+    "--cluster", metavar="ADDRESS", help="Execute the runs on the Dask cluster with this scheduler, e.g. tcp://host:8786."
+)
+@click.option("--table", type=_FILE, metavar="FILE", help="Write a row for each run to a .csv, .json or .parquet file.")
+@output_option(CampaignResult)
+def command(
+    paths: tuple[Path, ...],
+    duration: Time,
+    seed: int,
+    mode: str,
+    changes: tuple[Change, ...],
+    settings: Settings,
+    with_metrics: bool,
+    traces: tuple[Path, ...],
+    trace_window: tuple[Time, Time] | None,
+    gantt: Path | None,
+    timelines: tuple[tuple[str, Path], ...],
+    histograms: tuple[tuple[str, Path], ...],
+    window: tuple[Time, Time] | None,
+    sweeps: tuple[sweeping.Sweep, ...],
+    runs: int,
+    jobs: int | None,
+    cluster: str | None,
+    table: Path | None,
+    outputs: tuple[Output, ...],
+) -> None:
+    """Simulate the system, and show what was observed: response times, loads, latencies, and missed limits.
+
+    MODEL_OR_YAML is an app.yaml, one or more .amxmi files, or a folder of .amxmi files. Runs with the same seed are equal. What was
+    observed is no bound: see `amuros analyze` for those. The exit code is 1 if a limit is missed, an activation is lost, or a run
+    fails; with Ctrl-C, the runs that are finished are shown and the exit code is 130.
+    """
+    is_campaign = bool(sweeps) or runs > 1
+    pictures = Pictures(gantt, timelines, histograms, window)
+    _check_targets(table, traces, pictures)
+    if is_campaign and (traces or pictures.paths):
+        raise click.UsageError("traces and pictures are made of a single run, without --sweep and --runs")
+    if trace_window is not None and not traces:
+        raise click.UsageError("--trace-window needs --trace FILE")
+    traced = (trace_window or (0, duration)) if traces else None
+    options = Options(duration=duration, seed=seed, mode=Mode(mode), settings=settings, traced=traced)
+    if is_campaign:
+        campaign = _campaign(paths, options, changes, sweeps, runs, jobs, cluster)
+        _show_campaign(campaign, table, outputs)
+        sys.exit(_campaign_code(campaign))
+    plan = plan_simulation(paths, options, changes)
+    pictures.check(plan)
+    result = run_simulation(plan, traces, with_metrics=with_metrics)
+    show_findings(result.findings)
+    _write_table(table, [result.simulation.record()])
+    write_outputs(outputs, result)
+    pictures.write(result)
+    sys.exit(1 if result.is_failed else 0)
+
+
+def _check_targets(table: Path | None, traces: Sequence[Path], pictures: Pictures) -> None:
+    """Refuse files that cannot be written before the simulation, which may take long."""
+    for path in (*traces, *pictures.paths):
+        refuse_input(path, str(path))
+    if table is not None:
+        refuse_input(table, f"--table {table}")
+        table_format(table)
+
+
+def _campaign(
+    paths: Sequence[Path],
+    options: Options,
+    changes: Sequence[Change],
+    sweeps: Sequence[sweeping.Sweep],
+    runs: int,
+    jobs: int | None,
+    cluster: str | None,
+) -> CampaignResult:
+    """Execute a campaign, with a progress bar on a terminal."""
+    is_hidden = not sys.stderr.isatty()
+    with click.progressbar(length=count_runs(sweeps, runs), label="Simulating", file=sys.stderr, hidden=is_hidden) as bar:
+
+        def advance(_outcome: Outcome) -> None:
+            bar.update(1)
+
+        return simulate_campaign(
+            paths,
+            options,
+            changes=changes,
+            sweeps=sweeps,
+            repetitions=runs,
+            workers=jobs,
+            cluster=cluster,
+            on_outcome=advance,
+        )
+
+
+def _show_campaign(result: CampaignResult, table: Path | None, outputs: Sequence[Output]) -> None:
+    show_findings(result.findings)
+    _write_table(table, result.rows)
+    write_outputs(outputs, result)
+    if not result.is_complete:
+        finished = f"{len(result.outcomes):,} of {counted(result.planned, 'run')}"
+        click.echo(f"interrupted: {finished} finished", err=True)
+
+
+def _campaign_code(result: CampaignResult) -> int:
+    if not result.is_complete:
+        return _INTERRUPTED
+    return 1 if result.failed or result.missed else 0
+
+
+def _write_table(path: Path | None, rows: Sequence[Record]) -> None:
+    if path is not None:
+        write_table(path, rows)

@@ -1,0 +1,20 @@
+"""A campaign for programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amalthea_uros.report.findings import finding_json, joined
+from amalthea_uros.services.simulate import CampaignResult
+
+
+def content(result: CampaignResult) -> dict[str, Any]:
+    """All runs, each with its values."""
+    return {
+        "model": joined(result.paths),
+        "findings": [finding_json(finding) for finding in result.findings],
+        "duration_ps": result.options.duration,
+        "mode": result.options.mode,
+        "planned_runs": result.planned,
+        "runs": result.rows,
+    }

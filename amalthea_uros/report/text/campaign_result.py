@@ -1,0 +1,48 @@
+"""A campaign for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.wording import counted
+from amalthea_uros.services.campaign.run import Outcome
+from amalthea_uros.services.simulate import CampaignResult, missed_in
+from amalthea_uros.units import time_text
+
+#: More runs are for a table in a file.
+_SHOWN = 50
+
+
+def write(result: CampaignResult, terminal: Terminal) -> None:
+    """Write the runs with what was observed in them, and how many of them missed something or failed."""
+    shown = result.outcomes[:_SHOWN]
+    targets = list(dict.fromkeys(change.target for outcome in shown for change in outcome.run.changes))
+    rows = [(outcome.run.number, outcome.run.seed, *_values(outcome, targets), _observed(outcome)) for outcome in shown]
+    terminal.table(("run", "seed", *targets, "observed"), rows, right=range(2 + len(targets)))
+    if more := len(result.outcomes) - len(shown):
+        terminal.line(f"  {counted(more, 'more run')} not shown; write all to a file with --table FILE")
+    terminal.heading(_closing_line(result))
+
+
+def _values(outcome: Outcome, targets: list[str]) -> Iterator[str]:
+    values = {change.target: change.value for change in outcome.run.changes}
+    return (values.get(target, "") for target in targets)
+
+
+def _observed(outcome: Outcome) -> str:
+    if outcome.error:
+        return f"failed: {outcome.error}"
+    lost = outcome.record.get("lost_activations")
+    texts = [f"missed: {', '.join(missed)}"] if (missed := missed_in(outcome.record)) else []
+    texts += [f"lost: {counted(lost, 'activation')}"] if isinstance(lost, int) and lost else []
+    return "; ".join(texts) or "nothing missed"
+
+
+def _closing_line(result: CampaignResult) -> str:
+    finished = len(result.outcomes)
+    runs = counted(finished, "run") if result.is_complete else f"{finished:,} of {counted(result.planned, 'run')}"
+    duration = time_text(result.options.duration)
+    failures = [f"{counted(len(result.failed), 'run')} failed"] if result.failed else []
+    missed = f"limits missed or activations lost in {len(result.missed):,}" if result.missed else "nothing missed"
+    return f"Observed in {runs} of {duration} each: {'; '.join([missed, *failures])}; what was not observed can still occur"

@@ -1,0 +1,1 @@
+"""Campaigns: many runs of the same job with other values and seeds, and the table of their results."""

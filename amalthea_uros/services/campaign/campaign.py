@@ -1,0 +1,45 @@
+"""The execution of a campaign."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from itertools import islice
+
+from amalthea_uros.services.campaign.executors import Executor, serial
+from amalthea_uros.services.campaign.run import Job, Outcome, Run
+
+#: Chunks for each worker: several, so that all end at about the same time, but not thousands, of which each must be sent.
+_CHUNKS_PER_WORKER = 32
+#: What an interruption may lose.
+_LARGEST_CHUNK = 16
+
+
+def run_campaign(job: Job, runs: Sequence[Run], executor: Executor = serial) -> Generator[Outcome]:
+    """Execute the runs; each outcome as soon as it is there, so not in the order of the runs.
+
+    A run that fails has an outcome, too. To stop early, close the iterator: runs that are not finished are given up.
+    """
+    with executor(job) as workers:
+        chunks = _chunks(runs, workers.count)
+        pending: dict[Future[list[Outcome]], Sequence[Run]] = {}
+        while True:
+            for chunk in islice(chunks, workers.ahead - len(pending)):
+                pending[workers.submit(chunk)] = chunk
+            if not pending:
+                return
+            for future in wait(pending, return_when=FIRST_COMPLETED).done:
+                yield from _outcomes(future, pending.pop(future))
+
+
+def _chunks(runs: Sequence[Run], workers: int) -> Iterator[Sequence[Run]]:
+    size = 1 if workers == 1 else min(_LARGEST_CHUNK, -(-len(runs) // (workers * _CHUNKS_PER_WORKER)) or 1)
+    return (runs[start : start + size] for start in range(0, len(runs), size))
+
+
+def _outcomes(future: Future[list[Outcome]], runs: Sequence[Run]) -> list[Outcome]:
+    """The outcomes of some runs, also if the worker that executed them is gone."""
+    try:
+        return future.result()
+    except Exception as error:
+        return [Outcome(run, {}, f"the worker failed: {type(error).__name__}: {error}") for run in runs]

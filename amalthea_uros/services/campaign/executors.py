@@ -1,0 +1,193 @@
+"""Where runs are executed: here, in processes on this computer, or on a Dask cluster."""
+
+from __future__ import annotations
+
+import pickle
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from functools import lru_cache
+from multiprocessing import active_children, get_context
+from typing import Any, TypeAlias
+
+from amalthea_uros._internal.failures import failure
+from amalthea_uros._version import __version__
+from amalthea_uros.errors import AmurosError, InvalidArgumentError
+from amalthea_uros.services.campaign.run import Job, Outcome, Run
+
+
+@dataclass(frozen=True, slots=True)
+class Workers:
+    """What executes runs.
+
+    Attributes
+    ----------
+    count : of the runs that are executed at the same time
+    ahead : how many calls of `submit` may be open, so that nobody waits for work
+    """
+
+    count: int
+    ahead: int
+    submit: Callable[[Sequence[Run]], Future[list[Outcome]]]
+
+
+#: Provides workers for a job, and releases them in the end, also when somebody interrupts.
+Executor: TypeAlias = Callable[[Job], AbstractContextManager[Workers]]
+
+
+@contextmanager
+def serial(job: Job) -> Iterator[Workers]:
+    """Run everything in this process, one run after the other."""
+
+    def submit(runs: Sequence[Run]) -> Future[list[Outcome]]:
+        future: Future[list[Outcome]] = Future()
+        future.set_result(_execute(job, runs))
+        return future
+
+    yield Workers(1, 1, submit)
+
+
+def processes(count: int) -> Executor:
+    """Run in processes on this computer.
+
+    The processes are spawned rather than forked: a fork copies locks that threads of numpy or of the caller hold at that moment, and
+    could wait for them for ever. A script that uses this needs the usual `if __name__ == "__main__":`.
+    """
+
+    @contextmanager
+    def provide(job: Job) -> Iterator[Workers]:
+        pool = _Pool(count, pickle.dumps(job))
+        try:
+            yield Workers(count, 2 * count, pool.submit)
+        finally:
+            pool.close()
+
+    return provide
+
+
+class _Pool:
+    """Processes that are replaced if one of them dies, for example for lack of memory."""
+
+    def __init__(self, count: int, job: bytes) -> None:
+        self._count, self._job = count, job
+        self._others = set(active_children())
+        self._pool = self._start()
+
+    def _start(self) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(self._count, get_context("spawn"), initializer=_install, initargs=(self._job,))
+
+    def submit(self, runs: Sequence[Run]) -> Future[list[Outcome]]:
+        """Have some runs executed."""
+        try:
+            return self._pool.submit(_execute_installed, runs)
+        except BrokenProcessPool:
+            self._pool = self._start()
+            return self._pool.submit(_execute_installed, runs)
+
+    def close(self) -> None:
+        """End the processes, also those that still work."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        for process in set(active_children()) - self._others:
+            process.terminate()
+
+
+#: The job of a worker process: it is sent once, not with each run.
+_installed: list[Job] = []
+
+
+def _install(job: bytes) -> None:
+    """Prepare a worker process. Ctrl-C reaches it, too: it is up to the process that started it what to do."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _installed.append(pickle.loads(job))
+
+
+def _execute_installed(runs: Sequence[Run]) -> list[Outcome]:
+    return _execute(_installed[0], runs)
+
+
+def cluster(address: str) -> Executor:
+    """Run on a Dask cluster, on whose workers the same version of this package is installed.
+
+    Parameters
+    ----------
+    address : of the scheduler, such as "tcp://10.0.0.1:8786"
+    """
+
+    @contextmanager
+    def provide(job: Job) -> Iterator[Workers]:
+        with _connected(address) as client:
+            threads = sum(client.nthreads().values())
+            if not threads:
+                raise InvalidArgumentError(
+                    f"the cluster at {address!r} has no workers; start some with 'dask worker {address}'"
+                )
+            _check_versions(client)
+            shared = client.scatter(pickle.dumps(job), broadcast=True, hash=False)
+            executor = client.get_executor(pure=False)
+            try:
+                # The way to a cluster is longer than to a process, so more work is kept there.
+                yield Workers(threads, 4 * threads, lambda runs: executor.submit(_execute_shared, shared, runs))
+            finally:
+                executor.shutdown(wait=False)
+
+    return provide
+
+
+def _connected(address: str) -> Any:
+    """A client of the cluster."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise InvalidArgumentError(
+            "a cluster needs the package 'distributed'; install it with: pip install amuros[cluster]"
+        ) from None
+    try:
+        return Client(address, timeout=10)
+    except (OSError, ValueError) as error:
+        raise InvalidArgumentError(
+            f"no Dask scheduler answers at {address!r}: {error}; start one with 'dask scheduler'"
+        ) from None
+
+
+def _check_versions(client: Any) -> None:
+    """Refuse workers with another version, whose results might differ."""
+    try:
+        versions = client.run(_version)
+    except ImportError:
+        raise InvalidArgumentError("amuros is not installed on the workers of the cluster; install it there, too") from None
+    for worker, version in versions.items():
+        if version != __version__:
+            raise InvalidArgumentError(
+                f"the worker {worker} has amuros {version}, not {__version__}; install the same version there"
+            )
+
+
+def _version() -> str:
+    return __version__
+
+
+@lru_cache(maxsize=1)
+def _received(job: bytes) -> Job:
+    found: Job = pickle.loads(job)
+    return found
+
+
+def _execute_shared(job: bytes, runs: Sequence[Run]) -> list[Outcome]:
+    return _execute(_received(job), runs)
+
+
+def _execute(job: Job, runs: Sequence[Run]) -> list[Outcome]:
+    return [_outcome(job, run) for run in runs]
+
+
+def _outcome(job: Job, run: Run) -> Outcome:
+    """What comes out of a run; that one fails does not concern the others."""
+    try:
+        return Outcome(run, dict(job(run)))
+    except (AmurosError, ValueError) as error:
+        return Outcome(run, {}, str(error))
+    except Exception as error:
+        return Outcome(run, {}, failure(error))

@@ -1,0 +1,1 @@
+"""Changes of a system: single values of its objects, written as `OBJECT.KEY=VALUE`."""

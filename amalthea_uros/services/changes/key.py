@@ -1,0 +1,117 @@
+"""What can be changed of an object, and where in a system it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Generic, NamedTuple, TypeVar
+
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.settings import Settings
+
+V = TypeVar("V")
+
+#: The text of a value that a model leaves open.
+UNSET = "not set"
+
+
+class Configuration(NamedTuple):
+    """A system and the settings that replace or add to its values."""
+
+    system: System
+    settings: Settings
+
+
+@dataclass(frozen=True, slots=True)
+class Key(Generic[V]):
+    """A property of objects that can be changed.
+
+    Attributes
+    ----------
+    parse : the value of a text; ValueError for a wrong one
+    show : the present value of a named object, as text
+    set : the configuration with another value for a named object; InvalidArgumentError if it has no place for one
+    """
+
+    parse: Callable[[str], V]
+    show: Callable[[Configuration, str], str]
+    set: Callable[[Configuration, str, V], Configuration]
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """Objects of a kind.
+
+    Attributes
+    ----------
+    name : of the kind, for messages
+    objects : the names of those in a system
+    """
+
+    name: str
+    objects: Callable[[System], Iterable[str]]
+    keys: Mapping[str, Key[Any]]
+
+
+class Place(NamedTuple):
+    """Where the objects of a kind are in a system.
+
+    Attributes
+    ----------
+    model : field of the system
+    collection : field of the model
+    identifier : field of the objects that has the name
+    """
+
+    model: str
+    collection: str
+    identifier: str = "name"
+
+    def find(self, system: System, name: str) -> Any:
+        """The object with a name, None if there is none."""
+        items = getattr(getattr(system, self.model), self.collection)
+        return next((item for item in items if getattr(item, self.identifier) == name), None)
+
+    def with_fields(self, system: System, name: str, **fields: Any) -> System:
+        """The system in which an object has other values."""
+        model: Any = getattr(system, self.model)
+        items = (
+            replace(item, **fields) if getattr(item, self.identifier) == name else item
+            for item in getattr(model, self.collection)
+        )
+        parts: dict[str, Any] = {self.model: replace(model, **{self.collection: tuple(items)})}
+        return replace(system, **parts)
+
+    def with_item(self, system: System, item: Any) -> System:
+        """The system with one more object."""
+        model: Any = getattr(system, self.model)
+        parts: dict[str, Any] = {self.model: replace(model, **{self.collection: (*getattr(model, self.collection), item)})}
+        return replace(system, **parts)
+
+
+TASKS = Place("software", "tasks")
+ISRS = Place("software", "isrs")
+RUNNABLES = Place("software", "runnables")
+MODE_LABELS = Place("software", "mode_labels")
+STIMULI = Place("stimuli", "stimuli")
+CLOCKS = Place("hardware", "clocks")
+OPERATING_SYSTEMS = Place("os", "systems")
+TASK_ALLOCATIONS = Place("mapping", "tasks", "task")
+ISR_ALLOCATIONS = Place("mapping", "isrs", "isr")
+
+
+def field_key(place: Place, field: str, parse: Callable[[str], V], text: Callable[[V], str] = str) -> Key[V]:
+    """The key for a field of the objects at a place."""
+
+    def show(configuration: Configuration, name: str) -> str:
+        value = getattr(place.find(configuration.system, name), field, None)
+        return UNSET if value is None else text(value)
+
+    def with_value(configuration: Configuration, name: str, value: V) -> Configuration:
+        if place.find(configuration.system, name) is None:
+            raise InvalidArgumentError(f"{name!r} is not mapped to a scheduler or interrupt controller, so it has no {field}")
+        fields: dict[str, Any] = {field: value}
+        return configuration._replace(system=place.with_fields(configuration.system, name, **fields))
+
+    return Key(parse, show, with_value)

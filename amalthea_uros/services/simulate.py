@@ -1,0 +1,354 @@
+"""Simulations of files, one or many, and of systems."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import closing, suppress
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.system import System
+from amalthea_uros.services.campaign.run import Outcome, Record, Run, plan_runs
+from amalthea_uros.services.campaign.sending import system_bytes, system_from
+from amalthea_uros.services.changes.apply import Difference, apply, describe
+from amalthea_uros.services.changes.change import Change, parse_change
+from amalthea_uros.services.changes.sweep import Sweep
+from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.names import require_settings
+from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.simulate.options import Mode, Options
+from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import Time, parse_time
+
+if TYPE_CHECKING:
+    from amalthea_uros.metamodel.model import Model
+    from amalthea_uros.services.campaign.executors import Executor
+    from amalthea_uros.simulate.results import Simulation
+    from amalthea_uros.trace.sinks import TraceSink
+    from amalthea_uros.trace.table import Entity
+
+    #: Opens what events are written to, when the entities of the trace are known.
+    OpenSink: TypeAlias = Callable[[Sequence[Entity]], TraceSink]
+
+#: The end of the columns with verdicts in a row of a table, the verdict that is a failure, and the column with lost activations.
+_VERDICT, _MISSED, _LOST = ".verdict", "observed_missed", "lost_activations"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationPlan:
+    """What is to be simulated.
+
+    Attributes
+    ----------
+    system : with the changes
+    options : with the changes of settings
+    differences : what the changes did
+    findings : problems found while reading the files
+    """
+
+    paths: tuple[Path, ...]
+    system: System
+    options: Options
+    differences: tuple[Difference, ...]
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationResult:
+    """The simulation of some files, with what it rests on.
+
+    Attributes
+    ----------
+    system : with the changes
+    options : with the changes of settings
+    differences : what the changes did
+    findings : problems found while reading the files, and what the simulation does not take into account
+    with_metrics : whether the metrics of all processes are shown
+    """
+
+    paths: tuple[Path, ...]
+    system: System
+    options: Options
+    simulation: Simulation
+    findings: tuple[Finding, ...]
+    differences: tuple[Difference, ...] = ()
+    with_metrics: bool = False
+
+    @property
+    def is_failed(self) -> bool:
+        """Whether a limit was observed as missed, or an activation was lost."""
+        return bool(self.simulation.missed or self.simulation.lost_activations)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignResult:
+    """Many simulations of some files.
+
+    Attributes
+    ----------
+    outcomes : in the order of the runs; those that were not finished when somebody interrupted are absent
+    planned : number of runs
+    findings : problems found while reading the files
+    """
+
+    paths: tuple[Path, ...]
+    options: Options
+    outcomes: tuple[Outcome, ...]
+    planned: int
+    findings: tuple[Finding, ...]
+
+    @property
+    def rows(self) -> list[Record]:
+        """The rows of a table of all runs."""
+        return [outcome.row() for outcome in self.outcomes]
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all runs were executed."""
+        return len(self.outcomes) == self.planned
+
+    @property
+    def failed(self) -> tuple[Outcome, ...]:
+        """The runs that could not be executed."""
+        return tuple(outcome for outcome in self.outcomes if outcome.error)
+
+    @property
+    def missed(self) -> tuple[Outcome, ...]:
+        """The runs in which a limit was observed as missed, or an activation was lost."""
+        return tuple(outcome for outcome in self.outcomes if missed_in(outcome.record) or outcome.record.get(_LOST))
+
+
+def missed_in(record: Record) -> list[str]:
+    """What was observed as missed, by the columns with verdicts."""
+    return [name.removesuffix(_VERDICT) for name, value in record.items() if name.endswith(_VERDICT) and value == _MISSED]
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationJob:
+    """Simulates a system with the changes and the seed of a run."""
+
+    system: System
+    options: Options
+    changes: tuple[Change, ...] = ()
+
+    def __call__(self, run: Run) -> Record:
+        """The observations of a run as a row of a table."""
+        changed = apply(self.system, self.options.settings, (*self.changes, *run.changes))
+        return _simulated(changed.system, replace(self.options, settings=changed.settings, seed=run.seed)).record()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _received_job, (system_bytes(self.system), self.options, self.changes)
+
+
+def _received_job(system: bytes, options: Options, changes: tuple[Change, ...]) -> SimulationJob:
+    return SimulationJob(system_from(system), options, changes)
+
+
+def plan_simulation(paths: StrPath | Iterable[StrPath], options: Options, changes: Sequence[Change] = ()) -> SimulationPlan:
+    """Read what is to be simulated, and change it.
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    InvalidArgumentError : the changes or settings name what does not exist, or are wrong.
+    """
+    files = as_paths(paths)
+    opened = open_system(files)
+    differences = describe(opened.system, options.settings, changes)
+    system, settings = apply(opened.system, options.settings, changes)
+    require_settings(settings, system)
+    return SimulationPlan(
+        paths=files,
+        system=system,
+        options=replace(options, settings=settings),
+        differences=differences,
+        findings=opened.findings,
+    )
+
+
+def run_simulation(
+    plan: SimulationPlan, trace_paths: Iterable[StrPath] = (), *, with_metrics: bool = False
+) -> SimulationResult:
+    """Simulate what was planned; parameters and errors as for `simulate_files`."""
+    simulation = _simulated(plan.system, plan.options, [*map(_trace_opener, trace_paths)])
+    return SimulationResult(
+        paths=plan.paths,
+        system=plan.system,
+        options=plan.options,
+        simulation=simulation,
+        findings=(*plan.findings, *simulation.findings),
+        differences=plan.differences,
+        with_metrics=with_metrics,
+    )
+
+
+def simulate_files(
+    paths: StrPath | Iterable[StrPath],
+    options: Options,
+    *,
+    changes: Sequence[Change] = (),
+    trace_paths: Iterable[StrPath] = (),
+    with_metrics: bool = False,
+) -> SimulationResult:
+    """Simulate an `app.yaml` or AMALTHEA models.
+
+    Parameters
+    ----------
+    changes : of the system and the settings, made before the run
+    trace_paths : files for the events; the suffix says which format
+    with_metrics : show the metrics of all processes
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    WriteError : a trace cannot be written.
+    InvalidArgumentError : the changes or settings name what does not exist or are wrong, or the format of a trace is not known.
+    """
+    return run_simulation(plan_simulation(paths, options, changes), trace_paths, with_metrics=with_metrics)
+
+
+def simulate(
+    subject: StrPath | Iterable[StrPath] | System | Model,
+    duration: str | Time,
+    *,
+    seed: int = 1,
+    mode: Mode | str = Mode.SAMPLED,
+    settings: Settings | None = None,
+    changes: Iterable[str | Change] = (),
+    trace_paths: Iterable[StrPath] = (),
+) -> Simulation:
+    """Simulate files, an AMALTHEA model, or a system.
+
+    Parameters
+    ----------
+    duration : model time, such as "5 min", or picoseconds
+    mode : how values that vary are chosen: "sampled", "worst", "best" or "average"
+    changes : such as "Executor_Task.period=2ms"
+    trace_paths : files for the events of the whole run; the suffix says which format
+
+    Raises
+    ------
+    ReadError, WriteError, InvalidArgumentError : as for `simulate_files`.
+    """
+    system = _system_of(subject)
+    parsed = [change if isinstance(change, Change) else parse_change(change) for change in changes]
+    system, settings = apply(system, settings or Settings(), parsed)
+    require_settings(settings, system)
+    time, openers = _duration(duration), [*map(_trace_opener, trace_paths)]
+    traced = (0, time) if openers else None
+    return _simulated(system, Options(duration=time, seed=seed, mode=_mode(mode), settings=settings, traced=traced), openers)
+
+
+def simulate_campaign(
+    paths: StrPath | Iterable[StrPath],
+    options: Options,
+    *,
+    changes: Sequence[Change] = (),
+    sweeps: Sequence[Sweep] = (),
+    repetitions: int = 1,
+    workers: int | None = None,
+    cluster: str | None = None,
+    on_outcome: Callable[[Outcome], None] | None = None,
+) -> CampaignResult:
+    """Simulate each variant of some files, several times with different seeds.
+
+    Ctrl-C ends the campaign early; the result has the runs that were finished.
+
+    Parameters
+    ----------
+    options : the seed is that of the first repetition
+    repetitions : runs of each variant
+    workers : runs at the same time on this computer; None: as many as there are cores
+    cluster : address of a Dask scheduler, on whose workers the runs are executed instead
+    on_outcome : called after each run
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    InvalidArgumentError : as for `simulate_files`; there are too many runs, or the cluster cannot be used.
+    """
+    from amalthea_uros.services.campaign.campaign import run_campaign
+
+    files = as_paths(paths)
+    runs = plan_runs(sweeps, repetitions, options.seed)
+    opened = open_system(files)
+    _check_changes(opened.system, options.settings, changes, sweeps)
+    job, executor = SimulationJob(opened.system, options, tuple(changes)), _executor(len(runs), workers, cluster)
+    outcomes: list[Outcome] = []
+    with suppress(KeyboardInterrupt), closing(run_campaign(job, runs, executor)) as finished:
+        for outcome in finished:
+            outcomes.append(outcome)
+            if on_outcome is not None:
+                on_outcome(outcome)
+    outcomes.sort(key=lambda outcome: outcome.run.number)
+    return CampaignResult(paths=files, options=options, outcomes=tuple(outcomes), planned=len(runs), findings=opened.findings)
+
+
+def _simulated(system: System, options: Options, sinks: Sequence[OpenSink] = ()) -> Simulation:
+    from amalthea_uros.simulate.system import simulate_system
+
+    return simulate_system(system, options, sinks)
+
+
+def _trace_opener(path: StrPath) -> OpenSink:
+    from amalthea_uros.trace.sinks import open_sink
+
+    return partial(open_sink, Path(path))
+
+
+def _check_changes(system: System, settings: Settings, changes: Sequence[Change], sweeps: Sequence[Sweep]) -> None:
+    """Refuse wrong names and values before the first run; of long sweeps the ends are tried."""
+    for values in ([], *([change] for sweep in sweeps for change in _ends(sweep))):
+        changed = apply(system, settings, (*changes, *values))
+        require_settings(changed.settings, changed.system)
+
+
+def _ends(sweep: Sweep) -> list[Change]:
+    changes = list(sweep.changes())
+    return [changes[0], changes[-1]]
+
+
+def _executor(runs: int, workers: int | None, cluster: str | None) -> Executor:
+    from amalthea_uros.services.campaign import executors
+
+    if cluster is not None:
+        return executors.cluster(cluster)
+    count = min(runs, _available_cores() if workers is None else workers)
+    return executors.processes(count) if count > 1 else executors.serial
+
+
+def _available_cores() -> int:
+    """The cores that this process may use; containers often have fewer than the computer."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _system_of(subject: StrPath | Iterable[StrPath] | System | Model) -> System:
+    if isinstance(subject, System):
+        return subject
+    from amalthea_uros.metamodel.model import Model
+
+    if isinstance(subject, Model):
+        from amalthea_uros.bridge.extract import extract
+
+        return extract(subject).system
+    return open_system(as_paths(subject)).system
+
+
+def _duration(duration: str | Time) -> Time:
+    if isinstance(duration, int):
+        return duration
+    try:
+        return parse_time(duration)
+    except ValueError as error:
+        raise InvalidArgumentError(f"the duration {error}") from None
+
+
+def _mode(mode: Mode | str) -> Mode:
+    if mode not in tuple(Mode):
+        raise InvalidArgumentError(f"unknown mode {mode!r}; expected one of {', '.join(Mode)}")
+    return Mode(mode)

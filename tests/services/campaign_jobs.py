@@ -1,0 +1,36 @@
+"""Jobs for tests of campaigns, in a module that other processes can import."""
+
+import os
+import signal
+import time
+
+from amalthea_uros.errors import InvalidArgumentError
+
+
+def square(run):
+    return {"square": run.seed**2, "process": os.getpid()}
+
+
+def slow_first(run):
+    time.sleep(0.3 if run.number == 1 else 0)
+    return {"number": run.number}
+
+
+def failing(run):
+    if run.seed % 3 == 0:
+        raise InvalidArgumentError("a multiple of three")
+    if run.seed % 3 == 1:
+        raise KeyError("unexpected")
+    return {"seed was": run.seed}
+
+
+def dying(run):
+    if run.number == 1:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"number": run.number}
+
+
+def endless(run):
+    if run.number > 2:
+        time.sleep(600)
+    return {"number": run.number}
