@@ -81,22 +81,25 @@ class Reader:
     def _rows(self, lines: Sequence[str], start: int) -> list[Row]:
         """The rows of some lines, of which the first one has a number; what is unusual is left to other methods."""
         rows: list[Row] = []
-        numbers = self._numbers
+        # Names of its own, because this loop is where reading takes its time.
+        numbers, last, limit = self._numbers, self._last, MAX // self._header.scale
         for line, text in enumerate(lines, start):
             try:
                 time_field, source, job_field, kind, target, instance_field, event, *notes = text.split(",")
                 time, job, instance = int(time_field), int(job_field or 0), int(instance_field or 0)
             except ValueError:
                 self._read_other(line, text)
+                limit = MAX // self._header.scale
                 continue
             pattern = numbers.get((source, kind, target, event))
             if pattern is None:
                 pattern = self._new_pattern(source, kind, target, event, Place(line, None, text.rstrip()))
-            if not (self._last <= time <= MAX // self._header.scale and -1 <= job <= MAX and -1 <= instance <= MAX):
-                self._report_range(time, Place(line, 1, text.rstrip()))
+            if not (last <= time <= limit and -1 <= job <= MAX and -1 <= instance <= MAX):
+                self._report_range(time, last, Place(line, 1, text.rstrip()))
             elif pattern != _LEFT_OUT:
-                self._last = time
+                last = time
                 rows.append((time, pattern, job, instance, self._note(notes[0], pattern) if notes else NO_NOTE, line))
+        self._last = last
         return rows
 
     def _note(self, field: str, pattern: int) -> int:
@@ -149,8 +152,8 @@ class Reader:
                 message = f"the {_FIELDS[wrong]} is not a whole number; this line is ignored"
                 self._problems.add("TRC002", Severity.ERROR, message, Place(line, column, text))
 
-    def _report_range(self, time: int, place: Place) -> None:
-        if 0 <= time < self._last:
+    def _report_range(self, time: int, last: int, place: Place) -> None:
+        if 0 <= time < last:
             message = "the time is less than that of an event before; this line is ignored"
             self._problems.add("TRC004", Severity.ERROR, message, place, "Sort the events by time.")
         else:

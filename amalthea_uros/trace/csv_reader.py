@@ -6,6 +6,7 @@ import csv
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.trace.csv_format import EVENT_NAMES, HEADER
@@ -14,6 +15,9 @@ from amalthea_uros.trace.problems import Place, Problems
 from amalthea_uros.trace.row_tables import BLOCK, MAX, NumberedTable, Pattern, Row, note_of, numbered_table, tables_of
 from amalthea_uros.trace.table import Entity, EntityKind, EventTable
 from amalthea_uros.trace.text_lines import opened_text
+
+if TYPE_CHECKING:
+    from _csv import Reader as _CsvReader
 
 _KINDS = {kind.value: kind for kind in EntityKind}
 
@@ -49,11 +53,13 @@ class Reader:
             if next(reader, None) != HEADER:
                 message = f"the first line is not the header of a trace: {','.join(HEADER)}"
                 self._problems.add("TRC005", Severity.WARNING, message, Place(1, 1), "Check that this is a trace.")
-            lines = ((reader.line_num, fields) for fields in reader)
-            while block := list(islice(lines, BLOCK)):
-                rows = [row for line, fields in block if (row := self._row(line, fields)) is not None]
-                if rows:
-                    yield numbered_table(rows, self._patterns, self._index, scale=1)
+            while rows := self._rows(reader):
+                yield numbered_table(rows, self._patterns, self._index, scale=1)
+
+    def _rows(self, reader: _CsvReader) -> list[Row]:
+        """The next rows, none at the end."""
+        read = (self._row(reader.line_num, fields) for fields in reader)
+        return list(islice(filter(None, read), BLOCK))
 
     def _row(self, line: int, fields: Sequence[str]) -> Row | None:
         try:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 #: The largest number in a column.
 MAX = 2**63 - 1
 #: So many lines are read at a time.
-BLOCK = 1 << 16
+BLOCK = 1 << 13
 
 #: What the lines with the same words have in common: kind of event, source, target.
 Pattern: TypeAlias = tuple[EventKind, int, int]

@@ -18,7 +18,7 @@ from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.trace.table import Entity, EventTable
 
 #: Only that many rows are formatted at a time, which bounds the memory.
-_ROWS = 1 << 16
+_ROWS = 1 << 13
 #: Much faster than the default, and traces are compressed to a few percent anyway.
 _COMPRESSION = 4
 
