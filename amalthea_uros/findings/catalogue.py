@@ -17,6 +17,7 @@ FAMILIES = {
     "EXT": "Extracting the performance model",
     "ANA": "Analysing response times",
     "CHN": "Analysing event chains",
+    "TRC": "Reading, checking and writing traces",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",
 }

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from amalthea_uros.trace.protobuf import fixed64, integer, message, text
 from amalthea_uros.trace.sinks import WriteOptions
 from amalthea_uros.trace.table import Entity, EntityKind, EventTable
-from amalthea_uros.trace.timeline import STATES, Change, Mark, Timeline
+from amalthea_uros.trace.timeline import SHOWN_STATES, Change, Mark, Timeline
 
 # Numbers of fields; the names are those of the messages.
 _TRACE_PACKET = 1
@@ -31,7 +31,7 @@ _CORES, _PROCESSES = 1, 2
 _GROUPS = {_CORES: "Cores", _PROCESSES: "Tasks and ISRs"}
 #: The tracks and the names of entities have numbers from here on; before them are the groups and the states.
 _FIRST = 16
-_STATES = {state: number for number, state in enumerate(dict.fromkeys(STATES.values()), 1)}
+_STATES = {state: number for number, state in enumerate(SHOWN_STATES, 1)}
 
 
 class TraceEncoder:

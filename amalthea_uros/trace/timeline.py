@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from enum import Enum
 from typing import NamedTuple
 
+from amalthea_uros.trace.charts import ON_CORE, PROCESS
 from amalthea_uros.trace.table import EventKind, EventTable
 from amalthea_uros.trace.vocabulary import ENTERING, LEAVING
 
@@ -49,21 +50,10 @@ class Mark(NamedTuple):
     step: int = 0
 
 
-#: The states in which the transitions of processes end.
-STATES = {
-    EventKind.ACTIVATE: "active",
-    EventKind.START: "running",
-    EventKind.PREEMPT: "ready",
-    EventKind.RESUME: "running",
-    EventKind.POLL: "polling",
-    EventKind.RUN: "running",
-    EventKind.PARK: "parking",
-    EventKind.POLL_PARKING: "polling",
-    EventKind.RELEASE_PARKING: "ready",
-    EventKind.WAIT: "waiting",
-    EventKind.RELEASE: "ready",
-}
-_ON_CORE = frozenset({"running", "polling"})
+#: The states after the transitions of processes; what a terminated one does is not shown.
+_STATES = {kind: after for kind, (_, after) in PROCESS.items() if after != "terminated"}
+#: The names of all states that are shown.
+SHOWN_STATES = tuple(dict.fromkeys(_STATES.values()))
 
 
 class _Job:
@@ -90,7 +80,7 @@ class Timeline:
         columns = [column.tolist() for column in table.to_dict().values()]
         for time, kind, source, source_instance, target, instance, note in zip(*columns, strict=True):
             self._last = time
-            if kind in STATES or kind == EventKind.TERMINATE:
+            if kind in _STATES or kind == EventKind.TERMINATE:
                 if kind in LEAVING:
                     yield from self._leave_core(time, source, target)
                 yield from self._change_state(time, kind, target, instance)
@@ -131,7 +121,7 @@ class Timeline:
         if kind == EventKind.TERMINATE:
             del jobs[instance]
         else:
-            job.state = STATES[EventKind(kind)]
+            job.state = _STATES[EventKind(kind)]
         if is_shown and jobs:
             yield from self._show(time, process, next(iter(jobs.values())))
 
@@ -153,10 +143,10 @@ class Timeline:
 
     def _is_visible(self, process: int, job: _Job) -> bool:
         """Whether the runnables of a job are on the track of its process."""
-        return job.state in _ON_CORE and next(iter(self._jobs[process].values())) is job
+        return job.state in ON_CORE and next(iter(self._jobs[process].values())) is job
 
     def _show(self, time: int, process: int, job: _Job) -> Iterator[Mark]:
-        runnables = job.runnables if job.state in _ON_CORE else []
+        runnables = job.runnables if job.state in ON_CORE else []
         self._depths[process] = 1 + len(runnables)
         yield Mark(time, process, Change.BEGIN, job.state)
         for runnable in runnables:
