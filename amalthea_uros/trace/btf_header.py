@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.btf_names import unescape
+from amalthea_uros.trace.btf_names import BLANKS, unescape
 from amalthea_uros.trace.btf_writer import TIMESCALES
 from amalthea_uros.trace.entity_index import EntityIndex
 from amalthea_uros.trace.problems import Place, Problems
@@ -40,7 +40,7 @@ class Header:
 
     def read(self, line: str, place: Place) -> None:
         """Read a comment or a parameter; unknown ones are ignored, as the standard wants it."""
-        keyword, _, value = line[1:].strip().partition(" ")
+        keyword, _, value = line[1:].strip(BLANKS).partition(" ")
         if keyword.startswith("-"):
             keyword, value = self._table, f"{keyword[1:]} {value}"
         keyword = keyword.lower()
@@ -48,10 +48,10 @@ class Header:
         if keyword in _TABLES:
             self._table = _TABLES[keyword]
         elif keyword == "timescale":
-            self._set_timescale(value.strip(), place)
+            self._set_timescale(value.strip(BLANKS), place)
         elif keyword.endswith("mapping"):
-            first, _, second = value.strip().partition(" ")
-            self._map(keyword, first, second.strip())
+            first, _, second = value.strip(BLANKS).partition(" ")
+            self._map(keyword, first, second.strip(BLANKS))
 
     def report_missing(self, place: Place) -> None:
         """Report what should have been said before the first event, which is at a place."""

@@ -7,6 +7,9 @@ from __future__ import annotations
 
 import re
 
+#: What may be around fields and at the ends of lines; other white space belongs to names.
+BLANKS = " \t\r\n"
+
 _UNWRITABLE = re.compile(r"[,\x00-\x1f\x7f]|^ | $|%(?=[0-9A-F]{2})")
 _ESCAPED = re.compile(r"%([0-9A-F]{2})")
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.trace.btf_header import Header
+from amalthea_uros.trace.btf_names import BLANKS
 from amalthea_uros.trace.entity_index import EntityIndex
 from amalthea_uros.trace.problems import Place, Problems
 from amalthea_uros.trace.row_tables import BLOCK, MAX, NumberedTable, Pattern, Row, note_of, numbered_table, tables_of
@@ -93,9 +94,9 @@ class Reader:
                 continue
             pattern = numbers.get((source, kind, target, event))
             if pattern is None:
-                pattern = self._new_pattern(source, kind, target, event, Place(line, None, text.rstrip()))
+                pattern = self._new_pattern(source, kind, target, event, Place(line, None, text.rstrip(BLANKS)))
             if not (last <= time <= limit and -1 <= job <= MAX and -1 <= instance <= MAX):
-                self._report_range(time, last, Place(line, 1, text.rstrip()))
+                self._report_range(time, last, Place(line, 1, text.rstrip(BLANKS)))
             elif pattern != _LEFT_OUT:
                 last = time
                 rows.append((time, pattern, job, instance, self._note(notes[0], pattern) if notes else NO_NOTE, line))
@@ -103,14 +104,14 @@ class Reader:
         return rows
 
     def _note(self, field: str, pattern: int) -> int:
-        text = field.strip()
+        text = field.strip(BLANKS)
         return note_of(text, self._patterns[pattern][0], self._index, self._header.name(text))
 
     def _new_pattern(self, source: str, kind: str, target: str, event: str, place: Place) -> int:
         """The number of a pattern, by fields as they are in the file."""
         if not self._numbers:
             self._header.report_missing(place)
-        pattern = self._resolved(source.strip(), kind.strip(), target.strip(), event.strip(), place)
+        pattern = self._resolved(source.strip(BLANKS), kind.strip(BLANKS), target.strip(BLANKS), event.strip(BLANKS), place)
         if pattern is None:
             number = _LEFT_OUT
         else:
@@ -138,7 +139,7 @@ class Reader:
 
     def _read_other(self, line: int, text: str) -> None:
         """Read a line that is not an event."""
-        text = text.rstrip()
+        text = text.rstrip(BLANKS)
         if text.startswith("#"):
             self._header.read(text, Place(line, 1, text))
         elif text:

@@ -49,7 +49,7 @@ class TraceEncoder:
         lines.append(f"#timescale {self._options.timescale}")
         if self._options.numeric:
             lines += [f"#typeMapping {number} {kind}" for number, kind in enumerate(_TYPES)]
-        return _joined(lines)
+        return _joined(lines + self._mappings_of_new_entities())
 
     def encode(self, table: EventTable) -> bytes:
         """The lines of some events, after the names and types of new entities.

@@ -97,7 +97,7 @@ class Timeline:
         """The ends of the slices that are still open after the last event."""
         for track in self._executing:
             yield Mark(self._last, track, Change.END)
-        for process in self._depths:
+        for process in list(self._depths):
             yield from self._hide(self._last, process)
         self._executing.clear()
 
