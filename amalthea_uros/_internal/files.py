@@ -6,9 +6,10 @@ import codecs
 import os
 import shutil
 import stat
-from collections.abc import Collection, Mapping
-from contextlib import ExitStack, suppress
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from typing import BinaryIO
 
 #: No input comes near this size (the largest published model has 6 MB); a larger file is refused before it fills the memory.
 MAX_SIZE = 512 * 2**20
@@ -129,6 +130,40 @@ def write_all(contents: Mapping[Path, bytes], removed: Collection[Path] = ()) ->
         undo.pop_all()
         for copy in filter(None, former.values()):
             copy.unlink(missing_ok=True)
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[BinaryIO]:
+    """A stream whose content becomes that of a file once the block ends; after an exception the file is as it was.
+
+    A pipe or a device is written itself.
+
+    Raises
+    ------
+    FileError : the file cannot be written.
+    """
+    if _is_stream(path):
+        try:
+            stream = path.open("wb")
+        except OSError as error:
+            raise not_writable(path, error) from None
+        with stream:
+            yield stream
+        return
+    with ExitStack() as undo:
+        temporary = _staged(path, b"", undo)
+        with temporary.open("wb") as stream:
+            yield stream
+            try:
+                stream.flush()
+                os.fsync(stream.fileno())
+            except OSError as error:
+                raise not_writable(path, error) from None
+        try:
+            temporary.replace(path.resolve())
+        except OSError as error:
+            raise not_writable(path, error) from None
+        undo.pop_all()
 
 
 def _is_stream(path: Path) -> bool:

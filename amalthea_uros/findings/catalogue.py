@@ -18,6 +18,7 @@ FAMILIES = {
     "ANA": "Analysing response times",
     "SIM": "Simulating systems",
     "CHN": "Analysing event chains",
+    "TRC": "Reading, checking and writing traces",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",
 }

@@ -6,12 +6,14 @@ added. Rows are in the order in which the events occur; time never decreases.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, fields
 from enum import IntEnum, StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from amalthea_uros.errors import InvalidArgumentError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -43,7 +45,8 @@ class Entity:
 class EventKind(IntEnum):
     """What happens.
 
-    Transitions of tasks and ISRs come first, then those of runnables, accesses to data, semaphores, OS events. `CHAIN_STEP` is where
+    Transitions of tasks and ISRs come first, then those of runnables, accesses to data, semaphores, OS events. The states of counting
+    semaphores (from `INCREMENT` on) are in traces of other tools. `CHAIN_STEP` is where
     the effect of an occurrence of a chain's stimulus passes a process: the source is the process, the target the chain, the target
     instance the number of that occurrence, and the note the number of the step, from 0.
     """
@@ -61,6 +64,7 @@ class EventKind(IntEnum):
     WAIT = 10
     RELEASE = 11
     ACTIVATION_LOST = 12
+    INTERRUPT_SUSPENDED = 13
     RUNNABLE_START = 20
     RUNNABLE_SUSPEND = 21
     RUNNABLE_RESUME = 22
@@ -80,6 +84,15 @@ class EventKind(IntEnum):
     SCHEDULE = 60
     SCHEDULE_POINT = 61
     CHAIN_STEP = 70
+    INCREMENT = 80
+    DECREMENT = 81
+    QUEUED = 82
+    USED = 83
+    LOCK_USED = 84
+    OVERFULL = 85
+    FULL = 86
+    UNLOCK_FULL = 87
+    FREE = 88
 
 
 #: In the column of the note: there is none.
@@ -97,7 +110,7 @@ class EventTable:
     kind : of `EventKind`, int16
     source, target : int32
     source_instance, target_instance : numbers of jobs or occurrences, counted from 0; 0 for what has no instances; int64
-    note : a value that belongs to the event, or `NO_NOTE`; int64
+    note : a value that belongs to the event, or `NO_NOTE`; of events of OS events the index of the task that owns it; int64
     """
 
     entities: Sequence[Entity]
@@ -111,3 +124,37 @@ class EventTable:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """The columns by their names, as data frames take them."""
+        return {name: getattr(self, name) for name in COLUMNS}
+
+    def between(self, start: int, end: int) -> EventTable:
+        """The events from `start` on and before `end`, in picoseconds; its columns share the memory of this table."""
+        first, last = np.searchsorted(self.time, (start, end))
+        return self.rows(int(first), int(last))
+
+    def rows(self, first: int, last: int) -> EventTable:
+        """The events with these numbers, the last one excluded; its columns share the memory of this table."""
+        return self.map_columns(lambda column: column[first:last])
+
+    def map_columns(self, change: Callable[[NDArray[Any]], NDArray[Any]]) -> EventTable:
+        """The table in which each column is what a function makes of it."""
+        return EventTable(self.entities, *map(change, self.to_dict().values()))
+
+
+#: The names of the columns of an `EventTable`, in the order of its fields.
+COLUMNS = tuple(column.name for column in fields(EventTable))[1:]
+
+
+def concatenate(tables: Sequence[EventTable]) -> EventTable:
+    """One table of several consecutive ones of the same trace.
+
+    Raises
+    ------
+    InvalidArgumentError : there are no tables.
+    """
+    if not tables:
+        raise InvalidArgumentError("there are no tables to concatenate; a trace without events is an empty table")
+    columns = zip(*(table.to_dict().values() for table in tables), strict=True)
+    return EventTable(tables[-1].entities, *map(np.concatenate, columns))

@@ -1,0 +1,92 @@
+"""Reads traces in CSV; `csv_format` describes the columns."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.trace.csv_format import EVENT_NAMES, HEADER
+from amalthea_uros.trace.entity_index import EntityIndex
+from amalthea_uros.trace.problems import Place, Problems
+from amalthea_uros.trace.row_tables import BLOCK, MAX, NumberedTable, Pattern, Row, note_of, numbered_table, tables_of
+from amalthea_uros.trace.table import Entity, EntityKind, EventTable
+from amalthea_uros.trace.text_lines import opened_text
+
+if TYPE_CHECKING:
+    from _csv import Reader as _CsvReader
+
+_KINDS = {kind.value: kind for kind in EntityKind}
+
+
+class Reader:
+    """Gives the events of a CSV file; `amalthea_uros.trace.readers.TraceReader` tells how it is used."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._problems = Problems(path)
+        self._index = EntityIndex()
+        self._numbers: dict[tuple[str, ...], int] = {}
+        self._patterns: list[Pattern] = []
+        self._last = 0
+
+    @property
+    def entities(self) -> Sequence[Entity]:
+        """The entities so far."""
+        return self._index.entities
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """The problems so far."""
+        return self._problems.findings
+
+    def __iter__(self) -> Iterator[EventTable]:
+        return tables_of(self.numbered())
+
+    def numbered(self) -> Iterator[NumberedTable]:
+        """The events, with the number of the line of each."""
+        with opened_text(self._path, self._problems) as stream:
+            reader = csv.reader(stream)
+            if next(reader, None) != HEADER:
+                message = f"the first line is not the header of a trace: {','.join(HEADER)}"
+                self._problems.add("TRC005", Severity.WARNING, message, Place(1, 1), "Check that this is a trace.")
+            while rows := self._rows(reader):
+                yield numbered_table(rows, self._patterns, self._index, scale=1)
+
+    def _rows(self, reader: _CsvReader) -> list[Row]:
+        """The next rows, none at the end."""
+        read = (self._row(reader.line_num, fields) for fields in reader)
+        return list(islice(filter(None, read), BLOCK))
+
+    def _row(self, line: int, fields: Sequence[str]) -> Row | None:
+        try:
+            time_field, event, source_kind, source, job_field, target_kind, target, instance_field, note_field = fields
+            time, job, instance = int(time_field), int(job_field), int(instance_field)
+            words = event, source_kind, source, target_kind, target
+            pattern = self._numbers.get(words)
+            if pattern is None:
+                pattern = self._new_pattern(*words)
+        except (ValueError, KeyError):
+            message = f"a line has a number, name of an event or type that is wrong, or not {len(HEADER)} fields; it is ignored"
+            self._problems.add("TRC002", Severity.ERROR, message, Place(line, 1, ",".join(fields)))
+            return None
+        if not (0 <= time <= MAX and 0 <= job <= MAX and 0 <= instance <= MAX):
+            message = "a number is negative or too large; this line is ignored"
+            self._problems.add("TRC002", Severity.ERROR, message, Place(line, 1, ",".join(fields)))
+            return None
+        if time < self._last:
+            message = "the time is less than that of an event before; this line is ignored"
+            self._problems.add("TRC004", Severity.ERROR, message, Place(line, 1, ",".join(fields)), "Sort the events by time.")
+            return None
+        self._last = time
+        return time, pattern, job, instance, note_of(note_field, self._patterns[pattern][0], self._index, note_field), line
+
+    def _new_pattern(self, event: str, source_kind: str, source: str, target_kind: str, target: str) -> int:
+        kind = EVENT_NAMES[event]
+        source_index = self._index.index(_KINDS[source_kind], source)
+        number = self._numbers[event, source_kind, source, target_kind, target] = len(self._patterns)
+        self._patterns.append((kind, source_index, self._index.index(_KINDS[target_kind], target)))
+        return number

@@ -1,0 +1,154 @@
+"""BTF files as the standard wants them (BTF 2.3.0)."""
+
+import io
+from datetime import UTC, datetime, timedelta, timezone
+
+import pytest
+from traces import table
+
+from amalthea_uros._version import __version__
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.trace.sinks import WriteOptions, open_sink
+from amalthea_uros.trace.table import Entity, EntityKind, EventKind
+
+K = EventKind
+ENTITIES = [
+    Entity(EntityKind.STIMULUS, "Sti_A"),
+    Entity(EntityKind.STIMULUS, "Sti_B"),
+    Entity(EntityKind.CORE, "Core_1"),
+    Entity(EntityKind.TASK, "Task_A"),
+    Entity(EntityKind.TASK, "Task_B"),
+    Entity(EntityKind.RUNNABLE, "Run_1"),
+    Entity(EntityKind.LABEL, "Label_1"),
+]
+STI_A, STI_B, CORE, TASK_A, TASK_B, RUN, LABEL = range(7)
+#: A task that another one preempts, in nanoseconds.
+PREEMPTION = [
+    (0, K.TRIGGER, STI_A, 0, STI_A, 0),
+    (0, K.ACTIVATE, STI_A, 0, TASK_A, 0),
+    (100, K.START, CORE, 0, TASK_A, 0),
+    (100, K.RUNNABLE_START, TASK_A, 0, RUN, 0),
+    (150, K.READ, TASK_A, 0, LABEL, 0),
+    (200, K.TRIGGER, STI_B, 0, STI_B, 0),
+    (200, K.ACTIVATE, STI_B, 0, TASK_B, 0),
+    (200, K.RUNNABLE_SUSPEND, TASK_A, 0, RUN, 0),
+    (200, K.PREEMPT, CORE, 0, TASK_A, 0),
+    (200, K.START, CORE, 0, TASK_B, 0),
+    (300, K.TERMINATE, CORE, 0, TASK_B, 0),
+    (300, K.RESUME, CORE, 0, TASK_A, 0),
+    (300, K.RUNNABLE_RESUME, TASK_A, 0, RUN, 0),
+    (400, K.RUNNABLE_TERMINATE, TASK_A, 0, RUN, 0),
+    (400, K.TERMINATE, CORE, 0, TASK_A, 0),
+]
+LINES = """\
+0,Sti_A,0,STI,Sti_A,0,trigger
+0,Sti_A,0,T,Task_A,0,activate
+100,Core_1,0,T,Task_A,0,start
+100,Task_A,0,R,Run_1,0,start
+150,Task_A,0,SIG,Label_1,0,read
+200,Sti_B,0,STI,Sti_B,0,trigger
+200,Sti_B,0,T,Task_B,0,activate
+200,Task_A,0,R,Run_1,0,suspend
+200,Core_1,0,T,Task_A,0,preempt
+200,Core_1,0,T,Task_B,0,start
+300,Core_1,0,T,Task_B,0,terminate
+300,Core_1,0,T,Task_A,0,resume
+300,Task_A,0,R,Run_1,0,resume
+400,Task_A,0,R,Run_1,0,terminate
+400,Core_1,0,T,Task_A,0,terminate
+"""
+
+
+def written(entities, rows, **options):
+    stream = io.BytesIO()
+    with open_sink(stream, entities, WriteOptions(**options), suffix=".btf") as sink:
+        sink.write(table(entities, rows))
+    return stream.getvalue().decode()
+
+
+def events(text):
+    return [line for line in text.splitlines() if not line.startswith("#")]
+
+
+def in_nanoseconds(rows):
+    return [(time * 1000, *rest) for time, *rest in rows]
+
+
+def test_a_preemption_is_written_as_the_standard_shows_it():
+    text = written(ENTITIES, in_nanoseconds(PREEMPTION), timescale="ns")
+    assert events(text) == LINES.splitlines()
+
+
+def test_the_header():
+    text = written(ENTITIES[:1], [])
+    assert text == f"#version 2.3.0\n#creator amuros {__version__}\n#timescale ps\n#entityTypeMapping STI Sti_A\n"
+
+
+def test_the_date_is_that_of_the_caller_in_universal_time():
+    noon = datetime(2024, 1, 1, 12, tzinfo=timezone(timedelta(hours=1)))
+    assert "#creationDate 2024-01-01T11:00:00Z\n" in written(ENTITIES, [], creation_date=noon)
+    assert noon == datetime(2024, 1, 1, 11, tzinfo=UTC)
+
+
+def test_numbers_instead_of_names():
+    rows = [(5, K.TRIGGER, STI_B, 3, STI_B, 3), (5, K.ACTIVATE, STI_B, 3, TASK_A, 8)]
+    lines = written(ENTITIES, rows, numeric=True).splitlines()
+    assert lines[3:5] == ["#typeMapping 0 STI", "#typeMapping 1 T"]
+    assert "#entityMapping 3 Task_A" in lines
+    assert "#entityTypeMapping 1 3" in lines
+    assert lines[-2:] == ["5,1,3,0,1,3,trigger", "5,1,3,1,3,8,activate"]
+
+
+def test_a_task_triggers_the_stimulus_of_another_one():
+    rows = [(7, K.TRIGGER, TASK_A, 2, STI_B, 1), (7, K.ACTIVATE, STI_B, 1, TASK_B, 1)]
+    assert events(written(ENTITIES, rows)) == ["7,Task_A,2,STI,Sti_B,1,trigger", "7,Sti_B,1,T,Task_B,1,activate"]
+
+
+def test_a_spinlock_has_the_events_of_the_subset():
+    entities = [*ENTITIES, Entity(EntityKind.SEMAPHORE, "Lock")]
+    rows = [
+        (1, K.REQUEST_SEMAPHORE, TASK_A, 0, 7, 0),
+        (1, K.LOCK, 7, 0, 7, 0),
+        (1, K.ASSIGNED, TASK_A, 0, 7, 0),
+        (2, K.RELEASED, TASK_A, 0, 7, 0),
+        (2, K.UNLOCK, 7, 0, 7, 0),
+    ]
+    assert events(written(entities, rows)) == [
+        "1,Task_A,0,SEM,Lock,0,requestsemaphore",
+        "1,Lock,0,SEM,Lock,0,lock",
+        "1,Task_A,0,SEM,Lock,0,assigned",
+        "2,Task_A,0,SEM,Lock,0,released",
+        "2,Lock,0,SEM,Lock,0,unlock",
+    ]
+
+
+def test_notes_are_values_of_labels_and_owners_of_os_events():
+    entities = [*ENTITIES, Entity(EntityKind.OS_EVENT, "Go")]
+    rows = [(1, K.WRITE, TASK_A, 0, LABEL, 0, -5), (1, K.SET_EVENT, TASK_A, 0, 7, 0, TASK_B)]
+    assert events(written(entities, rows)) == ["1,Task_A,0,SIG,Label_1,0,write,-5", "1,Task_A,0,EVENT,Go,0,set_event,Task_B"]
+
+
+def test_steps_of_chains_are_not_written():
+    entities = [*ENTITIES, Entity(EntityKind.CHAIN, "Chain")]
+    text = written(entities, [(1, K.CHAIN_STEP, TASK_A, 0, 7, 0, 0), (2, K.START, CORE, 0, TASK_A, 0)])
+    assert events(text) == ["2,Core_1,0,T,Task_A,0,start"]
+    assert "Chain" not in text
+
+
+def test_an_entity_that_comes_later_is_declared_before_its_first_event():
+    entities = ENTITIES[:3]
+    stream = io.BytesIO()
+    with open_sink(stream, entities, suffix=".btf") as sink:
+        entities.append(ENTITIES[3])
+        sink.write(table(entities, [(9, K.START, 2, 0, 3, 0)]))
+    assert stream.getvalue().decode().splitlines()[-2:] == ["#entityTypeMapping T Task_A", "9,Core_1,0,T,Task_A,0,start"]
+
+
+def test_a_time_that_the_unit_cannot_express_is_refused():
+    with pytest.raises(InvalidArgumentError, match="1500 ps is not a whole number of ns"):
+        written(ENTITIES, [(1000, K.READ, TASK_A, 0, LABEL, 0), (1500, K.READ, TASK_A, 0, LABEL, 0)], timescale="ns")
+
+
+def test_an_unknown_unit_is_refused():
+    with pytest.raises(InvalidArgumentError, match="timescale 'fs'; expected one of ps, ns, us, ms, s"):
+        written(ENTITIES, [], timescale="fs")
