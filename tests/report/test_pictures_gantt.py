@@ -101,6 +101,12 @@ def test_a_deadline_is_missed_by_a_job_that_ends_after_it_or_has_not_ended(end, 
     assert ("0 s to 100 us, 1 process, 1 job, 1 missed deadline" in contents(picture)) == is_missed
 
 
+def test_only_jobs_in_the_window_are_counted():
+    assert "0 s to 100 us, 2 processes, 2 jobs" in contents(chart(HIGH, LOW))
+    assert "0 s to 10 us, 2 processes, 1 job" in contents(chart(HIGH, LOW, end=10))
+    assert "70 us to 80 us, 2 processes, 0 jobs" in contents(chart(HIGH, LOW, start=70, end=80))
+
+
 def test_a_late_job_has_a_bar_from_its_deadline_to_its_end():
     picture = chart(ProcessRow("Task", (Job(0, (span("running", 0, 50),), 0, 50 * US, 40 * US),)))
     [path] = [

@@ -46,8 +46,9 @@ def arrows_at(times: Iterable[Time | None], axis: TimeAxis) -> Arrows:
 
 
 def draw_instants(kinds: Iterable[Arrows], top: float, bottom: float) -> Markup:
-    """Fine lines that lead arrows to the base line."""
-    path = "".join(f"M{number(x)} {number(top)}V{number(bottom)}" for arrows in kinds for x, _ in arrows.places)
+    """Fine lines that lead arrows to the base line, if there are few enough to follow them."""
+    places = [x for arrows in kinds if not arrows.are_merged for x, _ in arrows.places]
+    path = "".join(f"M{number(x)} {number(top)}V{number(bottom)}" for x in places)
     return element("path", class_="instant", d=path) if path else Markup("")
 
 

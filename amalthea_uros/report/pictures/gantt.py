@@ -108,8 +108,8 @@ def _label(row: DrawnRow, axis: TimeAxis) -> Markup:
 
 def _subtitle(chart: GanttChart, axis: TimeAxis) -> str:
     rows = [row for core in chart.cores for row in core.rows]
-    jobs = [job for row in rows for job in row.jobs]
-    missed = sum(job.misses_deadline(axis.end) for job in jobs)
+    jobs = [job for row in rows for job in row.jobs if job.is_in(chart.start, chart.end)]
+    missed = sum(axis.has(job.deadline) and job.misses_deadline(axis.end) for job in jobs)
     parts = [
         f"{time_text(chart.start)} to {time_text(chart.end)}",
         counted(len(rows), "process") if len(rows) == 1 else f"{len(rows)} processes",

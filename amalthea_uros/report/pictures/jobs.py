@@ -67,6 +67,12 @@ class Job:
         """Whether it ends after its deadline, or has not ended `now` and is too late already."""
         return self.deadline is not None and (now if self.end is None else self.end) > self.deadline
 
+    def is_in(self, start: Time, end: Time) -> bool:
+        """Whether anything of it is in a window."""
+        ends = [moment for span in (*self.spans[:1], *self.spans[-1:]) for moment in (span.start, span.end)]
+        known = [moment for moment in (self.activation, self.end, *ends) if moment is not None]
+        return bool(known) and min(known) <= end and max(known) >= start
+
 
 @dataclass(frozen=True, slots=True)
 class ProcessRow:

@@ -62,7 +62,7 @@ def state_timeline(timeline: StateTimeline) -> str:
         draw_time_axis(axis, bottom, "time"),
         legend,
     )
-    jobs = counted(len(timeline.process.jobs), "job")
+    jobs = counted(sum(job.is_in(axis.start, axis.end) for job in timeline.process.jobs), "job")
     subtitle = f"{timeline.process.name}: {time_text(timeline.start)} to {time_text(timeline.end)}, {jobs}"
     return document(timeline.title, subtitle, body, height + MARGIN)
 

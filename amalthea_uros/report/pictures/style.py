@@ -37,7 +37,7 @@ _SHEET = f"""
 .amuros-picture text.muted{{fill-opacity:.72}}
 .amuros-picture .gap{{stroke:#fff;stroke-width:1.5;fill:none}}
 .amuros-picture .instant{{stroke:currentColor;stroke-opacity:.45;stroke-width:.7;fill:none}}
-.amuros-picture .halo{{stroke:#fff;stroke-opacity:.8;stroke-width:4;stroke-linejoin:round;fill:none}}
+.amuros-picture .halo{{stroke:#fff;stroke-opacity:.8;stroke-width:3.5;stroke-linejoin:round;fill:none}}
 .amuros-picture text.halo{{paint-order:stroke;fill:currentColor}}
 .amuros-picture .label{{fill:#fff;fill-opacity:.86;stroke:none}}
 .amuros-picture .band{{fill:currentColor;fill-opacity:.04}}
