@@ -1,0 +1,205 @@
+"""Histograms of times, with marks of limits and bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import ceil, floor
+
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.report.pictures.count_axis import MILLION, CountAxis, draw_count_axis, width_of_labels
+from amalthea_uros.report.pictures.histogram_marks import (
+    LANE,
+    LINES,
+    Mark,
+    MarkKind,
+    draw_marks,
+    label_room,
+    lanes_of,
+    short_time_text,
+)
+from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
+from amalthea_uros.report.pictures.style import SMALL_SIZE
+from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
+from amalthea_uros.report.pictures.time_axis import HEIGHT, TimeAxis, draw_time_axis
+from amalthea_uros.units import Time, time_text
+
+#: Pixels.
+_PLOT, _GAP, _RIGHT = 240, 8, 34
+#: With more bins they could not be told from each other.
+_MOST_BINS = 200
+#: A lower bar would not be seen, in pixels.
+_LOWEST = 1.5
+#: One part of so many is free on both sides, and at least so many bins have room: a single one is no wall.
+_MARGIN, _FEWEST_BINS = 25, 12
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """How many values are in each bin; `name` says of what, such as "simulated" or "measured"."""
+
+    name: str
+    counts: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Histogram:
+    """A histogram.
+
+    Attributes
+    ----------
+    edges : of the bins, rising; a bin has its lower edge, and the last one its upper edge as well
+    series : one, or two to compare
+    quantity : what the values are, such as "response time"
+    things : what is counted, such as "jobs"
+    is_share : the bins are drawn as shares of all values of their series, to compare series of different sizes
+
+    Raises
+    ------
+    InvalidArgumentError : edges that do not rise, counts that do not fit to them, not one or two series.
+    """
+
+    title: str
+    edges: tuple[Time, ...]
+    series: tuple[Series, ...]
+    marks: tuple[Mark, ...] = ()
+    quantity: str = "response time"
+    things: str = "jobs"
+    is_share: bool = False
+
+    def __post_init__(self) -> None:
+        if len(self.edges) < 2 or any(low >= high for low, high in pairwise(self.edges)):
+            raise InvalidArgumentError("a histogram needs at least two edges, each greater than the one before")
+        if not 1 <= len(self.series) <= 2:
+            raise InvalidArgumentError(f"a histogram shows one or two series, not {len(self.series)}")
+        for series in self.series:
+            if len(series.counts) != len(self.edges) - 1 or min(series.counts) < 0:
+                raise InvalidArgumentError(
+                    f"{series.name!r} needs {len(self.edges) - 1} counts of at least 0, one for each bin"
+                )
+
+
+def histogram(histogram: Histogram) -> str:
+    """The histogram as SVG; marks that are far from all values are at the edge, with an arrow."""
+    drawn = _coarsened(_trimmed(histogram))
+    heights = [_heights(series, drawn.is_share) for series in drawn.series]
+    highest = max(map(max, heights))
+    left = MARGIN + SMALL_SIZE + 2 * _GAP + width_of_labels(highest, is_share=drawn.is_share)
+    axis = _axis(drawn, left)
+    top = TOP + LANE * lanes_of(drawn.marks, axis) + _GAP
+    counts = CountAxis(highest, top, top + _PLOT, drawn.is_share)
+    legend, height = draw_legend(_legend(drawn), [], counts.bottom + HEIGHT + _GAP)
+    body = (
+        draw_count_axis(counts, axis.left, axis.right, _caption(drawn)),
+        Markup("") if any(map(any, heights)) else _nothing(axis, counts),
+        _bars(drawn, heights[0], axis, counts),
+        *(_outline(drawn, other, axis, counts) for other in heights[1:]),
+        draw_marks(drawn.marks, axis, top - _GAP, counts.bottom),
+        draw_time_axis(axis, counts.bottom, drawn.quantity),
+        legend,
+    )
+    subtitle = ", ".join(f"{series.name}: {sum(series.counts):,} {drawn.things}" for series in drawn.series)
+    return document(drawn.title, subtitle, body, height + MARGIN)
+
+
+def _trimmed(histogram: Histogram) -> Histogram:
+    """Without empty bins at its ends."""
+    used = [
+        index for index, counts in enumerate(zip(*(series.counts for series in histogram.series), strict=True)) if any(counts)
+    ]
+    if not used:
+        return histogram
+    first, after = used[0], used[-1] + 1
+    series = tuple(Series(series.name, series.counts[first:after]) for series in histogram.series)
+    return replace(histogram, edges=histogram.edges[first : after + 1], series=series)
+
+
+def _coarsened(histogram: Histogram) -> Histogram:
+    """With so many neighbouring bins put together that they can be told from each other."""
+    size = ceil((len(histogram.edges) - 1) / _MOST_BINS)
+    edges = (*histogram.edges[:-1:size], histogram.edges[-1])
+    return replace(histogram, edges=edges, series=tuple(_grouped(series, size) for series in histogram.series))
+
+
+def _grouped(series: Series, size: int) -> Series:
+    counts = tuple(sum(series.counts[first : first + size]) for first in range(0, len(series.counts), size))
+    return Series(series.name, counts)
+
+
+def _window(histogram: Histogram) -> tuple[Time, Time]:
+    """The bins, and the marks that are not farther from them than they are wide; with margins."""
+    low, high = histogram.edges[0], histogram.edges[-1]
+    span = high - low
+    near = [mark.time for mark in histogram.marks if low - span <= mark.time <= high + span]
+    start, end = floor(min([low, *near])), ceil(max([high, *near]))
+    shortage = _FEWEST_BINS * (histogram.edges[1] - low) - (end - start)
+    margin = max(-(-(end - start) // _MARGIN), shortage // 2)
+    return (start - margin if start < 0 else max(start - margin, 0)), end + margin
+
+
+def _axis(histogram: Histogram, left: float) -> TimeAxis:
+    return TimeAxis(*_window(histogram), left, WIDTH - max(_RIGHT, MARGIN + label_room(histogram.marks)) - left)
+
+
+def _heights(series: Series, is_share: bool) -> Sequence[int]:
+    """Counts, or shares in millionths."""
+    return [count * MILLION // max(sum(series.counts), 1) for count in series.counts] if is_share else series.counts
+
+
+def _top_of(height: int, count: int, axis: CountAxis) -> float:
+    """A bin that has values is seen, however few."""
+    return min(axis.y(height), axis.bottom - _LOWEST) if count else axis.bottom
+
+
+def _bars(histogram: Histogram, heights: Sequence[int], axis: TimeAxis, counts: CountAxis) -> Markup:
+    bars = []
+    series = histogram.series[0]
+    for (low, high), count, height in zip(pairwise(histogram.edges), series.counts, heights, strict=True):
+        if count:
+            left, right, top = axis.x(low), axis.x(high), _top_of(height, count, counts)
+            tip = tooltip(f"{time_text(low)} to {time_text(high)}: {count:,} {histogram.things}")
+            bars.append(element("rect", tip, x=left, y=top, width=right - left, height=counts.bottom - top))
+    return element("g", joined(bars), class_="c0 bars")
+
+
+def _outline(histogram: Histogram, heights: Sequence[int], axis: TimeAxis, counts: CountAxis) -> Markup:
+    """The second series as a line of steps around its bins."""
+    steps = "".join(
+        f"V{number(_top_of(height, count, counts))}H{number(axis.x(high))}"
+        for high, count, height in zip(histogram.edges[1:], histogram.series[1].counts, heights, strict=True)
+    )
+    begin = f"M{number(axis.x(histogram.edges[0]))} {number(counts.bottom)}"
+    return element("path", class_="t1 steps", d=f"{begin}{steps}V{number(counts.bottom)}")
+
+
+def _nothing(axis: TimeAxis, counts: CountAxis) -> Markup:
+    x, y = axis.left + axis.width / 2, (counts.top + counts.bottom) / 2
+    return element("text", text("no values"), class_="muted", x=x, y=y, text_anchor="middle")
+
+
+def _caption(histogram: Histogram) -> str:
+    """What the vertical axis counts, with the width of the bins if all but the last have the same."""
+    widths = {
+        short_time_text(high - low)
+        for low, high in pairwise(histogram.edges[:-1] if len(histogram.edges) > 2 else histogram.edges)
+    }
+    bins = f"bin of {widths.pop()}" if len(widths) == 1 else "bin"
+    return f"{'share of ' if histogram.is_share else ''}{histogram.things} per {bins}"
+
+
+def _legend(histogram: Histogram) -> list[LegendEntry]:
+    keys = (
+        element("rect", class_="c0 bars", x=-9, y=-6, width=18, height=12),
+        element("path", class_="t1 steps", d="M-9 6V0H0V-5H9V6"),
+    )
+    used = {mark.kind for mark in histogram.marks}
+    return [
+        *(LegendEntry(key, series.name) for key, series in zip(keys, histogram.series, strict=False)),
+        *(LegendEntry(_line_key(kind), kind) for kind in MarkKind if kind in used),
+    ]
+
+
+def _line_key(kind: MarkKind) -> Markup:
+    style, dash = LINES[kind]
+    return element("path", class_=style, stroke_dasharray=dash, d="M-9 0H9")
