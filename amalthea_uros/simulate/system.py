@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -16,16 +16,18 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.layout import (
     ACTIVATION,
+    BEGIN,
     BUSY,
     LOST,
     OVERFLOWS,
+    RUNS,
     SINCE,
     STATE,
     TIME_POLLING,
     TIME_RUNNING,
 )
 from amalthea_uros.simulate.metrics import chains, jobs
-from amalthea_uros.simulate.metrics.chains import RouteMetrics
+from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
 from amalthea_uros.simulate.metrics.jobs import JobMetrics
 from amalthea_uros.simulate.operations import POLLING, RUNNING
 from amalthea_uros.simulate.options import Options
@@ -38,7 +40,7 @@ from amalthea_uros.timing.deadlines import ASSUMPTION
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.timing.phases import with_stated_phases
 from amalthea_uros.trace.sinks import TraceSink
-from amalthea_uros.trace.suspensions import Suspensions
+from amalthea_uros.trace.suspensions import RunnableSuspensions
 from amalthea_uros.trace.table import Entity, EventTable
 
 if TYPE_CHECKING:
@@ -81,13 +83,12 @@ class _Run:
     jobs: list[JobMetrics] = field(init=False)
     routes: list[RouteMetrics] = field(init=False)
     sinks: Sequence[TraceSink] = ()
-    suspensions: Suspensions = field(init=False)
+    suspensions: RunnableSuspensions = field(default_factory=RunnableSuspensions)
 
     def __post_init__(self) -> None:
         program = self.program
         self.jobs = [JobMetrics(program.units) for _ in program.processes]
         self.routes = [RouteMetrics(program.units) for _ in program.routes]
-        self.suspensions = Suspensions(program.entities)
         traced = self.options.traced or (0, 0)
         self.player = Player(
             program,
@@ -116,7 +117,7 @@ class _Run:
 
     def _write(self, rows: NDArray[np.int64]) -> None:
         """Hand events on to all sinks."""
-        table = self.suspensions.inserted(_event_table(rows, self.program))
+        table = self.suspensions.insert(_event_table(rows, self.program))
         for sink in self.sinks:
             sink.write(table)
 
@@ -128,19 +129,101 @@ class _Run:
         found = Results(self._chain(name) for name in system.chains)
         duration = self.options.duration
         requirements = Results(judge_requirements(system, processes, found, duration))
-        memory = self.player.memory
-        cores = (
-            CoreObservation(name=name, load=Fraction(int(memory[record + BUSY]) + self._running_on(record), self.end))
-            for name, record in program.cores.items()
-        )
         return Simulation(
             duration=duration,
             seed=self.options.seed,
             mode=self.options.mode,
-            cores=Results(cores),
+            cores=Results(self._core(name, record) for name, record in program.cores.items()),
             processes=processes,
             chains=found,
             requirements=requirements,
             assumptions=tuple(notes.assumptions),
             findings=tuple(finding for finding in notes.found if finding.rule not in _OF_ANALYSES),
         )
+
+    def _note_left_out(self) -> None:
+        """Make findings of what is not simulated."""
+        system, notes = self.context.system, self.context.notes
+        for name, reason in self.program.left_out.items():
+            notes.error("SIM001", f"{name!r} is not simulated: {reason}", system.processes[name])
+        for name, reason in self.program.chains_left_out.items():
+            notes.warning("SIM002", f"the chain {name!r} is not followed: {reason}", system.chains[name])
+        for name, record in self.program.channels.items():
+            lost = int(self.player.memory[record + OVERFLOWS])
+            if lost:
+                message = f"the channel {name!r} was full: {lost:,} elements were lost"
+                notes.warning("SIM004", message, system.channels[name])
+
+    # Cores and processes.
+
+    def _processes(self) -> Iterator[ProcessObservation]:
+        for name, found in zip(self.program.processes, self.jobs, strict=True):
+            yield self._process(name, found)
+
+    def _process(self, name: str, found: JobMetrics) -> ProcessObservation:
+        memory, record = self.player.memory, self.program.records[name]
+        deadline = deadline_of(name, self.context)
+        if deadline is not None and deadline.is_implicit:
+            self.context.notes.assume(ASSUMPTION)
+        pending = self.player.pending(name)
+        used = found.total(JobMetric.RUNNING_TIME) + found.total(JobMetric.POLLING_TIME) + self._used_by_last_job(record)
+        waited = self.end - int(memory[record + ACTIVATION]) if pending else 0
+        return ProcessObservation(
+            name=name,
+            is_isr=isinstance(self.context.system.processes[name], Isr),
+            core=self.context.placement(name).core,
+            jobs=found.count,
+            load=Fraction(used, self.end),
+            metrics=found.observations(None if deadline is None else deadline.value),
+            preemptions=found.preemptions,
+            migrations=found.migrations,
+            lost_activations=int(memory[record + LOST]),
+            unfinished=pending,
+            longest_unfinished=Fraction(waited, self.program.units),
+            deadline=None if deadline is None else deadline.value,
+            is_implicit=deadline is not None and deadline.is_implicit,
+        )
+
+    def _used_by_last_job(self, record: int) -> int:
+        """The time in which the job that has not ended has had a core."""
+        memory = self.player.memory
+        used = int(memory[record + TIME_RUNNING]) + int(memory[record + TIME_POLLING])
+        is_on_core = memory[record + STATE] in (RUNNING, POLLING)
+        return used + (self.end - int(memory[record + SINCE]) if is_on_core else 0)
+
+    def _core(self, name: str, record: int) -> CoreObservation:
+        memory = self.player.memory
+        last = self.end - int(memory[record + BEGIN]) if memory[record + RUNS] else 0
+        return CoreObservation(name=name, load=Fraction(int(memory[record + BUSY]) + last, self.end))
+
+    def _chain(self, name: str) -> ChainObservation:
+        routes = {
+            " -> ".join(route.events): self.routes[number]
+            for number, route in enumerate(self.program.routes)
+            if route.chain == name
+        }
+        return chain_observation(name, routes, self.end, self.program.chains_left_out.get(name, ""))
+
+
+#: Findings about what only analyses do not know.
+_OF_ANALYSES = ("ANA002", "ANA003", "ANA004", "ANA005", "ANA007")
+
+
+def _is_worth_compiling(program: Program, end: int) -> bool:
+    """Whether a run is long enough for machine code."""
+    return machine_code.is_available()
+
+
+def _event_table(rows: NDArray[np.int64], program: Program) -> EventTable:
+    """Events in picoseconds, as the table of a trace."""
+    time, kind, source, source_instance, target, target_instance, note = rows.T
+    return EventTable(
+        entities=program.entities,
+        time=time // program.units,
+        kind=kind.astype(np.int16),
+        source=source.astype(np.int32),
+        source_instance=source_instance,
+        target=target.astype(np.int32),
+        target_instance=target_instance,
+        note=note,
+    )
