@@ -355,6 +355,7 @@ def test_stimuli_that_are_triggered_have_no_occurrences_of_their_own():
         (named(VariableRate, step=0, rate=Constant(1.0)), "step"),
         (named(VariableRate, step=1, rate=Constant(float("inf"))), "bounds"),
         (named(VariableRate, step=1, rate=Constant(-1.0)), "number of occurrences"),
+        (named(VariableRate, step=1, rate=Constant(1.5)), "in a picosecond"),
         (named(VariableRate, step=1, rate=Constant(1.0), max_increase=-1.0), "change"),
         (named(VariableRate, step=1, rate=Constant(1.0), scenario=Scenario(clock="x")), "clock 'x' is not defined"),
         (named(VariableRate, step=1, rate=Constant(1.0), scenario=Scenario(clock="steps", recurrence=0)), "recurrence"),

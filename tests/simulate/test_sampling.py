@@ -227,6 +227,12 @@ def test_ticks_are_converted_and_rounded(lower, more, per_unit):
     assert durations(ticks, per_unit, Mode.BEST, source()).take(1) == ticks.lower * per_unit // 1
 
 
+@pytest.mark.parametrize("deviation", [0.0, 5e-324, 1e-6])
+def test_hardly_any_deviation_gives_the_mean_or_the_bound_next_to_it(deviation):
+    assert set(variate(Gauss(mean=7.0, deviation=deviation)).of(EQUIDISTANT)) == {7}
+    assert set(variate(Gauss(mean=7.0, deviation=deviation, lower=9, upper=20)).of(EQUIDISTANT)) == {9}
+
+
 def test_a_demand_without_minimum_is_not_negative():
     demand = Gauss(mean=10.0, deviation=100.0)
     assert durations(demand, Fraction(2), Mode.SAMPLED, source()).take(1000).min() >= 0

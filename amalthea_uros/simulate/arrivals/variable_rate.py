@@ -51,6 +51,8 @@ def variable_rate(stimulus: VariableRate, mode: Mode, source: RandomSource, time
         raise UnknownArrivalError("its number of occurrences in a step has no bounds")
     if least < 0 or most > _HIGHEST_RATE:
         raise UnknownArrivalError(f"its number of occurrences in a step is not between 0 and {_HIGHEST_RATE}")
+    if most > stimulus.step:
+        raise UnknownArrivalError("more than one occurrence in a picosecond is possible")
     changes = (stimulus.max_decrease, stimulus.max_increase)
     if any(change is not None and not change >= 0 for change in changes):
         raise UnknownArrivalError("a limit of the change of its rate is negative")

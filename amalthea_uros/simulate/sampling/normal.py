@@ -14,6 +14,9 @@ from amalthea_uros.simulate.sampling.roots import root
 from amalthea_uros.simulate.sampling.variate import Equal, Shaped, Variate
 from amalthea_uros.timing.means import mean
 
+#: Values with a smaller deviation are equal, as they are whole numbers.
+_NO_DEVIATION = 1e-9
+
 
 def truncated_normal(location: Fraction, deviation: float, lower: int | None, upper: int | None) -> Variate:
     """A normal distribution of which values outside the bounds are rejected.
@@ -25,7 +28,7 @@ def truncated_normal(location: Fraction, deviation: float, lower: int | None, up
         peak = max(peak, Fraction(lower))
     if upper is not None:
         peak = min(peak, Fraction(upper))
-    if deviation == 0:
+    if deviation < _NO_DEVIATION:
         value = min(max(round(peak), -inf if lower is None else lower), inf if upper is None else upper)
         return Equal(int(value), int(value))
     # In standard deviations: from the mean to the peak, from the peak to where the density is negligible or the bound.

@@ -80,7 +80,9 @@ def sampling_assumption(distribution: Distribution[int] | Distribution[float]) -
         case Statistics(lower=lower, upper=upper) if lower != upper:
             return "values of which minimum, average and maximum are known have a truncated normal distribution with this mean"
         case Gauss(lower=lower, upper=upper) if lower is None or upper is None:
-            return "values of a normal distribution without bounds are at most 6.3 standard deviations from the mean"
+            return (
+                "unbounded normal distributions are cut off at 6.3 standard deviations, and those of execution times also at 0"
+            )
         case Histogram():
             return "all values within an interval of a histogram are equally probable"
     return None
