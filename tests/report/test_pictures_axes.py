@@ -101,6 +101,10 @@ def test_a_window_that_ends_before_it_starts_is_refused():
         default_window(2 * US, US)
 
 
+def test_characters_that_are_not_latin_are_as_wide_as_high():
+    assert text_width("\N{CJK UNIFIED IDEOGRAPH-6642}\N{CJK UNIFIED IDEOGRAPH-9593}", 10) == 20
+
+
 @given(st.text(max_size=60), st.floats(0, 300))
 def test_elided_text_fits_and_keeps_both_ends(content, room):
     shown = elided(content, 12, room)

@@ -98,6 +98,12 @@ def test_the_state_before_a_window_is_taken_from_the_events_before_it():
     assert job == Job(0, (Span(State.ACTIVE, 0, 10), running(10, 80)), 0, None)
 
 
+def test_what_was_seen_counts_more_than_what_an_event_implies():
+    # The release of the waiting task is missing.
+    job = only(event(0, K.START), event(10, K.WAIT), event(30, K.RESUME), event(40, K.TERMINATE))
+    assert job.spans[1:] == (running(0, 10), Span(State.WAITING, 10, 30), running(30, 40))
+
+
 def test_jobs_that_end_before_a_window_or_begin_after_it_are_left_out():
     assert jobs_of(table(*PREEMPTION), start=60, end=80) == ()
     [core] = jobs_of(table(*PREEMPTION), start=35, end=80)

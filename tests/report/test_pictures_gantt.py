@@ -221,10 +221,15 @@ def test_boxes_that_cannot_be_told_from_each_other_are_one():
 
 
 def test_boxes_that_can_be_told_from_each_other_are_not_merged():
-    # Jobs of 12 us every ms in 21 ms: narrow boxes, far from each other.
-    picture = gantt(GanttChart("sparse", 0, 21 * MS, (CoreRows("Core_0", (periodic(21, MS, 12 * US),)),)))
+    # Jobs of 3 us every ms in 21 ms: narrow boxes, far from each other.
+    picture = gantt(GanttChart("sparse", 0, 21 * MS, (CoreRows("Core_0", (periodic(21, MS, 3 * US),)),)))
     assert len(rectangles(picture, "Task, job")) == 21
     assert not any("merged" in text for text in contents(picture))
+
+
+def test_a_narrow_box_is_not_merged_with_a_wide_one():
+    row = ProcessRow("Task", (Job(0, (span("running", 0, 50),)), Job(1, (Span(State.RUNNING, 50 * US, 50 * US + 1000),))))
+    assert len(rectangles(chart(row), "Task, job")) == 2
 
 
 def test_hundreds_of_thousands_of_jobs_make_a_small_picture():
