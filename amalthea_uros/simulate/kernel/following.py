@@ -10,6 +10,7 @@ from amalthea_uros.simulate.layout import (
     CHAIN_ENTITY,
     ENTITY,
     FIRST_PLACE,
+    HAS_RESPONDED,
     INSTANCE,
     IS_LAST,
     IS_MARKED,
@@ -27,6 +28,7 @@ from amalthea_uros.simulate.layout import (
     PENDING,
     QUEUE_CAPTURES,
     REACHED,
+    RESPONDED_AT,
     ROUTE,
     ROUTE_NUMBER,
     STAMPS,
@@ -46,6 +48,7 @@ def follow(m: Memory, process: int, operation: int, stage: int, argument: int) -
     if operation == ENTER:
         m[stage + REACHED] = 0
         m[stage + IS_MARKED] = 0
+        m[stage + HAS_RESPONDED] = 0
         if m[stage + CAPTURE] >= 0:
             m[stage + TAKEN] = m[m[process + FIRST_PLACE] + QUEUE_CAPTURES + m[stage + CAPTURE]]
         elif m[stage + BEFORE_STAGE]:
@@ -56,22 +59,23 @@ def follow(m: Memory, process: int, operation: int, stage: int, argument: int) -
         m[stage + VALUE] = m[stage + TAKEN] if argument else m[m[stage + BEFORE_STAGE] + LINK]
     elif operation == REACH:
         m[stage + REACHED] |= argument
-        _number(m, stage)
+        _complete(m, process, stage)
     elif operation == MARK:
         m[stage + IS_MARKED] = 1
         m[stage + MARKED_AT] = m[process + ACTIVATION] if argument else m[NOW]
-        _number(m, stage)
+        _complete(m, process, stage)
+    elif operation == RESPOND:
+        m[stage + HAS_RESPONDED] = 1
+        m[stage + RESPONDED_AT] = m[NOW]
+        _complete(m, process, stage)
     elif operation == PUT or m[stage + REACHED] == m[stage + NEEDED]:
         _leave(m, process, operation, stage)
 
 
 def _leave(m: Memory, process: int, operation: int, stage: int) -> None:
     value = m[stage + VALUE]
-    if m[IS_TRACED] and value >= 0:
-        emit(m, _CHAIN_STEP, m[process + ENTITY], m[process + INSTANCE], m[stage + CHAIN_ENTITY], value, m[stage + STEP])
-    if operation == RESPOND:
-        _observe(m, stage, _RESPONSE, m[NOW], value)
-    elif operation != PUBLISH:
+    _trace(m, process, stage)
+    if operation != PUBLISH:
         m[stage + LINK] = value
     elif m[process + PENDING] > 1:
         # The next job has been released before this one ends: what it writes is late.
@@ -81,14 +85,29 @@ def _leave(m: Memory, process: int, operation: int, stage: int) -> None:
         m[stage + IS_OUT] = 1
 
 
-def _number(m: Memory, stage: int) -> None:
-    """The stimulus of a chain counts in jobs that take part in the chain."""
-    if m[stage + IS_MARKED] and m[stage + REACHED] == m[stage + NEEDED]:
+def _trace(m: Memory, process: int, stage: int) -> None:
+    if m[IS_TRACED] and m[stage + VALUE] >= 0:
+        chain, step = m[stage + CHAIN_ENTITY], m[stage + STEP]
+        emit(m, _CHAIN_STEP, m[process + ENTITY], m[process + INSTANCE], chain, m[stage + VALUE], step)
+
+
+def _complete(m: Memory, process: int, stage: int) -> None:
+    """Stimulus and response of a chain count in jobs that take part in it, when they have reached all positions.
+
+    The response can be an event before the last of them, such as the start of the runnable that reads.
+    """
+    if m[stage + REACHED] != m[stage + NEEDED]:
+        return
+    if m[stage + IS_MARKED]:
         route = m[stage + ROUTE]
         m[stage + IS_MARKED] = 0
         m[stage + VALUE] = m[route + STAMPS]
         m[route + STAMPS] += 1
         _observe(m, stage, _STIMULUS, m[stage + MARKED_AT], m[stage + VALUE])
+    if m[stage + HAS_RESPONDED]:
+        m[stage + HAS_RESPONDED] = 0
+        _trace(m, process, stage)
+        _observe(m, stage, _RESPONSE, m[stage + RESPONDED_AT], m[stage + VALUE])
 
 
 def _observe(m: Memory, stage: int, kind: int, time: int, value: int) -> None:
