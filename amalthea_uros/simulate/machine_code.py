@@ -7,6 +7,8 @@ from functools import cache
 from hashlib import blake2b
 from importlib.util import find_spec
 from inspect import getsource
+from os import environ
+from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, TypeAlias
 
@@ -20,9 +22,26 @@ Play: TypeAlias = Callable[[Memory], int]
 _MODULES = (accounts, activation, budgets, conditions, cores, following, jobs, loop, waiting)
 
 
-def is_available() -> bool:
-    """Whether numba is installed."""
-    return find_spec("numba") is not None
+#: Seconds to load machine code, with numba itself; and of a run that is worth making machine code, which later runs can load.
+_LOADING, _WORTH_MAKING = 1.0, 5.0
+
+
+def is_worth_it(seconds: float) -> bool:
+    """Whether to go on with machine code rather than interpreted for an estimated time.
+
+    Making it takes about 20 seconds, but only once: numba keeps it.
+    """
+    if seconds < _LOADING or find_spec("numba") is None:
+        return False
+    return seconds > _WORTH_MAKING or _is_kept()
+
+
+def _is_kept() -> bool:
+    """Whether numba has kept the machine code, as far as that can be seen without loading numba."""
+    folders = [Path(loop.__file__).parent / "__pycache__"]
+    if chosen := environ.get("NUMBA_CACHE_DIR"):
+        folders.append(Path(chosen))
+    return any(next(folder.glob(f"**/loop.{_name()}-*.nbi"), None) for folder in folders)
 
 
 @cache
@@ -41,7 +60,7 @@ def compiled() -> Play:
         namespace.update({name: machine[value] for name, value in namespace.items() if _is_in(value, machine)})
     play = FunctionType(loop.play.__code__, namespaces[loop], "play")
     # numba looks at the file of this function only, to see whether its machine code is out of date.
-    play.__qualname__ = f"play_{_digest()}"
+    play.__qualname__ = _name()
     signature = "int64(int64[::1])"
     try:
         return _as_play(njit(signature, cache=True)(play))
@@ -59,10 +78,11 @@ def _is_in(value: object, machine: dict[FunctionType, Any]) -> bool:
     return isinstance(value, FunctionType) and value in machine
 
 
-def _digest() -> str:
-    """Changes with every change of the kernel."""
+@cache
+def _name() -> str:
+    """A name that changes with every change of the kernel."""
     sources = "".join(getsource(module) for module in (*_MODULES, layout, operations))
-    return blake2b(sources.encode(), digest_size=8).hexdigest()
+    return f"play_{blake2b(sources.encode(), digest_size=8).hexdigest()}"
 
 
 def _as_play(function: Play) -> Play:

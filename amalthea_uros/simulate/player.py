@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from time import perf_counter
 from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
@@ -71,16 +72,17 @@ class Player:
     ----------
     until : end of the run, in time units
     traced : the part of the run of which events are recorded
+    is_compiled : whether the kernel is machine code by now
     """
 
     program: Program
     until: int
-    is_compiled: bool
     jobs: Taker
     observations: Taker
     events: Taker
     traced: tuple[int, int] = (0, 0)
     memory: Memory = field(init=False)
+    is_compiled: bool = False
     _regions: dict[int, int] = field(default_factory=dict)
     _values: int = 0
     _pools: dict[int, int] = field(default_factory=dict)
@@ -101,7 +103,7 @@ class Player:
             words += [0] * self._values
         self._arrivals = len(words)
         words += [0] * (self._places_for_arrivals * ARRIVAL_SIZE)
-        self.memory = cast(Memory, np.array(words, np.int64)) if self.is_compiled else words
+        self.memory = words
 
     def run(self) -> None:
         """Play to the end.
@@ -115,9 +117,13 @@ class Player:
         for edge in edges:
             while time < edge:
                 self.memory[IS_TRACED] = int(self.traced[0] <= time < self.traced[1])
+                begin, began = time, perf_counter()
                 time = min(edge, time + window)
                 count = self._prepare(time)
                 self._play_window(time)
+                if not self.is_compiled:
+                    left = (self.until - time) / (time - begin) * (perf_counter() - began)
+                    self.use_machine_code(if_worth=left)
                 if 2 * count < _OCCURRENCES:
                     window *= 2
                 elif count > 2 * _OCCURRENCES:
@@ -136,6 +142,12 @@ class Player:
                 self._grow_queues()
             elif code == ENDLESS:
                 raise EndlessJobError(int(self.memory[CAUSE]))
+
+    def use_machine_code(self, if_worth: float) -> None:
+        """Go on with machine code, if that is worth it for what is left: seconds, if interpreted. It changes no result."""
+        if machine_code.is_worth_it(if_worth):
+            self.memory = cast(Memory, np.array(self.memory, np.int64))
+            self.is_compiled = True
 
     # What the kernel gets.
 

@@ -13,7 +13,6 @@ import numpy as np
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.layout import (
     ACTIVATION,
     BEGIN,
@@ -48,11 +47,6 @@ if TYPE_CHECKING:
 
 #: Opens what the events of a run are written to, when the entities are known.
 OpenSink: TypeAlias = "Callable[[Sequence[Entity]], TraceSink]"
-
-#: More activations than this are quicker played by machine code, also if that has to be loaded first.
-_WORTH_LOADING = 20_000
-#: And more than this also if it has to be made first.
-_WORTH_COMPILING = 400_000
 
 
 def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] = ()) -> Simulation:
@@ -93,7 +87,6 @@ class _Run:
         self.player = Player(
             program,
             until=self.end,
-            is_compiled=_is_worth_compiling(program, self.end),
             jobs=lambda rows: jobs.add_rows(rows, self.jobs),
             observations=lambda rows: chains.add_rows(rows, self.routes),
             events=self._write,
@@ -207,11 +200,6 @@ class _Run:
 
 #: Findings about what only analyses do not know.
 _OF_ANALYSES = ("ANA002", "ANA003", "ANA004", "ANA005", "ANA007")
-
-
-def _is_worth_compiling(program: Program, end: int) -> bool:
-    """Whether a run is long enough for machine code."""
-    return machine_code.is_available()
 
 
 def _event_table(rows: NDArray[np.int64], program: Program) -> EventTable:
