@@ -17,7 +17,7 @@ from amalthea_uros.services.campaign.run import Outcome, Record, count_runs
 from amalthea_uros.services.campaign.tables import table_format, write_table
 from amalthea_uros.services.changes import sweep as sweeping
 from amalthea_uros.services.changes.change import Change
-from amalthea_uros.services.simulate import CampaignResult, plan_simulation, run_simulation, simulate_campaign
+from amalthea_uros.services.simulate import CampaignResult, plan_simulation, simulate_campaign, simulate_plan
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time, parse_time
@@ -160,7 +160,7 @@ def command(
         sys.exit(_campaign_code(campaign))
     plan = plan_simulation(paths, options, changes)
     pictures.check(plan)
-    result = run_simulation(plan, traces, with_metrics=with_metrics)
+    result = simulate_plan(plan, traces, with_metrics=with_metrics)
     show_findings(result.findings)
     _write_table(table, [result.simulation.record()])
     write_outputs(outputs, result)

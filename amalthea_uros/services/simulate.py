@@ -171,9 +171,7 @@ def plan_simulation(paths: StrPath | Iterable[StrPath], options: Options, change
     )
 
 
-def run_simulation(
-    plan: SimulationPlan, trace_paths: Iterable[StrPath] = (), *, with_metrics: bool = False
-) -> SimulationResult:
+def simulate_plan(plan: SimulationPlan, trace_paths: Iterable[StrPath] = (), *, with_metrics: bool = False) -> SimulationResult:
     """Simulate what was planned; parameters and errors as for `simulate_files`."""
     simulation = _simulated(plan.system, plan.options, [*map(_trace_opener, trace_paths)])
     return SimulationResult(
@@ -209,10 +207,10 @@ def simulate_files(
     WriteError : a trace cannot be written.
     InvalidArgumentError : the changes or settings name what does not exist or are wrong, or the format of a trace is not known.
     """
-    return run_simulation(plan_simulation(paths, options, changes), trace_paths, with_metrics=with_metrics)
+    return simulate_plan(plan_simulation(paths, options, changes), trace_paths, with_metrics=with_metrics)
 
 
-def simulate(
+def run_simulation(
     subject: StrPath | Iterable[StrPath] | System | Model,
     duration: str | Time,
     *,
