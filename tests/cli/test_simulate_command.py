@@ -9,7 +9,13 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from lxml import etree
+from support import ROOT
+from test_cli import amuros
+
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros.cli.main import main
+from amalthea_uros.services.simulate import run_simulation
 from amalthea_uros.simulate.results import (
     CoreObservation,
     CountObservation,
@@ -21,12 +27,6 @@ from amalthea_uros.simulate.results import (
     Simulation,
 )
 from amalthea_uros.timing.job_metric import JobMetric
-from lxml import etree
-from support import ROOT
-from test_cli import amuros
-
-from amalthea_uros.cli.main import main
-from amalthea_uros.services.simulate import run_simulation
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
@@ -126,6 +126,23 @@ def test_a_missed_limit_makes_the_exit_code_1(run):
     assert run(ADVANCED, "--seed", 999)[0] == 0
     assert run(ADVANCED, "--seed", 1001)[0] == 1
     assert run(ADVANCED, "--seed", 1001, "--set", "Control_Function.period=2ms")[0] == 0
+
+
+def test_changes_and_failures_are_shown_beside_the_result(run, tmp_path):
+    arguments = ("--set", "Control_Function.period=2ms", "--seed", 2001, "--output", f"json={tmp_path / 'r.json'}")
+    code, output, errors = run(ADVANCED, *arguments)
+    assert (code, output) == (1, "")
+    changed, closing = errors.splitlines()
+    assert changed == "Control_Function.period: 1 ms -> 2 ms"
+    assert closing.startswith("Observed over 1 s (seed 2001)")
+    assert run(ADVANCED, *arguments, "--runs", 2, "--jobs", 1)[0] == 1
+    assert json.loads((tmp_path / "r.json").read_text())["changes"] == [
+        {"key": "Control_Function.period", "from": "1 ms", "to": "2 ms"}
+    ]
+
+
+def test_a_run_in_which_nothing_happens_makes_the_exit_code_1(run):
+    assert run(ADVANCED, "--duration", "999us")[0] == 1
 
 
 def test_a_table_of_all_variants_and_seeds(run, tmp_path):
