@@ -294,7 +294,14 @@ def simulate_campaign(
             if on_outcome is not None:
                 on_outcome(outcome)
     outcomes.sort(key=lambda outcome: outcome.run.number)
-    return CampaignResult(paths=files, options=options, outcomes=tuple(outcomes), planned=len(runs), findings=opened.findings)
+    return CampaignResult(
+        paths=files,
+        options=options,
+        outcomes=tuple(outcomes),
+        planned=len(runs),
+        findings=opened.findings,
+        differences=differences,
+    )
 
 
 def _simulated(system: System, options: Options, sinks: Sequence[OpenSink] = ()) -> Simulation:
