@@ -196,7 +196,7 @@ WRONG = {
     "Event.period=1ms": "'sporadic' of 'Event' is RelativePeriodic, which has no period",
     "sporadic.jitter=1ms": "RelativePeriodic, which has no jitter; these have one: Periodic",
     "Free.priority=1": "'Free' is not mapped",
-    "Free.core=C0": "'Free' is mapped to no scheduler",
+    "Free.core=C0": "'Free' is not mapped to any scheduler",
     "A.core=C2": "several schedulers are responsible for the core 'C2'; choose one: A.scheduler=S1, A.scheduler=S2, A.scheduler=Server",
     "A.core=C9": "unknown core 'C9'",
     "A.scheduler=S9": "unknown scheduler 'S9'",
