@@ -7,7 +7,9 @@
 
 This module is the public interface:
 
-- files: `load`, `save`, `check_files`, `analyze_files`, `build`, `describe`, `diff`, `migrate`, with their results
+- files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
+  with their results
+- simulations of files, models and systems: `run_simulation`; changes of their values: `parse_change`, `parse_sweep`
 - AMALTHEA models: `Model`, `check`, `extract`; all AMALTHEA classes are in `amuros.am`
 - systems of the generic performance model: `analyze_system`, `sensitivity`, `propose_priorities`, `paths`, `build_model`; their classes
   are in `amuros.perf`
@@ -67,6 +69,13 @@ if TYPE_CHECKING:
     from amalthea_uros.services.build import BuildResult as BuildResult
     from amalthea_uros.services.build import build as build
     from amalthea_uros.services.build import describe as describe
+    from amalthea_uros.services.campaign.run import Outcome as Outcome
+    from amalthea_uros.services.campaign.run import Run as Run
+    from amalthea_uros.services.campaign.tables import write_table as write_table
+    from amalthea_uros.services.changes.change import Change as Change
+    from amalthea_uros.services.changes.change import parse_change as parse_change
+    from amalthea_uros.services.changes.sweep import Sweep as Sweep
+    from amalthea_uros.services.changes.sweep import parse_sweep as parse_sweep
     from amalthea_uros.services.check import CheckResult as CheckResult
     from amalthea_uros.services.check import check as check
     from amalthea_uros.services.check import check_files as check_files
@@ -75,6 +84,14 @@ if TYPE_CHECKING:
     from amalthea_uros.services.migrate import MigrationResult as MigrationResult
     from amalthea_uros.services.migrate import migrate as migrate
     from amalthea_uros.services.settings import CheckSettings as CheckSettings
+    from amalthea_uros.services.simulate import CampaignResult as CampaignResult
+    from amalthea_uros.services.simulate import SimulationResult as SimulationResult
+    from amalthea_uros.services.simulate import run_simulation as run_simulation
+    from amalthea_uros.services.simulate import simulate_campaign as simulate_campaign
+    from amalthea_uros.services.simulate import simulate_files as simulate_files
+    from amalthea_uros.simulate.options import Mode as Mode
+    from amalthea_uros.simulate.options import Options as Options
+    from amalthea_uros.simulate.results import Simulation as Simulation
     from amalthea_uros.timing.dataflow.paths import paths as paths
     from amalthea_uros.timing.settings import Memory as Memory
     from amalthea_uros.timing.settings import Settings as Settings
@@ -113,10 +130,17 @@ _NAMES = {
     "perf.system": ("System",),
     "services.analyze": ("AnalysisResult", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
+    "services.campaign.run": ("Outcome", "Run"),
+    "services.campaign.tables": ("write_table",),
+    "services.changes.change": ("Change", "parse_change"),
+    "services.changes.sweep": ("Sweep", "parse_sweep"),
     "services.check": ("CheckResult", "check", "check_files"),
     "services.diff": ("DiffResult", "diff"),
     "services.migrate": ("MigrationResult", "migrate"),
     "services.settings": ("CheckSettings",),
+    "services.simulate": ("CampaignResult", "SimulationResult", "run_simulation", "simulate_campaign", "simulate_files"),
+    "simulate.options": ("Mode", "Options"),
+    "simulate.results": ("Simulation",),
     "timing.dataflow.paths": ("paths",),
     "timing.settings": ("Memory", "Settings"),
     "units": ("parse_time",),

@@ -17,6 +17,7 @@ from amalthea_uros.report.terminal import Terminal
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Model
+    from amalthea_uros.services.changes.apply import Difference
 
 
 class Output(NamedTuple):
@@ -125,6 +126,12 @@ def show_text(result: object, on_error_stream: bool = False) -> None:
 def show_findings(findings: Iterable[Finding]) -> None:
     """Show findings on standard error."""
     Terminal(sys.stderr).findings(findings)
+
+
+def show_differences(differences: Iterable[Difference]) -> None:
+    """Show on standard error what changes did."""
+    for difference in differences:
+        Terminal(sys.stderr).line(f"{difference.target}: {difference.before} -> {difference.after}")
 
 
 def show_summaries(model: Model, targets: Sequence[str]) -> None:

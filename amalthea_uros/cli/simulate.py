@@ -8,16 +8,24 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.cli.output import Output, output_option, refuse_input, show_findings, write_outputs
+from amalthea_uros.cli.output import (
+    Output,
+    output_option,
+    refuse_input,
+    show_differences,
+    show_findings,
+    shows_text,
+    write_outputs,
+)
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.pictures import Pictures
 from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
 from amalthea_uros.report.wording import counted
-from amalthea_uros.services.campaign.run import Outcome, Record, count_runs
+from amalthea_uros.services.campaign.run import Outcome, count_runs
 from amalthea_uros.services.campaign.tables import table_format, write_table
 from amalthea_uros.services.changes import sweep as sweeping
 from amalthea_uros.services.changes.change import Change
-from amalthea_uros.services.simulate import CampaignResult, plan_simulation, run_simulation, simulate_campaign
+from amalthea_uros.services.simulate import CampaignResult, SimulationResult, plan_simulation, simulate_campaign, simulate_plan
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time, parse_time
@@ -160,10 +168,8 @@ def command(
         sys.exit(_campaign_code(campaign))
     plan = plan_simulation(paths, options, changes)
     pictures.check(plan)
-    result = run_simulation(plan, traces, with_metrics=with_metrics)
-    show_findings(result.findings)
-    _write_table(table, [result.simulation.record()])
-    write_outputs(outputs, result)
+    result = simulate_plan(plan, traces, with_metrics=with_metrics)
+    _show(result, table, outputs)
     pictures.write(result)
     sys.exit(1 if result.is_failed else 0)
 
@@ -175,6 +181,18 @@ def _check_targets(table: Path | None, traces: Sequence[Path], pictures: Picture
     if table is not None:
         refuse_input(table, f"--table {table}")
         table_format(table)
+
+
+def _show(result: SimulationResult, table: Path | None, outputs: Sequence[Output]) -> None:
+    from amalthea_uros.report.simulated import closing_line
+
+    show_findings(result.findings)
+    show_differences(result.differences)
+    if table is not None:
+        write_table(table, [result.simulation.record()])
+    write_outputs(outputs, result)
+    if result.is_failed and not shows_text(outputs):
+        click.echo(closing_line(result.simulation), err=True)
 
 
 def _campaign(
@@ -206,20 +224,20 @@ def _campaign(
 
 
 def _show_campaign(result: CampaignResult, table: Path | None, outputs: Sequence[Output]) -> None:
+    from amalthea_uros.report.text.campaign_result import closing_line
+
     show_findings(result.findings)
-    _write_table(table, result.rows)
+    show_differences(result.differences)
+    if table is not None:
+        write_table(table, result.rows)
     write_outputs(outputs, result)
+    if result.is_failed and not shows_text(outputs):
+        click.echo(closing_line(result), err=True)
     if not result.is_complete:
-        finished = f"{len(result.outcomes):,} of {counted(result.planned, 'run')}"
-        click.echo(f"interrupted: {finished} finished", err=True)
+        click.echo(f"interrupted: {len(result.outcomes):,} of {counted(result.planned, 'run')} finished", err=True)
 
 
 def _campaign_code(result: CampaignResult) -> int:
     if not result.is_complete:
         return _INTERRUPTED
-    return 1 if result.failed or result.missed else 0
-
-
-def _write_table(path: Path | None, rows: Sequence[Record]) -> None:
-    if path is not None:
-        write_table(path, rows)
+    return 1 if result.is_failed else 0

@@ -41,5 +41,10 @@ def _advice(kind: str, name: str, existing: list[str]) -> str:
         return f"the model has no {kind}"
     if near := get_close_matches(name, existing, n=3):
         return f"did you mean {' or '.join(map(repr, near))}?"
-    rest = len(existing) - _MOST_NAMES
-    return f"known: {', '.join(existing[:_MOST_NAMES])}" + (f" and {rest} more" if rest > 0 else "")
+    return f"known: {listed(existing)}"
+
+
+def listed(names: list[str]) -> str:
+    """Names as a list, which is cut if it is long."""
+    rest = len(names) - _MOST_NAMES
+    return ", ".join(names[:_MOST_NAMES]) + (f" and {rest} more" if rest > 0 else "")

@@ -81,8 +81,10 @@ class SimulationResult:
 
     @property
     def is_failed(self) -> bool:
-        """Whether a limit was observed as missed, or an activation was lost."""
-        return bool(self.simulation.missed or self.simulation.lost_activations)
+        """Whether a limit was observed as missed, an activation was lost, or nothing was executed."""
+        simulation = self.simulation
+        is_idle = not any(process.jobs or process.unfinished for process in simulation.processes)
+        return bool(simulation.missed or simulation.lost_activations or is_idle)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,6 +95,7 @@ class CampaignResult:
     ----------
     outcomes : in the order of the runs; those that were not finished when somebody interrupted are absent
     planned : number of runs
+    differences : what the changes of all runs did
     findings : problems found while reading the files
     """
 
@@ -101,11 +104,17 @@ class CampaignResult:
     outcomes: tuple[Outcome, ...]
     planned: int
     findings: tuple[Finding, ...]
+    differences: tuple[Difference, ...] = ()
 
     @property
     def rows(self) -> list[Record]:
         """The rows of a table of all runs."""
         return [outcome.row() for outcome in self.outcomes]
+
+    @property
+    def is_failed(self) -> bool:
+        """Whether a run could not be executed, or in one of them a limit was missed or an activation was lost."""
+        return bool(self.failed or self.missed)
 
     @property
     def is_complete(self) -> bool:
@@ -171,9 +180,7 @@ def plan_simulation(paths: StrPath | Iterable[StrPath], options: Options, change
     )
 
 
-def run_simulation(
-    plan: SimulationPlan, trace_paths: Iterable[StrPath] = (), *, with_metrics: bool = False
-) -> SimulationResult:
+def simulate_plan(plan: SimulationPlan, trace_paths: Iterable[StrPath] = (), *, with_metrics: bool = False) -> SimulationResult:
     """Simulate what was planned; parameters and errors as for `simulate_files`."""
     simulation = _simulated(plan.system, plan.options, [*map(_trace_opener, trace_paths)])
     return SimulationResult(
@@ -209,10 +216,10 @@ def simulate_files(
     WriteError : a trace cannot be written.
     InvalidArgumentError : the changes or settings name what does not exist or are wrong, or the format of a trace is not known.
     """
-    return run_simulation(plan_simulation(paths, options, changes), trace_paths, with_metrics=with_metrics)
+    return simulate_plan(plan_simulation(paths, options, changes), trace_paths, with_metrics=with_metrics)
 
 
-def simulate(
+def run_simulation(
     subject: StrPath | Iterable[StrPath] | System | Model,
     duration: str | Time,
     *,
@@ -277,6 +284,7 @@ def simulate_campaign(
     files = as_paths(paths)
     runs = plan_runs(sweeps, repetitions, options.seed)
     opened = open_system(files)
+    differences = describe(opened.system, options.settings, changes)
     _check_changes(opened.system, options.settings, changes, sweeps)
     job, executor = SimulationJob(opened.system, options, tuple(changes)), _executor(len(runs), workers, cluster)
     outcomes: list[Outcome] = []
@@ -286,7 +294,14 @@ def simulate_campaign(
             if on_outcome is not None:
                 on_outcome(outcome)
     outcomes.sort(key=lambda outcome: outcome.run.number)
-    return CampaignResult(paths=files, options=options, outcomes=tuple(outcomes), planned=len(runs), findings=opened.findings)
+    return CampaignResult(
+        paths=files,
+        options=options,
+        outcomes=tuple(outcomes),
+        planned=len(runs),
+        findings=opened.findings,
+        differences=differences,
+    )
 
 
 def _simulated(system: System, options: Options, sinks: Sequence[OpenSink] = ()) -> Simulation:

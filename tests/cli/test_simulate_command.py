@@ -15,7 +15,7 @@ from test_cli import amuros
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.cli.main import main
-from amalthea_uros.services.simulate import simulate
+from amalthea_uros.services.simulate import run_simulation
 from amalthea_uros.simulate.results import (
     CoreObservation,
     CountObservation,
@@ -126,6 +126,23 @@ def test_a_missed_limit_makes_the_exit_code_1(run):
     assert run(ADVANCED, "--seed", 999)[0] == 0
     assert run(ADVANCED, "--seed", 1001)[0] == 1
     assert run(ADVANCED, "--seed", 1001, "--set", "Control_Function.period=2ms")[0] == 0
+
+
+def test_changes_and_failures_are_shown_beside_the_result(run, tmp_path):
+    arguments = ("--set", "Control_Function.period=2ms", "--seed", 2001, "--output", f"json={tmp_path / 'r.json'}")
+    code, output, errors = run(ADVANCED, *arguments)
+    assert (code, output) == (1, "")
+    changed, closing = errors.splitlines()
+    assert changed == "Control_Function.period: 1 ms -> 2 ms"
+    assert closing.startswith("Observed over 1 s (seed 2001)")
+    assert run(ADVANCED, *arguments, "--runs", 2, "--jobs", 1)[0] == 1
+    assert json.loads((tmp_path / "r.json").read_text())["changes"] == [
+        {"key": "Control_Function.period", "from": "1 ms", "to": "2 ms"}
+    ]
+
+
+def test_a_run_in_which_nothing_happens_makes_the_exit_code_1(run):
+    assert run(ADVANCED, "--duration", "999us")[0] == 1
 
 
 def test_a_table_of_all_variants_and_seeds(run, tmp_path):
@@ -282,15 +299,17 @@ def test_wrong_use_writes_nothing(case, run, tmp_path, monkeypatch):
 def test_the_library_takes_texts_and_systems(run):
     from amalthea_uros.services.inputs import open_system
 
-    found = simulate(open_system([ADVANCED]).system, "10 ms", seed=7, mode="worst", changes=["Control_Function.period=2ms"])
+    found = run_simulation(
+        open_system([ADVANCED]).system, "10 ms", seed=7, mode="worst", changes=["Control_Function.period=2ms"]
+    )
     assert (found.duration, found.seed, found.mode) == (10 * MS, 7, "worst")
     assert found["Control_Function"].jobs == 5
-    assert simulate(ADVANCED, 10 * MS)["Control_Function"].jobs == 10
-    assert simulate([ADVANCED.with_suffix(".amxmi")], 10 * MS)["Control_Function"].jobs == 10
+    assert run_simulation(ADVANCED, 10 * MS)["Control_Function"].jobs == 10
+    assert run_simulation([ADVANCED.with_suffix(".amxmi")], 10 * MS)["Control_Function"].jobs == 10
     with pytest.raises(ValueError, match="'5' has no unit"):
-        simulate(ADVANCED, "5")
+        run_simulation(ADVANCED, "5")
     with pytest.raises(ValueError, match="unknown mode 'fast'; expected one of sampled, worst, best, average"):
-        simulate(ADVANCED, "5s", mode="fast")
+        run_simulation(ADVANCED, "5s", mode="fast")
 
 
 def test_help_says_how_to_write_changes_and_sweeps():

@@ -4,12 +4,15 @@ import csv
 import json
 import multiprocessing
 import os
+import pickle
 import sys
 import time
 from contextlib import closing
+from fractions import Fraction
 
 import campaign_jobs
 import pytest
+from support import ROOT
 
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.services.campaign.campaign import run_campaign
@@ -18,6 +21,10 @@ from amalthea_uros.services.campaign.run import Outcome, Run, plan_runs
 from amalthea_uros.services.campaign.tables import table_format, write_table
 from amalthea_uros.services.changes.change import Change
 from amalthea_uros.services.changes.sweep import parse_sweep
+from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.simulate import SimulationJob
+from amalthea_uros.simulate.options import Options
+from amalthea_uros.timing.settings import Settings
 
 
 def runs(count):
@@ -134,6 +141,16 @@ def test_a_cluster_without_the_package(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(InvalidArgumentError, match=r"pip install amuros\[cluster\]"):
         list(run_campaign(campaign_jobs.square, runs(1), cluster("tcp://127.0.0.1:1")))
+
+
+@pytest.mark.parametrize("path", [ROOT / "samples" / "drive-and-lift.amxmi", ROOT / "samples" / "drive-and-lift.yaml"])
+def test_the_job_of_a_simulation_can_be_sent_without_the_model_that_it_comes_from(path):
+    options = Options(duration=10**12, settings=Settings(scale=Fraction(1, 3)))
+    job = SimulationJob(open_system([path]).system, options, (Change("A", "x", "1ms"),))
+    data = pickle.dumps(job)
+    assert pickle.loads(data) == job
+    assert b"metamodel" not in data
+    assert len(data) < path.with_suffix(".amxmi").stat().st_size
 
 
 ROWS = [

@@ -11,7 +11,7 @@ from support import ROOT
 
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.perf import activities, distributions, hardware, mapping, os, software, stimuli
+from amalthea_uros.perf import activities, distributions, events, hardware, mapping, os, software, stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.changes.apply import apply, describe
 from amalthea_uros.services.changes.change import Change, parse_change
@@ -196,7 +196,7 @@ WRONG = {
     "Event.period=1ms": "'sporadic' of 'Event' is RelativePeriodic, which has no period",
     "sporadic.jitter=1ms": "RelativePeriodic, which has no jitter; these have one: Periodic",
     "Free.priority=1": "'Free' is not mapped",
-    "Free.core=C0": "'Free' is mapped to no scheduler",
+    "Free.core=C0": "'Free' is not mapped to any scheduler",
     "A.core=C2": "several schedulers are responsible for the core 'C2'; choose one: A.scheduler=S1, A.scheduler=S2, A.scheduler=Server",
     "A.core=C9": "unknown core 'C9'",
     "A.scheduler=S9": "unknown scheduler 'S9'",
@@ -231,6 +231,14 @@ def test_a_shared_stimulus_is_changed_for_one_process_only():
         name: [system.stimuli_by_name[each].period for each in system.processes[name].stimuli] for name in ("A", "B", "Both")
     }
     assert periods == {"A": [4 * MS], "B": [MS], "Both": [5 * MS, MS]}
+
+
+def test_a_shared_stimulus_to_which_an_event_refers_is_not_copied():
+    system = replace(SYSTEM, events=events.Events(events=(events.StimulusEvent(name="e", stimulus="tick"),)))
+    with pytest.raises(InvalidArgumentError, match=re.escape("change tick.period for all of them")):
+        apply(system, Settings(), [parse_change("A.period=4ms")])
+    periods = apply(system, Settings(), [parse_change("tick.period=4ms")]).system.stimuli_by_name
+    assert periods["tick"].period == 4 * MS
 
 
 def test_a_time_is_rounded_to_ticks_outwards():

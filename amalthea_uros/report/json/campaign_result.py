@@ -15,6 +15,7 @@ def content(result: CampaignResult) -> dict[str, Any]:
         "findings": [finding_json(finding) for finding in result.findings],
         "duration_ps": result.options.duration,
         "mode": result.options.mode,
+        "changes": [{"key": each.target, "from": each.before, "to": each.after} for each in result.differences],
         "planned_runs": result.planned,
         "runs": result.rows,
     }

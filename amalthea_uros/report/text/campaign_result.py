@@ -22,7 +22,7 @@ def write(result: CampaignResult, terminal: Terminal) -> None:
     terminal.table(("run", "seed", *targets, "observed"), rows, right=range(2 + len(targets)))
     if more := len(result.outcomes) - len(shown):
         terminal.line(f"  {counted(more, 'more run')} not shown; write all to a file with --table FILE")
-    terminal.heading(_closing_line(result))
+    terminal.heading(closing_line(result))
 
 
 def _values(outcome: Outcome, targets: list[str]) -> Iterator[str]:
@@ -39,7 +39,8 @@ def _observed(outcome: Outcome) -> str:
     return "; ".join(texts) or "nothing missed"
 
 
-def _closing_line(result: CampaignResult) -> str:
+def closing_line(result: CampaignResult) -> str:
+    """In how many runs something was missed, or that nothing was; and how many failed."""
     finished = len(result.outcomes)
     runs = counted(finished, "run") if result.is_complete else f"{finished:,} of {counted(result.planned, 'run')}"
     duration = time_text(result.options.duration)

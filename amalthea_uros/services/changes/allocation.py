@@ -1,90 +1,110 @@
-"""The mapping of processes to schedulers and cores."""
+"""The mapping of processes to schedulers, interrupt controllers and cores."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.key import ISR_ALLOCATIONS, TASK_ALLOCATIONS, UNSET, Configuration, Key
+from amalthea_uros.services.changes.key import ISR_ALLOCATIONS, TASK_ALLOCATIONS, UNSET, Configuration, Key, Place
 from amalthea_uros.services.names import require
 from amalthea_uros.timing.allocation import allocated_cores, scheduler_cores
 
 
-def _allocation(system: System, task: str) -> TaskAllocation:
-    """The only allocation of a task."""
-    found = [allocation for allocation in system.mapping.tasks if allocation.task == task]
-    if len(found) != 1:
-        raise InvalidArgumentError(f"{task!r} is mapped to {'several schedulers' if found else 'no scheduler'}")
-    return found[0]
+@dataclass(frozen=True, slots=True)
+class _Dispatchers:
+    """What dispatches processes: schedulers, or interrupt controllers.
 
+    Attributes
+    ----------
+    field : of an allocation, with the name of what dispatches the process; also the name of the key
+    names : of those in a system
+    cores : those for which one is responsible
+    has_affinity : whether an allocation can select one of several cores
+    """
 
-def _isr_allocation(system: System, isr: str) -> IsrAllocation:
-    """The only allocation of an interrupt service routine."""
-    found = [allocation for allocation in system.mapping.isrs if allocation.isr == isr]
-    if len(found) != 1:
-        raise InvalidArgumentError(
-            f"{isr!r} is mapped to {'several interrupt controllers' if found else 'no interrupt controller'}"
-        )
-    return found[0]
+    kind: str
+    field: str
+    place: Place
+    names: Callable[[System], Iterable[str]]
+    cores: Callable[[str, System], tuple[str, ...]]
+    has_affinity: bool
+
+    @property
+    def keys(self) -> Mapping[str, Key[str]]:
+        """The keys of the processes."""
+        return {self.field: Key(str, self._show, self._set), "core": Key(str, _show_core, self._set_core)}
+
+    def _allocations(self, system: System, process: str) -> list[str]:
+        allocations = getattr(system.mapping, self.place.collection)
+        return [getattr(each, self.field) for each in allocations if getattr(each, self.place.identifier) == process]
+
+    def _present(self, system: System, process: str) -> str:
+        """What dispatches a process."""
+        found = self._allocations(system, process)
+        if len(found) != 1:
+            mapped = f"mapped to several {self.kind}s" if found else f"not mapped to any {self.kind}"
+            raise InvalidArgumentError(f"{process!r} is {mapped}")
+        return found[0]
+
+    def _show(self, configuration: Configuration, process: str) -> str:
+        return ", ".join(self._allocations(configuration.system, process)) or UNSET
+
+    def _set(self, configuration: Configuration, process: str, name: str) -> Configuration:
+        """Map a process to something else, without a preference for one of its cores."""
+        self._present(configuration.system, process)
+        require(self.kind, [name], self.names(configuration.system))
+        return self._mapped(configuration, process, name, ())
+
+    def _set_core(self, configuration: Configuration, process: str, core: str) -> Configuration:
+        """Map a process to a core: by what dispatches it now if that is responsible for the core, otherwise by what alone is."""
+        system = configuration.system
+        present = self._present(system, process)
+        require("core", [core], system.cores)
+        responsible = [each for each in self.names(system) if self._can_select(each, core, system)]
+        name = present if present in responsible else self._only(responsible, process, core)
+        return self._mapped(configuration, process, name, (core,) if len(self.cores(name, system)) > 1 else ())
+
+    def _can_select(self, name: str, core: str, system: System) -> bool:
+        cores = self.cores(name, system)
+        return core in cores and (self.has_affinity or len(cores) == 1)
+
+    def _only(self, responsible: list[str], process: str, core: str) -> str:
+        if not responsible:
+            raise InvalidArgumentError(f"no {self.kind} is responsible for the core {core!r}")
+        if len(responsible) > 1:
+            choices = ", ".join(f"{process}.{self.field}={name}" for name in responsible)
+            raise InvalidArgumentError(f"several {self.kind}s are responsible for the core {core!r}; choose one: {choices}")
+        return responsible[0]
+
+    def _mapped(self, configuration: Configuration, process: str, name: str, cores: tuple[str, ...]) -> Configuration:
+        fields: dict[str, Any] = {self.field: name, **({"cores": cores} if self.has_affinity else {})}
+        return configuration._replace(system=self.place.with_fields(configuration.system, process, **fields))
 
 
 def _show_core(configuration: Configuration, process: str) -> str:
     return ", ".join(sorted(allocated_cores(configuration.system).get(process, ()))) or UNSET
 
 
-def _show_scheduler(configuration: Configuration, task: str) -> str:
-    return ", ".join(each.scheduler for each in configuration.system.mapping.tasks if each.task == task) or UNSET
+def _controller_cores(controller: str, system: System) -> tuple[str, ...]:
+    return system.interrupt_controllers[controller].cores
 
 
-def _show_controller(configuration: Configuration, isr: str) -> str:
-    return ", ".join(each.controller for each in configuration.system.mapping.isrs if each.isr == isr) or UNSET
-
-
-def _set_scheduler(configuration: Configuration, task: str, scheduler: str) -> Configuration:
-    """Map a task to a scheduler, without a preference for one of its cores."""
-    system = configuration.system
-    _allocation(system, task)
-    require("scheduler", [scheduler], system.schedulers)
-    return configuration._replace(system=TASK_ALLOCATIONS.with_fields(system, task, scheduler=scheduler, cores=()))
-
-
-def _set_core(configuration: Configuration, task: str, core: str) -> Configuration:
-    """Map a task to a core: by its present scheduler if it is responsible for the core, otherwise by the only one that is."""
-    system = configuration.system
-    present = _allocation(system, task).scheduler
-    require("core", [core], system.cores)
-    responsible = [name for name in system.schedulers if core in scheduler_cores(name, system)]
-    scheduler = present if present in responsible else _only("scheduler", responsible, core, task)
-    cores = (core,) if len(scheduler_cores(scheduler, system)) > 1 else ()
-    return configuration._replace(system=TASK_ALLOCATIONS.with_fields(system, task, scheduler=scheduler, cores=cores))
-
-
-def _set_controller(configuration: Configuration, isr: str, controller: str) -> Configuration:
-    system = configuration.system
-    _isr_allocation(system, isr)
-    require("interrupt controller", [controller], system.interrupt_controllers)
-    return configuration._replace(system=ISR_ALLOCATIONS.with_fields(system, isr, controller=controller))
-
-
-def _set_isr_core(configuration: Configuration, isr: str, core: str) -> Configuration:
-    """Map an interrupt service routine to the only interrupt controller that is responsible for a core alone."""
-    system = configuration.system
-    _isr_allocation(system, isr)
-    require("core", [core], system.cores)
-    responsible = [each.name for each in system.interrupt_controllers.values() if each.cores == (core,)]
-    controller = _only("interrupt controller", responsible, core, isr)
-    return configuration._replace(system=ISR_ALLOCATIONS.with_fields(system, isr, controller=controller))
-
-
-def _only(kind: str, responsible: list[str], core: str, process: str) -> str:
-    if not responsible:
-        raise InvalidArgumentError(f"no {kind} is responsible for the core {core!r}")
-    if len(responsible) > 1:
-        key = "scheduler" if kind == "scheduler" else "controller"
-        choices = ", ".join(f"{process}.{key}={name}" for name in responsible)
-        raise InvalidArgumentError(f"several {kind}s are responsible for the core {core!r}; choose one: {choices}")
-    return responsible[0]
-
-
-TASK_KEYS = {"scheduler": Key(str, _show_scheduler, _set_scheduler), "core": Key(str, _show_core, _set_core)}
-ISR_KEYS = {"controller": Key(str, _show_controller, _set_controller), "core": Key(str, _show_core, _set_isr_core)}
+TASK_KEYS = _Dispatchers(
+    kind="scheduler",
+    field="scheduler",
+    place=TASK_ALLOCATIONS,
+    names=lambda system: system.schedulers,
+    cores=scheduler_cores,
+    has_affinity=True,
+).keys
+ISR_KEYS = _Dispatchers(
+    kind="interrupt controller",
+    field="controller",
+    place=ISR_ALLOCATIONS,
+    names=lambda system: system.interrupt_controllers,
+    cores=_controller_cores,
+    has_affinity=False,
+).keys

@@ -26,6 +26,11 @@ class Difference:
     before: str
     after: str
 
+    @property
+    def target(self) -> str:
+        """The object and the key, such as "Executor_Task.period"."""
+        return f"{self.object}.{self.key}"
+
 
 def apply(system: System, settings: Settings, changes: Iterable[Change]) -> Configuration:
     """The system and the settings with changes.

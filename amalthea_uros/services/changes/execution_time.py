@@ -13,6 +13,7 @@ from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.changes.key import ISRS, RUNNABLES, TASKS, UNSET, Configuration, Key, Place
 from amalthea_uros.services.changes.values import duration
+from amalthea_uros.services.names import listed
 from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.clocks import frequency_of
 from amalthea_uros.timing.stretches import executed
@@ -108,7 +109,8 @@ def _set_process(configuration: Configuration, name: str, time: ExecutionTime) -
     system = configuration.system
     process = system.processes[name]
     distribution = _distribution(time, lambda: _frequency(name, [name], configuration))
-    runnables = [each for each in system.runnables if each in _called(name, system) and _demands(_body(each, system))]
+    called = _called(name, system)
+    runnables = [each for each in system.runnables if each in called and _demands(_body(each, system))]
     match _demands(walk(process.activities)), runnables:
         case [], [runnable] if _callers(runnable, system) == [name]:
             return _with_demand(configuration, RUNNABLES, runnable, distribution)
@@ -116,7 +118,7 @@ def _set_process(configuration: Configuration, name: str, time: ExecutionTime) -
             return _with_demand(configuration, TASKS if isinstance(process, Task) else ISRS, name, distribution)
     if not runnables:
         raise InvalidArgumentError(f"{name!r} executes nothing that has an execution time")
-    choices = ", ".join(f"{each}.execution_time" for each in runnables)
+    choices = listed([f"{each}.execution_time" for each in runnables])
     raise InvalidArgumentError(f"{name!r} has no single execution time of its own; change those of its runnables: {choices}")
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.distributions import Distribution, Uniform, highest
+from amalthea_uros.perf.events import StimulusEvent
 from amalthea_uros.perf.software import Process, Task
 from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Stimulus, Synthetic
 from amalthea_uros.perf.system import System
@@ -90,6 +91,9 @@ def _with_process_value(system: System, name: str, field: str, value: object) ->
     fields: dict[str, Any] = {field: value}
     if sum(stimulus.name in other.stimuli for other in system.processes.values()) == 1:
         return STIMULI.with_fields(system, stimulus.name, **fields)
+    if any(isinstance(event, StimulusEvent) and event.stimulus == stimulus.name for event in system.events.events):
+        message = f"{stimulus.name!r} activates other processes, too, and an event refers to it; change {stimulus.name}.{field}"
+        raise InvalidArgumentError(f"the stimulus {message} for all of them")
     own = replace(stimulus, name=_unused_name(f"{stimulus.name} of {name}", system), **fields)
     place = TASKS if isinstance(process, Task) else ISRS
     renamed = tuple(own.name if each == stimulus.name else each for each in process.stimuli)
