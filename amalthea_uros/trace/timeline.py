@@ -7,7 +7,7 @@ the states on a core the runnables that the job is in. The slices of a track are
 from __future__ import annotations
 
 from collections.abc import Iterator
-from enum import Enum
+from enum import IntEnum
 from typing import NamedTuple
 
 from amalthea_uros.trace.charts import ON_CORE, PROCESS
@@ -15,12 +15,12 @@ from amalthea_uros.trace.table import EventKind, EventTable
 from amalthea_uros.trace.vocabulary import ENTERING, LEAVING
 
 
-class Change(Enum):
-    """What happens on a track."""
+class Change(IntEnum):
+    """What happens on a track; the numbers are those of Perfetto's event types."""
 
-    BEGIN = "begin"
-    END = "end"
-    STEP = "step"
+    BEGIN = 1
+    END = 2
+    STEP = 3
 
 
 #: The number of a flow contains that of the chain above these bits, and that of the occurrence in them.
