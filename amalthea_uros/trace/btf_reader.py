@@ -110,7 +110,7 @@ class Reader:
     def _new_pattern(self, source: str, kind: str, target: str, event: str, place: Place) -> int:
         """The number of a pattern, by fields as they are in the file."""
         if not self._numbers:
-            self._header.report_missing(place)
+            self._header.end(place)
         pattern = self._resolved(source.strip(BLANKS), kind.strip(BLANKS), target.strip(BLANKS), event.strip(BLANKS), place)
         if pattern is None:
             number = _LEFT_OUT
