@@ -91,7 +91,7 @@ class Timeline:
             elif kind == EventKind.RUNNABLE_TERMINATE:
                 yield from self._end_runnable(time, source, source_instance, target)
             elif kind == EventKind.CHAIN_STEP:
-                yield Mark(time, source, Change.STEP, "", target, (target + 1 << _OCCURRENCE_BITS) + instance, note)
+                yield Mark(time, source, Change.STEP, "", target, _flow(target, instance), note)
 
     def finish(self) -> Iterator[Mark]:
         """The ends of the slices that are still open after the last event."""
@@ -155,3 +155,7 @@ class Timeline:
     def _hide(self, time: int, process: int) -> Iterator[Mark]:
         for _ in range(self._depths.pop(process, 0)):
             yield Mark(time, process, Change.END)
+
+
+def _flow(chain: int, occurrence: int) -> int:
+    return (chain + 1 << _OCCURRENCE_BITS) + occurrence % (1 << _OCCURRENCE_BITS)
