@@ -32,6 +32,7 @@ class Header:
     def __init__(self, index: EntityIndex, problems: Problems) -> None:
         self.scale = TIMESCALES[_DEFAULT]
         self._index, self._problems = index, problems
+        self._has_events = False
         self._table = ""
         self._seen: set[str] = set()
         self._types: dict[str, str] = {}
@@ -53,8 +54,9 @@ class Header:
             first, _, second = value.strip(BLANKS).partition(" ")
             self._map(keyword, first, second.strip(BLANKS))
 
-    def report_missing(self, place: Place) -> None:
+    def end(self, place: Place) -> None:
         """Report what should have been said before the first event, which is at a place."""
+        self._has_events = True
         if "version" not in self._seen:
             self._problems.add("TRC005", Severity.WARNING, "the header has no #version", place, "Check that this is BTF.")
         if "timescale" not in self._seen:
@@ -78,7 +80,10 @@ class Header:
         return self._known.get(field)
 
     def _set_timescale(self, unit: str, place: Place) -> None:
-        if unit in TIMESCALES:
+        if self._has_events:
+            message = "the timescale comes after the first event; it is ignored"
+            self._problems.add("TRC005", Severity.WARNING, message, place, "Move #timescale to the top.")
+        elif unit in TIMESCALES:
             self.scale = TIMESCALES[unit]
         else:
             message = f"unknown timescale {unit!r}; assuming {_DEFAULT}"

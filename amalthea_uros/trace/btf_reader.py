@@ -6,13 +6,13 @@ from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
-from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.btf_header import Header
 from amalthea_uros.trace.btf_names import BLANKS
-from amalthea_uros.trace.entity_index import EntityIndex
-from amalthea_uros.trace.problems import Place, Problems
-from amalthea_uros.trace.row_tables import BLOCK, MAX, NumberedTable, Pattern, Row, note_of, numbered_table, tables_of
-from amalthea_uros.trace.table import NO_NOTE, Entity, EventKind, EventTable
+from amalthea_uros.trace.line_reader import LineReader
+from amalthea_uros.trace.problems import Place
+from amalthea_uros.trace.row_tables import BLOCK, MAX, NumberedTable, Pattern, Row, note_of, numbered_table
+from amalthea_uros.trace.table import NO_NOTE, EventKind
 from amalthea_uros.trace.text_lines import opened_text
 from amalthea_uros.trace.vocabulary import EVENTS, SOURCES
 
@@ -44,30 +44,13 @@ _NUMBERS = (0, 2, 5)
 _SIMULATION = "SIM"
 
 
-class Reader:
-    """Gives the events of a BTF file; `amalthea_uros.trace.readers.TraceReader` tells how it is used."""
+class Reader(LineReader):
+    """Gives the events of a BTF file."""
 
     def __init__(self, path: Path) -> None:
-        self._path = path
-        self._problems = Problems(path)
-        self._index = EntityIndex()
+        super().__init__(path)
         self._header = Header(self._index, self._problems)
         self._numbers: dict[tuple[str, str, str, str], int] = {}
-        self._patterns: list[Pattern] = []
-        self._last = 0
-
-    @property
-    def entities(self) -> Sequence[Entity]:
-        """The entities so far."""
-        return self._index.entities
-
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """The problems so far."""
-        return self._problems.findings
-
-    def __iter__(self) -> Iterator[EventTable]:
-        return tables_of(self.numbered())
 
     def numbered(self) -> Iterator[NumberedTable]:
         """The events, with the number of the line of each."""
@@ -110,7 +93,7 @@ class Reader:
     def _new_pattern(self, source: str, kind: str, target: str, event: str, place: Place) -> int:
         """The number of a pattern, by fields as they are in the file."""
         if not self._numbers:
-            self._header.report_missing(place)
+            self._header.end(place)
         pattern = self._resolved(source.strip(BLANKS), kind.strip(BLANKS), target.strip(BLANKS), event.strip(BLANKS), place)
         if pattern is None:
             number = _LEFT_OUT

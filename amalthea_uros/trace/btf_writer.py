@@ -61,7 +61,7 @@ class TraceEncoder:
         mappings = self._mappings_of_new_entities()
         is_known = np.isin(table.kind, _KNOWN)
         if not is_known.all():
-            table = table.map_columns(lambda column: column[is_known])
+            table = table.where(is_known)
         times = table.time
         if self._scale > 1:
             times, rest = np.divmod(times, self._scale)

@@ -1,6 +1,7 @@
 """Traces as JSON of Chrome's trace viewer, which Perfetto and others show ("Trace Event Format"); the content is that of `perfetto`.
 
-Slices are complete events (X), because begin and end events of one track at the same time are ambiguous.
+Slices are complete events (X), because begin and end events of one track at the same time are ambiguous. There is no `displayTimeUnit`:
+older versions of Perfetto took it for the unit of the times, which are microseconds.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from amalthea_uros.trace.timeline import Change, Mark, Timeline
 #: What the format calls processes.
 _CORES, _PROCESSES = 1, 2
 _GROUPS = {_CORES: "Cores", _PROCESSES: "Tasks and ISRs"}
+#: Threads have numbers from here on: 0 is the idle thread, and the one with the number of its process is the main thread.
+_FIRST = 16
 
 
 class _Track:
@@ -58,8 +61,8 @@ class TraceEncoder:
 
     def begin(self) -> bytes:
         """The names of the groups of tracks."""
-        groups = (_metadata("process_name", group, 0, name=title) for group, title in _GROUPS.items())
-        return ('{"displayTimeUnit":"ns","traceEvents":[\n' + ",\n".join(groups)).encode()
+        groups = (_metadata("process_name", group, group, name=title) for group, title in _GROUPS.items())
+        return ('{"traceEvents":[\n' + ",\n".join(groups)).encode()
 
     def encode(self, table: EventTable) -> bytes:
         """The slices that end in some events."""
@@ -81,14 +84,14 @@ class TraceEncoder:
 
     def _slice(self, mark: Mark, end: int) -> str:
         name = json.dumps(mark.state or self._entities[mark.entity].name, ensure_ascii=False)
-        place = f'"ph":"X","pid":{self._group(mark.track)},"tid":{mark.track},"name":{name}'
+        place = f'"ph":"X","pid":{self._group(mark.track)},"tid":{_FIRST + mark.track},"name":{name}'
         times = f'"ts":{_microseconds(mark.time)},"dur":{_microseconds(end - mark.time)}'
         return f"{{{place},{times}{_flow(mark)}}}"
 
     def _description(self, track: int) -> Iterator[str]:
-        group, name = self._group(track), self._entities[track].name
-        yield f",\n{_metadata('thread_name', group, track, name=name)}"
-        yield f",\n{_metadata('thread_sort_index', group, track, sort_index=track)}"
+        group, thread, name = self._group(track), _FIRST + track, self._entities[track].name
+        yield f",\n{_metadata('thread_name', group, thread, name=name)}"
+        yield f",\n{_metadata('thread_sort_index', group, thread, sort_index=track)}"
 
     def _group(self, track: int) -> int:
         return _CORES if self._entities[track].kind is EntityKind.CORE else _PROCESSES
@@ -102,8 +105,8 @@ def _flow(mark: Mark) -> str:
     return f',"bind_id":"{mark.flow:#x}","flow_out":true{incoming}'
 
 
-def _metadata(kind: str, group: int, track: int, **arguments: str | int) -> str:
-    event = {"ph": "M", "name": kind, "pid": group, "tid": track, "args": arguments}
+def _metadata(kind: str, group: int, thread: int, **arguments: str | int) -> str:
+    event = {"ph": "M", "name": kind, "pid": group, "tid": thread, "args": arguments}
     return json.dumps(event, ensure_ascii=False, separators=(",", ":"))
 
 

@@ -3,63 +3,50 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.csv_format import EVENT_NAMES, HEADER
-from amalthea_uros.trace.entity_index import EntityIndex
-from amalthea_uros.trace.problems import Place, Problems
-from amalthea_uros.trace.row_tables import BLOCK, MAX, NumberedTable, Pattern, Row, note_of, numbered_table, tables_of
-from amalthea_uros.trace.table import Entity, EntityKind, EventTable
+from amalthea_uros.trace.line_reader import LineReader
+from amalthea_uros.trace.problems import Place
+from amalthea_uros.trace.row_tables import BLOCK, MAX, NumberedTable, Row, note_of, numbered_table
+from amalthea_uros.trace.table import EntityKind
 from amalthea_uros.trace.text_lines import opened_text
-
-if TYPE_CHECKING:
-    from _csv import Reader as _CsvReader
 
 _KINDS = {kind.value: kind for kind in EntityKind}
 
 
-class Reader:
-    """Gives the events of a CSV file; `amalthea_uros.trace.readers.TraceReader` tells how it is used."""
+class Reader(LineReader):
+    """Gives the events of a CSV file."""
 
     def __init__(self, path: Path) -> None:
-        self._path = path
-        self._problems = Problems(path)
-        self._index = EntityIndex()
+        super().__init__(path)
         self._numbers: dict[tuple[str, ...], int] = {}
-        self._patterns: list[Pattern] = []
-        self._last = 0
-
-    @property
-    def entities(self) -> Sequence[Entity]:
-        """The entities so far."""
-        return self._index.entities
-
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """The problems so far."""
-        return self._problems.findings
-
-    def __iter__(self) -> Iterator[EventTable]:
-        return tables_of(self.numbered())
 
     def numbered(self) -> Iterator[NumberedTable]:
         """The events, with the number of the line of each."""
         with opened_text(self._path, self._problems) as stream:
-            reader = csv.reader(stream)
-            if next(reader, None) != HEADER:
+            lines = self._lines(stream)
+            if next(lines, (0, None))[1] != HEADER:
                 message = f"the first line is not the header of a trace: {','.join(HEADER)}"
                 self._problems.add("TRC005", Severity.WARNING, message, Place(1, 1), "Check that this is a trace.")
-            while rows := self._rows(reader):
-                yield numbered_table(rows, self._patterns, self._index, scale=1)
+            rows = (row for line, fields in lines if (row := self._row(line, fields)) is not None)
+            while block := list(islice(rows, BLOCK)):
+                yield numbered_table(block, self._patterns, self._index, scale=1)
 
-    def _rows(self, reader: _CsvReader) -> list[Row]:
-        """The next rows, none at the end."""
-        read = (self._row(reader.line_num, fields) for fields in reader)
-        return list(islice(filter(None, read), BLOCK))
+    def _lines(self, stream: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
+        """The lines with their numbers; those that are not CSV, such as ones with a carriage return in a name, are left out."""
+        reader = csv.reader(stream)
+        while True:
+            try:
+                for fields in reader:
+                    yield reader.line_num, fields
+                return
+            except csv.Error as error:
+                message = f"a line is not CSV: {error}; it is ignored"
+                self._problems.add("TRC002", Severity.ERROR, message, Place(reader.line_num, 1))
 
     def _row(self, line: int, fields: Sequence[str]) -> Row | None:
         try:
@@ -85,8 +72,7 @@ class Reader:
         return time, pattern, job, instance, note_of(note_field, self._patterns[pattern][0], self._index, note_field), line
 
     def _new_pattern(self, event: str, source_kind: str, source: str, target_kind: str, target: str) -> int:
-        kind = EVENT_NAMES[event]
-        source_index = self._index.index(_KINDS[source_kind], source)
+        kind, of_source, of_target = EVENT_NAMES[event], _KINDS[source_kind], _KINDS[target_kind]
         number = self._numbers[event, source_kind, source, target_kind, target] = len(self._patterns)
-        self._patterns.append((kind, source_index, self._index.index(_KINDS[target_kind], target)))
+        self._patterns.append((kind, self._index.index(of_source, source), self._index.index(of_target, target)))
         return number

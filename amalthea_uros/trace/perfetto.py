@@ -20,7 +20,6 @@ _TYPE, _NAME_IID, _TRACK_UUID, _FLOW_IDS = 9, 10, 11, 47
 _UUID, _NAME, _PARENT_UUID, _CHILD_ORDERING, _SIBLING_ORDER_RANK, _SIBLING_MERGE_BEHAVIOR = 1, 2, 5, 11, 12, 15
 _EVENT_NAMES, _EVENT_NAME_IID, _EVENT_NAME_NAME = 2, 1, 2
 
-_TYPES = {Change.BEGIN: 1, Change.END: 2, Change.STEP: 3}
 _EXPLICIT = 3  # ChildTracksOrdering
 _NEVER_MERGED = 1  # SiblingMergeBehavior: else tracks of the same name are one
 _CLEARED, _NEEDS_STATE = 1, 2  # SequenceFlags
@@ -76,7 +75,7 @@ class TraceEncoder:
         return b"".join(packets)
 
     def _event(self, mark: Mark) -> bytes:
-        event = integer(_TYPE, _TYPES[mark.change]) + integer(_TRACK_UUID, _FIRST + mark.track)
+        event = integer(_TYPE, mark.change) + integer(_TRACK_UUID, _FIRST + mark.track)
         if mark.change is Change.END:
             return event
         event += integer(_NAME_IID, _STATES[mark.state] if mark.state else _FIRST + mark.entity)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -42,11 +42,6 @@ def numbered_table(rows: Sequence[Row], patterns: Sequence[Pattern], index: Enti
         index.entities, time * scale, kind.astype(np.int16), source, source_instance, target, target_instance, note
     )
     return table, line
-
-
-def tables_of(numbered: Iterator[NumberedTable]) -> Iterator[EventTable]:
-    """The tables without the numbers of their lines."""
-    return (table for table, _ in numbered)
 
 
 def note_of(text: str, kind: EventKind, index: EntityIndex, name: str) -> int:

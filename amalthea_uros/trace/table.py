@@ -138,6 +138,10 @@ class EventTable:
         """The events with these numbers, the last one excluded; its columns share the memory of this table."""
         return self.map_columns(lambda column: column[first:last])
 
+    def where(self, is_kept: NDArray[np.bool_]) -> EventTable:
+        """The events for which a value is true."""
+        return self.map_columns(lambda column: column[is_kept])
+
     def map_columns(self, change: Callable[[NDArray[Any]], NDArray[Any]]) -> EventTable:
         """The table in which each column is what a function makes of it."""
         return EventTable(self.entities, *map(change, self.to_dict().values()))

@@ -7,7 +7,7 @@ the states on a core the runnables that the job is in. The slices of a track are
 from __future__ import annotations
 
 from collections.abc import Iterator
-from enum import Enum
+from enum import IntEnum
 from typing import NamedTuple
 
 from amalthea_uros.trace.charts import ON_CORE, PROCESS
@@ -15,12 +15,12 @@ from amalthea_uros.trace.table import EventKind, EventTable
 from amalthea_uros.trace.vocabulary import ENTERING, LEAVING
 
 
-class Change(Enum):
-    """What happens on a track."""
+class Change(IntEnum):
+    """What happens on a track; the numbers are those of Perfetto's event types."""
 
-    BEGIN = "begin"
-    END = "end"
-    STEP = "step"
+    BEGIN = 1
+    END = 2
+    STEP = 3
 
 
 #: The number of a flow contains that of the chain above these bits, and that of the occurrence in them.
@@ -91,7 +91,7 @@ class Timeline:
             elif kind == EventKind.RUNNABLE_TERMINATE:
                 yield from self._end_runnable(time, source, source_instance, target)
             elif kind == EventKind.CHAIN_STEP:
-                yield Mark(time, source, Change.STEP, "", target, (target + 1 << _OCCURRENCE_BITS) + instance, note)
+                yield Mark(time, source, Change.STEP, "", target, _flow(target, instance), note)
 
     def finish(self) -> Iterator[Mark]:
         """The ends of the slices that are still open after the last event."""
@@ -155,3 +155,7 @@ class Timeline:
     def _hide(self, time: int, process: int) -> Iterator[Mark]:
         for _ in range(self._depths.pop(process, 0)):
             yield Mark(time, process, Change.END)
+
+
+def _flow(chain: int, occurrence: int) -> int:
+    return (chain + 1 << _OCCURRENCE_BITS) + occurrence % (1 << _OCCURRENCE_BITS)

@@ -158,9 +158,15 @@ def test_a_timescale_that_does_not_exist(read):
     assert (finding.rule, finding.location.line) == ("TRC005", 2)
 
 
+def test_a_timescale_that_comes_too_late(read):
+    rows, findings = read("#version 2.3.0\n5,Core_1,0,T,Task_A,0,start\n#timescale s\n6,Core_1,0,T,Task_A,0,terminate\n")
+    assert [row[0] for row in rows] == [5000, 6000]
+    assert [(finding.rule, finding.location.line) for finding in findings] == [("TRC005", 2), ("TRC005", 3)]
+
+
 def test_a_damaged_packed_file_is_read_up_to_the_damage(tmp_path):
     path = tmp_path / "run.btf.gz"
-    path.write_bytes(gzip.compress((HEADER + LINES * 1).encode())[:-10])
+    path.write_bytes(gzip.compress((HEADER + LINES).encode())[:-10])
     reader = open_trace(path)
     list(reader)
     assert [finding.rule for finding in reader.findings] == ["TRC006"]

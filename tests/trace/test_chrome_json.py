@@ -49,6 +49,13 @@ def test_a_preemption_in_exact_times():
     ]
 
 
+def test_no_thread_is_the_idle_one_or_the_main_one_of_its_process():
+    shown = events(ENTITIES, table(ENTITIES, PREEMPTION))
+    threads = {(event["pid"], event["tid"]) for event in shown if event["ph"] == "X"}
+    assert len(threads) == 3
+    assert not {tid for _, tid in threads} & {0, *(pid for pid, _ in threads)}
+
+
 def test_arrows_along_a_chain():
     entities = [*ENTITIES, Entity(EntityKind.CHAIN, 'The "chain"')]
     steps = [(1, TASK_A, 5, 0), (2, TASK_B, 5, 1), (3, TASK_A, 6, 0)]

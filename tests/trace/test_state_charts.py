@@ -106,6 +106,24 @@ def test_a_part_of_a_legal_trace_is_legal(random, first):
     assert charts.findings == ()
 
 
+@given(st.randoms(use_true_random=False), st.data())
+def test_a_lost_transition_is_found(random, data):
+    trace = random_trace(random, steps=100)
+    events = list(zip(trace.kind.tolist(), trace.target.tolist(), trace.target_instance.tolist(), strict=True))
+    # The activation of the first job may be before the begin of a trace, and the last transition of a job after its end.
+    later, followed = set(), []
+    for row, (kind, *job) in reversed(list(enumerate(events))):
+        if kind in PROCESS:
+            followed += [row] if tuple(job) in later and kind != K.ACTIVATE else []
+            later.add(tuple(job))
+    if followed:
+        lost = data.draw(st.sampled_from(followed))
+        charts = StateCharts()
+        charts.check(trace.rows(0, lost))
+        charts.check(trace.rows(lost + 1, len(trace)))
+        assert charts.findings
+
+
 RUNNING = process_rows(WAYS["running"])
 
 

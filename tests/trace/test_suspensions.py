@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from traces import chunks, random_trace, said, table
 
-from amalthea_uros.trace.suspensions import with_suspensions
+from amalthea_uros.trace.suspensions import RunnableSuspensions
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 
 K = EventKind
@@ -31,7 +31,7 @@ def test_the_inner_runnable_is_suspended_first_and_resumed_last():
             (50, K.WAIT, CORE, 0, TASK, 4),
         ],
     )
-    [complete] = with_suspensions([recorded])
+    complete = RunnableSuspensions().insert(recorded)
     assert said(complete)[3:9] == said(
         table(
             ENTITIES,
@@ -52,5 +52,5 @@ def test_the_inner_runnable_is_suspended_first_and_resumed_last():
 def test_of_a_legal_trace_they_are_what_was_taken_away(random, size):
     legal = random_trace(random, steps=150)
     paused = np.isin(legal.kind, [K.RUNNABLE_SUSPEND, K.RUNNABLE_RESUME])
-    recorded = legal.map_columns(lambda column: column[~paused])
-    assert said(with_suspensions(chunks(recorded, size))) == said(legal)
+    recorded = legal.where(~paused)
+    assert said(map(RunnableSuspensions().insert, chunks(recorded, size))) == said(legal)

@@ -104,5 +104,5 @@ def test_the_slices_of_each_track_are_nested_and_fill_the_time_of_each_job(rando
 @given(st.randoms(use_true_random=False))
 def test_without_the_suspensions_of_runnables_the_picture_is_the_same(random):
     trace = random_trace(random, steps=150)
-    without = trace.map_columns(lambda column: column[(trace.kind != K.RUNNABLE_SUSPEND) & (trace.kind != K.RUNNABLE_RESUME)])
+    without = trace.where((trace.kind != K.RUNNABLE_SUSPEND) & (trace.kind != K.RUNNABLE_RESUME))
     assert list(Timeline().marks(without)) == list(Timeline().marks(trace))

@@ -3,6 +3,8 @@
 import gzip
 import io
 import json
+import os
+from pathlib import Path
 from random import Random
 
 import pytest
@@ -17,8 +19,8 @@ TRACE = table(ENTITIES, [(5, EventKind.TRIGGER, 0, 0, 0, 0)])
 FORMATS = {
     "run.btf": b"#version 2.3.0\n",
     "run.csv": b"time_ps,",
-    "run.json": b'{"displayTimeUnit"',
-    "run.perfetto.json": b'{"displayTimeUnit"',
+    "run.json": b'{"traceEvents"',
+    "run.perfetto.json": b'{"traceEvents"',
     "run.pftrace": b"\x0a",
     "run.perfetto-trace": b"\x0a",
 }
@@ -80,6 +82,17 @@ def test_a_place_that_cannot_be_written_to(tmp_path):
         with pytest.raises(WriteError) as error:
             open_sink(path, ENTITIES, suffix=".btf")
         assert [finding.rule for finding in error.value.findings] == ["TRC101"]
+
+
+def test_devices_are_written_and_links_remain(tmp_path):
+    write(Path(os.devnull), suffix=".btf")
+    assert not Path(os.devnull).is_file()
+    file, link = tmp_path / "run.btf", tmp_path / "latest.btf"
+    file.write_bytes(b"former")
+    link.symlink_to(file)
+    write(link)
+    assert link.is_symlink()
+    assert file.read_bytes().startswith(b"#version")
 
 
 def test_an_encoder_that_refuses_leaves_nothing(tmp_path):

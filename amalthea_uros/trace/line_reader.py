@@ -1,0 +1,41 @@
+"""What readers of text formats have in common."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.trace.entity_index import EntityIndex
+from amalthea_uros.trace.problems import Problems
+from amalthea_uros.trace.row_tables import NumberedTable, Pattern
+from amalthea_uros.trace.table import Entity, EventTable
+
+
+class LineReader(ABC):
+    """Gives the events of a text file; `amalthea_uros.trace.readers.TraceReader` tells how it is used."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._problems = Problems(path)
+        self._index = EntityIndex()
+        self._patterns: list[Pattern] = []
+        self._last = 0
+
+    @property
+    def entities(self) -> Sequence[Entity]:
+        """The entities so far."""
+        return self._index.entities
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """The problems so far."""
+        return self._problems.findings
+
+    def __iter__(self) -> Iterator[EventTable]:
+        return (table for table, _ in self.numbered())
+
+    @abstractmethod
+    def numbered(self) -> Iterator[NumberedTable]:
+        """The events, with the number of the line of each."""
