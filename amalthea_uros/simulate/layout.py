@@ -137,6 +137,10 @@ QUEUE_TIME, QUEUE_INSTANCE, QUEUE_CAPTURES = range(3)
 (FILL, CAPACITY, OVERFLOWS, CHANNEL_SIZE) = range(4)
 (STREAM_AT, STREAM_END, STREAM_NUMBER, STREAM_SIZE) = range(4)
 
+# A place that executes a runnable, and the executions of the runnable by all.
+(EXECUTED, EXECUTION, SITE_SIZE) = range(3)
+(EXECUTIONS, RUNNABLE_ENTITY, RUNNABLE_SIZE) = range(3)
+
 # A condition: alternatives, each of comparisons.
 (ALTERNATIVES, ALTERNATIVES_END, CONDITION_SIZE) = range(3)
 (COMPARISONS, COMPARISONS_END, ALTERNATIVE_SIZE) = range(3)

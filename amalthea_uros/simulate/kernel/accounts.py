@@ -7,10 +7,14 @@ from amalthea_uros.simulate.layout import (
     ENTITY,
     EVENT_SIZE,
     EVENTS,
+    EXECUTED,
+    EXECUTION,
+    EXECUTIONS,
     INSTANCE,
     IS_REPORTED,
     IS_TRACED,
     NOW,
+    RUNNABLE_ENTITY,
     SINCE,
     STATE,
     TIME_PARKING,
@@ -23,6 +27,8 @@ from amalthea_uros.simulate.operations import PARKING, POLLING, RUNNING, WAITING
 
 #: In the column of the note of an event: there is none, as in `trace.table`.
 NO_NOTE = -(2**63)
+#: The kinds of events, as in `trace.table.EventKind`.
+_RUNNABLE_START, _RUNNABLE_TERMINATE = 20, 23
 
 
 def enter_state(m: Memory, process: int, state: int) -> None:
@@ -57,6 +63,18 @@ def tell(m: Memory, kind: int, core: int, process: int) -> None:
     """Record a transition of a process on a core, if there is a trace."""
     if m[IS_TRACED] and m[process + IS_REPORTED]:
         emit(m, kind, m[core + CORE_ENTITY], 0, m[process + ENTITY], m[process + INSTANCE], NO_NOTE)
+
+
+def tell_execution(m: Memory, process: int, site: int, is_begin: bool) -> None:
+    """Record that an execution of a runnable begins or ends, with its number."""
+    runnable = m[site + EXECUTED]
+    if is_begin:
+        m[site + EXECUTION] = m[runnable + EXECUTIONS]
+        m[runnable + EXECUTIONS] += 1
+    if m[IS_TRACED]:
+        kind = _RUNNABLE_START if is_begin else _RUNNABLE_TERMINATE
+        entity = m[runnable + RUNNABLE_ENTITY]
+        emit(m, kind, m[process + ENTITY], m[process + INSTANCE], entity, m[site + EXECUTION], NO_NOTE)
 
 
 def tell_of(m: Memory, kind: int, process: int, entity: int) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.kernel.accounts import tell_of
+from amalthea_uros.simulate.kernel.accounts import tell_execution, tell_of
 from amalthea_uros.simulate.kernel.activation import end_job, fire
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode, step_mode
 from amalthea_uros.simulate.kernel.cores import change_level, run
@@ -42,11 +42,13 @@ from amalthea_uros.simulate.layout import (
 from amalthea_uros.simulate.memory import Memory
 from amalthea_uros.simulate.operations import (
     AGAIN,
+    BEGIN_RUNNABLE,
     CHOOSE,
     CLEAR_EVENT,
     COUNT,
     DRAW,
     END,
+    END_RUNNABLE,
     ENDLESS,
     ENTER,
     EXECUTE,
@@ -159,6 +161,8 @@ def _carry_out(m: Memory, core: int, process: int, at: int) -> int:
         m[first + PASSES] -= 1
     elif operation == NOTE:
         tell_of(m, first, process, second)
+    elif operation == BEGIN_RUNNABLE or operation == END_RUNNABLE:
+        tell_execution(m, process, first, operation == BEGIN_RUNNABLE)
     elif operation == MASK or operation == UNMASK:
         m[process + MASKS] += 1 if operation == MASK else -1
         change_level(m, process)

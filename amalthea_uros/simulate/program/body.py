@@ -57,11 +57,13 @@ from amalthea_uros.simulate.operations import (
     AGAIN,
     ASK,
     AWAIT,
+    BEGIN_RUNNABLE,
     CHOOSE,
     CLEAR_EVENT,
     COUNT,
     DRAW,
     END,
+    END_RUNNABLE,
     EXCLUSIVE,
     EXECUTE,
     FIRE,
@@ -353,22 +355,21 @@ class _Body:
         again, done = self._repeated(call)
         skip_inner = self._tested(runnable.condition)
         service = self.resources.services.get(runnable.name, 0)
-        self._note(EventKind.RUNNABLE_START, runnable.name)
+        site = self.resources.site(runnable.name) if self.owner.is_noted else 0
+        if site:
+            self.code.add(BEGIN_RUNNABLE, site)
         if service:
             self.code.add(SERVE, service)
         self.activities(runnable.activities, (*above, runnable.name))
         if service:
             self.code.add(SERVED, service)
-        self._note(EventKind.RUNNABLE_TERMINATE, runnable.name)
+        if site:
+            self.code.add(END_RUNNABLE, site)
         self._mark(skip_inner)
         if again is not None:
             self.code.add(JUMP, again)
         self._mark(done)
         self._mark(skip)
-
-    def _note(self, event: EventKind, runnable: str) -> None:
-        if self.owner.is_noted:
-            self.code.add(NOTE, int(event), self.resources.entities.number(EntityKind.RUNNABLE, runnable))
 
     def _repeated(self, call: Call) -> tuple[Label | None, Label | None]:
         """The begin and the end of a loop around what a call stands for, if it stands for several."""

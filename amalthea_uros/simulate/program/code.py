@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from amalthea_uros.simulate.layout import OPERATION_SIZE
-from amalthea_uros.simulate.operations import END, ENTER, JUMP, NOTE, POINT, UNMASK
+from amalthea_uros.simulate.operations import END, END_RUNNABLE, ENTER, JUMP, NOTE, POINT, UNMASK
 from amalthea_uros.simulate.program.image import Image
 
 
@@ -64,7 +64,11 @@ class Code:
             operation, first, _ = self.operations[number]
             if operation == JUMP and isinstance(first, Label):
                 number = first.number
-            elif operation in (NOTE, UNMASK) or operation >= ENTER or (operation == POINT and number in self.returns):
+            elif (
+                operation in (NOTE, END_RUNNABLE, UNMASK)
+                or operation >= ENTER
+                or (operation == POINT and number in self.returns)
+            ):
                 number += 1
             else:
                 return operation == END

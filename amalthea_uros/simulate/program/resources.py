@@ -17,15 +17,19 @@ from amalthea_uros.simulate.layout import (
     EVENT_LIST_END,
     EVENT_ROW_SIZE,
     EVERY,
+    EXECUTED,
     FIRST_EFFECT,
     IS_ACTIVE_WAIT,
     NEEDS_ALL,
     NEVER,
     OF_PROCESS,
+    RUNNABLE_ENTITY,
+    RUNNABLE_SIZE,
     SEMAPHORE_ENTITY,
     SEMAPHORE_NUMBER,
     SEMAPHORE_SIZE,
     SERVICE_SIZE,
+    SITE_SIZE,
     STREAM_NUMBER,
     STREAM_SIZE,
     USED,
@@ -70,6 +74,7 @@ class Resources:
     executing: Mapping[str, tuple[str, ...]] = field(init=False)
     _counters: dict[int, int] = field(default_factory=dict)
     _phases: dict[str, int] = field(default_factory=dict)
+    _runnables: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         system = self.context.system
@@ -140,6 +145,13 @@ class Resources:
 
     def _source(self, place: str) -> RandomSource:
         return RandomSource(self.options.seed, place)
+
+    def site(self, runnable: str) -> int:
+        """The record of a place that executes a runnable, for the numbers of its executions."""
+        if runnable not in self._runnables:
+            entity = self.entities.number(EntityKind.RUNNABLE, runnable)
+            self._runnables[runnable] = self.image.record(RUNNABLE_SIZE, {RUNNABLE_ENTITY: entity})
+        return self.image.record(SITE_SIZE, {EXECUTED: self._runnables[runnable]})
 
     # Counters.
 
