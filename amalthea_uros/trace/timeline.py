@@ -6,7 +6,6 @@ the states on a core the runnables that the job is in. The slices of a track are
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -74,87 +73,95 @@ class Timeline:
         self._depths: dict[int, int] = {}
         self._executing: dict[int, int] = {}
         self._last = 0
+        self._marks: list[Mark] = []
 
-    def marks(self, table: EventTable) -> Iterator[Mark]:
+    def marks(self, table: EventTable) -> list[Mark]:
         """What some events change; the marks of a track are in order."""
         columns = [column.tolist() for column in table.to_dict().values()]
         for time, kind, source, source_instance, target, instance, note in zip(*columns, strict=True):
             self._last = time
             if kind in _STATES or kind == EventKind.TERMINATE:
                 if kind in LEAVING:
-                    yield from self._leave_core(time, source, target)
-                yield from self._change_state(time, kind, target, instance)
+                    self._leave_core(time, source, target)
+                self._change_state(time, kind, target, instance)
                 if kind in ENTERING:
-                    yield from self._enter_core(time, source, target)
+                    self._enter_core(time, source, target)
             elif kind == EventKind.RUNNABLE_START:
-                yield from self._start_runnable(time, source, source_instance, target)
+                self._start_runnable(time, source, source_instance, target)
             elif kind == EventKind.RUNNABLE_TERMINATE:
-                yield from self._end_runnable(time, source, source_instance, target)
+                self._end_runnable(time, source, source_instance, target)
             elif kind == EventKind.CHAIN_STEP:
-                yield Mark(time, source, Change.STEP, "", target, _flow(target, instance), note)
+                self._marks.append(Mark(time, source, Change.STEP, "", target, _flow(target, instance), note))
+        return self._taken()
 
-    def finish(self) -> Iterator[Mark]:
+    def finish(self) -> list[Mark]:
         """The ends of the slices that are still open after the last event."""
         for track in self._executing:
-            yield Mark(self._last, track, Change.END)
+            self._marks.append(Mark(self._last, track, Change.END))
         for process in list(self._depths):
-            yield from self._hide(self._last, process)
+            self._hide(self._last, process)
         self._executing.clear()
+        return self._taken()
 
-    def _enter_core(self, time: int, core: int, process: int) -> Iterator[Mark]:
+    def _taken(self) -> list[Mark]:
+        """The marks that have been made, which are no longer kept."""
+        marks, self._marks = self._marks, []
+        return marks
+
+    def _enter_core(self, time: int, core: int, process: int) -> None:
         if core in self._executing:
-            yield Mark(time, core, Change.END)
+            self._marks.append(Mark(time, core, Change.END))
         self._executing[core] = process
-        yield Mark(time, core, Change.BEGIN, entity=process)
+        self._marks.append(Mark(time, core, Change.BEGIN, entity=process))
 
-    def _leave_core(self, time: int, core: int, process: int) -> Iterator[Mark]:
+    def _leave_core(self, time: int, core: int, process: int) -> None:
         if self._executing.get(core) == process:
             del self._executing[core]
-            yield Mark(time, core, Change.END)
+            self._marks.append(Mark(time, core, Change.END))
 
-    def _change_state(self, time: int, kind: int, process: int, instance: int) -> Iterator[Mark]:
+    def _change_state(self, time: int, kind: int, process: int, instance: int) -> None:
         jobs = self._jobs.setdefault(process, {})
         job = jobs.setdefault(instance, _Job())
         is_shown = next(iter(jobs)) == instance
         if is_shown:
-            yield from self._hide(time, process)
+            self._hide(time, process)
         if kind == EventKind.TERMINATE:
             del jobs[instance]
         else:
             job.state = _STATES[EventKind(kind)]
         if is_shown and jobs:
-            yield from self._show(time, process, next(iter(jobs.values())))
+            self._show(time, process, next(iter(jobs.values())))
 
-    def _start_runnable(self, time: int, process: int, instance: int, runnable: int) -> Iterator[Mark]:
+    def _start_runnable(self, time: int, process: int, instance: int, runnable: int) -> None:
         job = self._jobs.get(process, {}).get(instance)
         if job is not None:
             job.runnables.append(runnable)
             if self._is_visible(process, job):
                 self._depths[process] += 1
-                yield Mark(time, process, Change.BEGIN, entity=runnable)
+                self._marks.append(Mark(time, process, Change.BEGIN, entity=runnable))
 
-    def _end_runnable(self, time: int, process: int, instance: int, runnable: int) -> Iterator[Mark]:
+    def _end_runnable(self, time: int, process: int, instance: int, runnable: int) -> None:
         job = self._jobs.get(process, {}).get(instance)
         if job is not None and job.runnables and job.runnables[-1] == runnable:
             job.runnables.pop()
             if self._is_visible(process, job):
                 self._depths[process] -= 1
-                yield Mark(time, process, Change.END)
+                self._marks.append(Mark(time, process, Change.END))
 
     def _is_visible(self, process: int, job: _Job) -> bool:
         """Whether the runnables of a job are on the track of its process."""
         return job.state in ON_CORE and next(iter(self._jobs[process].values())) is job
 
-    def _show(self, time: int, process: int, job: _Job) -> Iterator[Mark]:
+    def _show(self, time: int, process: int, job: _Job) -> None:
         runnables = job.runnables if job.state in ON_CORE else []
         self._depths[process] = 1 + len(runnables)
-        yield Mark(time, process, Change.BEGIN, job.state)
+        self._marks.append(Mark(time, process, Change.BEGIN, job.state))
         for runnable in runnables:
-            yield Mark(time, process, Change.BEGIN, entity=runnable)
+            self._marks.append(Mark(time, process, Change.BEGIN, entity=runnable))
 
-    def _hide(self, time: int, process: int) -> Iterator[Mark]:
+    def _hide(self, time: int, process: int) -> None:
         for _ in range(self._depths.pop(process, 0)):
-            yield Mark(time, process, Change.END)
+            self._marks.append(Mark(time, process, Change.END))
 
 
 def _flow(chain: int, occurrence: int) -> int:
