@@ -35,12 +35,14 @@ from amalthea_uros.simulate.program.build import Program, build_program
 from amalthea_uros.simulate.results import ChainObservation, CoreObservation, ProcessObservation, Simulation
 from amalthea_uros.simulate.verdicts import deadline_of, judge_process, judge_requirements
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.critical_sections import spinlocks_of
 from amalthea_uros.timing.deadlines import ASSUMPTION
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.timing.phases import with_stated_phases
+from amalthea_uros.trace.semaphore_states import SemaphoreStates
 from amalthea_uros.trace.sinks import TraceSink
 from amalthea_uros.trace.suspensions import RunnableSuspensions
-from amalthea_uros.trace.table import Entity, EventTable
+from amalthea_uros.trace.table import Entity, EntityKind, EventTable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -78,11 +80,13 @@ class _Run:
     routes: list[RouteMetrics] = field(init=False)
     sinks: Sequence[TraceSink] = ()
     suspensions: RunnableSuspensions = field(default_factory=RunnableSuspensions)
+    semaphores: SemaphoreStates = field(init=False)
 
     def __post_init__(self) -> None:
         program = self.program
         self.jobs = [JobMetrics(program.units) for _ in program.processes]
         self.routes = [RouteMetrics(program.units) for _ in program.routes]
+        self.semaphores = _semaphore_states(self.context.system, program)
         traced = self.options.traced or (0, 0)
         self.player = Player(
             program,
@@ -110,7 +114,7 @@ class _Run:
 
     def _write(self, rows: NDArray[np.int64]) -> None:
         """Hand events on to all sinks."""
-        table = self.suspensions.insert(_event_table(rows, self.program))
+        table = self.suspensions.insert(self.semaphores.insert(_event_table(rows, self.program)))
         for sink in self.sinks:
             sink.write(table)
 
@@ -200,6 +204,13 @@ class _Run:
 
 #: Findings about what only analyses do not know.
 _OF_ANALYSES = ("ANA002", "ANA003", "ANA004", "ANA005", "ANA007")
+
+
+def _semaphore_states(system: System, program: Program) -> SemaphoreStates:
+    """What makes the state chart of BTF of the events of semaphores."""
+    numbers = {entity.name: number for number, entity in enumerate(program.entities) if entity.kind is EntityKind.SEMAPHORE}
+    users = {numbers[semaphore.name]: semaphore.users for semaphore in system.os.semaphores}
+    return SemaphoreStates(users, spinlocks=[numbers[name] for name in spinlocks_of(system)])
 
 
 def _event_table(rows: NDArray[np.int64], program: Program) -> EventTable:
