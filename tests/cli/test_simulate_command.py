@@ -312,6 +312,26 @@ def test_the_library_takes_texts_and_systems(run):
         run_simulation(ADVANCED, "5s", mode="fast")
 
 
+def test_processes_give_the_same_table(tmp_path):
+    tables = []
+    for jobs in (1, 2):
+        arguments = (
+            "--duration",
+            "40ms",
+            "--runs",
+            3,
+            "--sweep",
+            "Control_Function.execution_time=4us,1us..9us",
+            "--jobs",
+            jobs,
+        )
+        finished = amuros("simulate", ADVANCED, *arguments, "--table", tmp_path / "t.csv")
+        assert (finished.returncode, finished.stderr) == (0, "")
+        tables.append((tmp_path / "t.csv").read_text())
+    assert tables[0] == tables[1]
+    assert len(tables[0].splitlines()) == 7
+
+
 def test_help_says_how_to_write_changes_and_sweeps():
     output = " ".join(amuros("simulate", "--help").stdout.split())
     assert "Executor_Task.period=2ms" in output

@@ -9,9 +9,8 @@ from itertools import islice
 from amalthea_uros.services.campaign.executors import Executor, serial
 from amalthea_uros.services.campaign.run import Job, Outcome, Run
 
-#: Chunks for each worker: several, so that all end at about the same time, but not thousands, of which each must be sent.
-_CHUNKS_PER_WORKER = 32
-#: What an interruption may lose.
+#: Runs are sent in chunks only if there are more than so many for each worker: an interruption loses the chunks that are not finished.
+_SINGLE_RUNS = 256
 _LARGEST_CHUNK = 16
 
 
@@ -33,7 +32,7 @@ def run_campaign(job: Job, runs: Sequence[Run], executor: Executor = serial) -> 
 
 
 def _chunks(runs: Sequence[Run], workers: int) -> Iterator[Sequence[Run]]:
-    size = 1 if workers == 1 else min(_LARGEST_CHUNK, -(-len(runs) // (workers * _CHUNKS_PER_WORKER)) or 1)
+    size = 1 if workers == 1 else max(1, min(_LARGEST_CHUNK, len(runs) // (workers * _SINGLE_RUNS)))
     return (runs[start : start + size] for start in range(0, len(runs), size))
 
 

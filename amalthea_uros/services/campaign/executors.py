@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import pickle
 import signal
 from collections.abc import Callable, Iterator, Sequence
@@ -92,6 +93,10 @@ class _Pool:
         self._pool.shutdown(wait=False, cancel_futures=True)
         for process in set(active_children()) - self._others:
             process.terminate()
+        self._pool.shutdown()
+        # Its semaphores belong to cycles of objects. The command line ends without collecting them, and Python would complain of leaks.
+        del self._pool
+        gc.collect()
 
 
 #: The job of a worker process: it is sent once, not with each run.
