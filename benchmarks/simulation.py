@@ -10,6 +10,7 @@ import argparse
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from random import Random
@@ -137,7 +138,7 @@ class Interpreted:
 
     def __enter__(self) -> None:
         self._kept = machine_code.is_worth_it
-        machine_code.is_worth_it = lambda seconds: False
+        machine_code.is_worth_it = lambda seconds, left: False
 
     def __exit__(self, *_: object) -> None:
         machine_code.is_worth_it = self._kept
@@ -149,7 +150,7 @@ class Compiled:
     def __enter__(self) -> None:
         self._kept = machine_code.is_worth_it
         machine_code.compiled()
-        machine_code.is_worth_it = lambda seconds: True
+        machine_code.is_worth_it = lambda seconds, left: True
 
     def __exit__(self, *_: object) -> None:
         machine_code.is_worth_it = self._kept
@@ -174,7 +175,8 @@ def main() -> None:
         print(f"  simso {count / (perf_counter() - start):>12,.0f} jobs/s")
     for name, way, seconds in ways:
         with way:
-            time, found = timed(lambda: simulate_system(system, Options(duration=seconds * SECOND)), arguments.repeat)
+            options = Options(duration=seconds * SECOND)
+            time, found = timed(partial(simulate_system, system, options), arguments.repeat)
         print(f"  {name}: {jobs(found) / time:,.0f} jobs/s, {scheduling_events(found) / time:,.0f} events/s")
     thesis = open_system((ROOT / "samples" / "bodas-test-advanced.yaml",)).system
     for name, way, _ in ways:

@@ -22,18 +22,20 @@ Play: TypeAlias = Callable[[Memory], int]
 _MODULES = (accounts, activation, budgets, conditions, cores, following, jobs, loop, waiting)
 
 
-#: Seconds to load machine code, with numba itself; and of a run that is worth making machine code, which later runs can load.
-_LOADING, _WORTH_MAKING = 1.0, 5.0
+#: Seconds after which the speed of a run is known; to load machine code, with numba itself; and of a run that is worth making it.
+_KNOWN, _LOADING, _WORTH_MAKING = 0.2, 1.0, 5.0
 
 
-def is_worth_it(seconds: float) -> bool:
-    """Whether to go on with machine code rather than interpreted for an estimated time.
+def is_worth_it(seconds: float, seconds_left: float) -> bool:
+    """Whether to go on with machine code, after some seconds interpreted and with an estimated rest.
 
     Making it takes about 20 seconds, but only once: numba keeps it.
     """
-    if seconds < _LOADING or find_spec("numba") is None:
+    if compiled.cache_info().currsize:
+        return True
+    if seconds < _KNOWN or seconds_left < _LOADING or find_spec("numba") is None:
         return False
-    return seconds > _WORTH_MAKING or _is_kept()
+    return seconds_left > _WORTH_MAKING or _is_kept()
 
 
 def _is_kept() -> bool:

@@ -112,18 +112,17 @@ class Player:
         ------
         EndlessJobError : a job goes on forever without taking time.
         """
-        time, window = 0, max(1, self.until // 1024)
+        time, window, began = 0, max(1, self.until // 1024), perf_counter()
+        self._consider_machine_code(0, 0)
         edges = sorted({edge for edge in (*self.traced, self.until) if 0 < edge <= self.until})
         for edge in edges:
             while time < edge:
                 self.memory[IS_TRACED] = int(self.traced[0] <= time < self.traced[1])
-                begin, began = time, perf_counter()
                 time = min(edge, time + window)
                 count = self._prepare(time)
                 self._play_window(time)
                 if not self.is_compiled:
-                    left = (self.until - time) / (time - begin) * (perf_counter() - began)
-                    self.use_machine_code(if_worth=left)
+                    self._consider_machine_code(perf_counter() - began, (self.until - time) / time)
                 if 2 * count < _OCCURRENCES:
                     window *= 2
                 elif count > 2 * _OCCURRENCES:
@@ -143,9 +142,14 @@ class Player:
             elif code == ENDLESS:
                 raise EndlessJobError(int(self.memory[CAUSE]))
 
-    def use_machine_code(self, if_worth: float) -> None:
-        """Go on with machine code, if that is worth it for what is left: seconds, if interpreted. It changes no result."""
-        if machine_code.is_worth_it(if_worth):
+    def _consider_machine_code(self, seconds: float, times_left: float) -> None:
+        """Go on with machine code, which gives the same results, if what is left takes long enough.
+
+        Parameters
+        ----------
+        seconds, times_left : what the run has taken so far, and how many times as much is left
+        """
+        if machine_code.is_worth_it(seconds, seconds * times_left):
             self.memory = cast(Memory, np.array(self.memory, np.int64))
             self.is_compiled = True
 
