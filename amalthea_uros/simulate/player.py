@@ -50,8 +50,8 @@ if TYPE_CHECKING:
 #: Takes rows.
 Taker: TypeAlias = "Callable[[Numbers], None]"
 
-#: Rows that are kept before they are taken away.
-_ROWS = 16_384
+#: Rows that are kept before they are taken away; machine code makes many of them in the time in which they are taken away.
+_ROWS, _ROWS_OF_MACHINE_CODE = 4096, 65_536
 #: An operation can record some events at once, an END several observations: so much place is left.
 _MARGIN = 4096
 #: Values of all streams together, and of one stream.
@@ -90,12 +90,8 @@ class Player:
     _places_for_arrivals: int = 2 * _OCCURRENCES
 
     def __post_init__(self) -> None:
-        words = list(self.program.memory)
-        for first, end, size in _ROW_KINDS:
-            has_rows = first != EVENTS or self.traced[1] > 0
-            self._regions[first] = words[first] = len(words)
-            words[end] = len(words) + size * _ROWS if has_rows else len(words) + 1
-            words += [0] * (size * (_ROWS + _MARGIN) if has_rows else 1)
+        self.memory = words = list(self.program.memory)
+        self._place_rows(_ROWS)
         streams = len(self.program.streams)
         self._values = min(max(_VALUES // max(1, streams), _LEAST_VALUES), _MOST_VALUES)
         for record in self.program.stream_records:
@@ -103,7 +99,15 @@ class Player:
             words += [0] * self._values
         self._arrivals = len(words)
         words += [0] * (self._places_for_arrivals * ARRIVAL_SIZE)
-        self.memory = words
+
+    def _place_rows(self, count: int) -> None:
+        """Have places for a number of rows of each kind."""
+        for first, end, size in _ROW_KINDS:
+            # Without a trace there are no events; one place, so that the kernel does not find that there is none left.
+            places = size * count if first != EVENTS or self.traced[1] > 0 else 1
+            self._regions[first] = self._append(places + size * _MARGIN)
+            self.memory[first] = self._regions[first]
+            self.memory[end] = self._regions[first] + places
 
     def run(self) -> None:
         """Play to the end.
@@ -150,8 +154,10 @@ class Player:
         seconds, times_left : what the run has taken so far, and how many times as much is left
         """
         if machine_code.is_worth_it(seconds, seconds * times_left):
+            self._take_rows()
             self.memory = cast(Memory, np.array(self.memory, np.int64))
             self.is_compiled = True
+            self._place_rows(_ROWS_OF_MACHINE_CODE)
 
     # What the kernel gets.
 
