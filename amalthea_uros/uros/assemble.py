@@ -18,7 +18,7 @@ from amalthea_uros.spec.hardware import Hardware
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.uros.application import add_callbacks, add_interrupt
 from amalthea_uros.uros.background_tasks import add_background_tasks
-from amalthea_uros.uros.bus_messages import BusMessage, bus_messages, bus_of, check_bus_load
+from amalthea_uros.uros.bus_messages import BusMessage, bus_messages, bus_of, check_bus_load, check_identifiers
 from amalthea_uros.uros.bus_traffic import with_traffic
 from amalthea_uros.uros.callbacks import Callback, callbacks_of, internal_channels
 from amalthea_uros.uros.can import CanBus
@@ -92,6 +92,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
     callbacks = callbacks_of(application, middleware.executor, context.notes)
     messages = bus_messages(callbacks, middleware.transport)
     check_bus_load(messages, middleware.transport, context.notes)
+    check_identifiers(messages, middleware.transport, context.notes)
     pools = pools_of(application, middleware)
     check_pools(pools, callbacks, middleware, context.notes)
     check_streams(callbacks, middleware, context.notes)

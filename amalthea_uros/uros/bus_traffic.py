@@ -19,11 +19,15 @@ from amalthea_uros.uros.bus_messages import BusMessage
 from amalthea_uros.uros.bus_system import Transmission, with_bus
 from amalthea_uros.uros.can import BLOCK_BYTES, FRAME_BYTES, CanBus
 
+#: Greater than all identifiers.
+_OF_CLIENT = 2**29
+
 
 def with_traffic(system: System, bus: CanBus, messages: Iterable[BusMessage]) -> System:
     """The system of an application with its bus, which changes nothing of its other processes.
 
-    A client has one identifier for all its messages, so that they are sent in the order in which they were queued.
+    Messages without an identifier of their own have the one of the client, which loses against the others: they are sent in the order
+    in which they were queued.
     """
     transmissions, events = [], []
     for message in messages:
@@ -34,6 +38,7 @@ def with_traffic(system: System, bus: CanBus, messages: Iterable[BusMessage]) ->
             Transmission(
                 name=name,
                 frames=block_bytes(message.length),
+                identifier=_OF_CLIENT if message.identifier is None else message.identifier,
                 stimulus=_stimulus(message, name, system),
                 origin=message.message.origin,
             )

@@ -124,3 +124,48 @@ def test_the_bus_changes_nothing_of_the_application_and_keeps_within_its_bounds(
 def test_a_bus_that_is_not_described(sample, reason):
     with pytest.raises(InvalidArgumentError, match=reason):
         open_system([SAMPLES / sample], with_bus=True)
+
+
+BOTH_WAYS = """
+    amuros: 1
+    name: test
+    hardware: {{frequency: 1 MHz}}
+    middleware: {{transport: {{can: {{bitrate: 1 Mbit/s, identifiers: {{{identifiers}}}}}}}}}
+    application:
+      nodes:
+        - name: node
+          subscriptions:
+            - {{name: First, topic: a, rate: 10 Hz, message_size: 2 B, execution_time: 5 us}}
+            - {{name: Second, topic: b, rate: 10 Hz, message_size: 2 B, execution_time: 5 us}}
+            - {{name: Third, topic: c, rate: 10 Hz, message_size: 2 B, execution_time: 5 us}}
+    """
+
+
+@pytest.mark.parametrize(
+    ("identifiers", "order"),
+    [
+        ("", "abc"),
+        ("c_topic: 0x120", "cab"),
+        ("c_topic: 0x120, a_topic: 0x121", "cab"),
+        ("c_topic: 0x120, b_topic: 0x11F", "bca"),
+    ],
+)
+def test_identifiers_of_messages_decide_who_is_sent_first(identifiers, order, author):
+    system = author.describe(BOTH_WAYS.format(identifiers=identifiers)).system_with_bus()
+    found = simulate_system(system, Options(duration=SECOND, mode=Mode.WORST))
+    ends = {process.name[0]: process.response_time.max for process in found.processes if process.core == "CAN"}
+    # Each has 14 bytes, so two frames of 135 bits.
+    assert ends == {name: place * 270 * US for place, name in enumerate(order, 1)}
+
+
+@pytest.mark.parametrize(
+    ("identifiers", "finding"),
+    [
+        ("d_topic: 1", ("APP001", "undefined message 'd_topic'")),
+        ("a_topic: 0x20000000", ("YML012", "a_topic: expected an identifier of up to 29 bits, 0 to 0x1fffffff")),
+        ("a_topic: 0x12G", ("YML012", "a_topic: expected a hexadecimal number such as 0x120")),
+        ("a_topic: 0x800", ("APP003", "the identifier 0x800 of 'a_topic' has more than 11 bits")),
+    ],
+)
+def test_wrong_identifiers(identifiers, finding, author):
+    assert author.findings(BOTH_WAYS.format(identifiers=identifiers)) == [(4, *finding)]
