@@ -1,5 +1,8 @@
 """The messages of an application on its CAN bus: when they are queued, how long they take, and that the rest stays as it is."""
 
+import json
+import sys
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,6 +10,7 @@ from support import ROOT
 
 from amalthea_uros import describe
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.cli.main import main
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Execute
 from amalthea_uros.perf.stimuli import Single
@@ -109,6 +113,28 @@ def test_the_bus_changes_nothing_of_the_application_and_keeps_within_its_bounds(
         if not bounds[process.name].response.best <= process.response_time.min
         or not process.response_time.max <= bounds[process.name].response.worst
     ] == []
+
+
+@pytest.mark.parametrize("command", ["analyze", "simulate"])
+def test_the_commands_show_the_bus_where_it_is_wanted(command, monkeypatch, capsys, tmp_path):
+    sample, output = str(SAMPLES / "bodas-test-hardware.yaml"), tmp_path / "result.json"
+
+    def shown(*arguments):
+        command_line = ["amuros", command, sample, *arguments, "--output", "text", "--output", f"json={output}"]
+        monkeypatch.setattr(sys, "argv", command_line)
+        with pytest.raises(SystemExit) as ending:
+            main()
+        assert not ending.value.code
+        result = json.loads(output.read_text())
+        names = {item["name"] for item in (*result["processors"], *result["processes"])}
+        return names & {"CAN", "factor_topic_to_Message_Factor"}, capsys.readouterr().out
+
+    names, text = shown("--bus")
+    assert names == {"CAN", "factor_topic_to_Message_Factor"}
+    assert all(name in text for name in names)
+    names, text = shown()
+    assert names == set()
+    assert "factor_topic_to" not in text
 
 
 @pytest.mark.parametrize(
