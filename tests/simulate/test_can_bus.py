@@ -9,7 +9,6 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate import system as running
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.units import MICROSECOND as US
@@ -18,11 +17,6 @@ from amalthea_uros.units import NANOSECOND as NS
 from amalthea_uros.units import SECOND
 from amalthea_uros.uros.bus_system import Transmission, with_bus
 from amalthea_uros.uros.can import CanBus
-
-
-@pytest.fixture(autouse=True)
-def interpreted(monkeypatch):
-    monkeypatch.setattr(running, "_is_worth_compiling", lambda _program, _end: False)
 
 
 def message(name, identifier, frames, offset=0, period=SECOND, jitter=0):

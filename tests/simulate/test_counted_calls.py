@@ -1,7 +1,5 @@
 """Events of a runnable occur only when a call of it has an effect."""
 
-import pytest
-
 from amalthea_uros.perf.activities import Call, Count, Demand, Execute
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.events import EventChain, Events, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
@@ -11,17 +9,11 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
 from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, Periodic, Stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate import system as running
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import ChainQuantity
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
-
-
-@pytest.fixture(autouse=True)
-def interpreted(monkeypatch):
-    monkeypatch.setattr(running, "_is_worth_compiling", lambda _program, _end: False)
 
 
 def system(call):

@@ -28,22 +28,13 @@ from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import OperatingSystem, Policy, Scheduler
 from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, Periodic
-from amalthea_uros.simulate import system as running
+from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import SECOND
-
-
-def interpret(monkeypatch, is_compiled=False):
-    monkeypatch.setattr(running, "_is_worth_compiling", lambda _program, _end: is_compiled)
-
-
-@pytest.fixture(autouse=True)
-def interpreted(monkeypatch):
-    interpret(monkeypatch)
 
 
 def between(low, average, high):
@@ -176,6 +167,8 @@ def test_a_task_of_lower_priority_does_not_change_what_others_draw():
 @pytest.mark.parametrize("mode", Mode)
 def test_machine_code_does_the_same_as_the_interpreter(mode, monkeypatch):
     pytest.importorskip("numba")
-    slow = played(mode=mode)
-    interpret(monkeypatch, is_compiled=True)
-    assert values(played(mode=mode)) == values(slow)
+    found = []
+    for is_compiled in (False, True):
+        monkeypatch.setattr(machine_code, "is_worth_it", lambda _seconds, _seconds_left, answer=is_compiled: answer)
+        found.append(values(played(mode=mode)))
+    assert found[0] == found[1]

@@ -30,17 +30,11 @@ from amalthea_uros.perf.mapping import Mapping, Placement
 from amalthea_uros.perf.os import IsrOverhead, Os, Overhead, Semaphore, SemaphoreKind, Service
 from amalthea_uros.perf.software import IsrCategory, Label, OsEvent, Software
 from amalthea_uros.perf.stimuli import InterProcess, Stimuli
-from amalthea_uros.simulate import system as running
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.timing.settings import Memory as MemoryCost
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import MILLISECOND as MS
-
-
-@pytest.fixture(autouse=True)
-def interpreted(monkeypatch):
-    monkeypatch.setattr(running, "_is_worth_compiling", lambda _program, _end: False)
 
 
 def responses(system, mode=Mode.WORST, **settings):

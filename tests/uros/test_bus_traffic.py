@@ -16,7 +16,6 @@ from amalthea_uros.perf.activities import Execute
 from amalthea_uros.perf.stimuli import Single
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import open_system
-from amalthea_uros.simulate import system as running
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.units import MICROSECOND as US
@@ -26,11 +25,6 @@ from amalthea_uros.uros.bus_traffic import block_bytes
 from amalthea_uros.uros.can import CanBus, frames
 
 SAMPLES = ROOT / "samples"
-
-
-@pytest.fixture(autouse=True)
-def interpreted(monkeypatch):
-    monkeypatch.setattr(running, "_is_worth_compiling", lambda _program, _end: False)
 
 
 @given(st.integers(0, 2000))
