@@ -34,6 +34,7 @@ _FAILING = {
     type=Assignment("LABEL=VALUE", str),
     help="Constant value of a mode label; may be repeated.",
 )
+@click.option("--bus", "with_bus", is_flag=True, help="Also analyze the messages on the CAN bus of an app.yaml.")
 @click.option("--chain", metavar="CHAIN", help="Show all values of one event chain, and the links between its events.")
 @click.option(
     "--method",
@@ -75,6 +76,7 @@ def command(
     paths: tuple[Path, ...],
     settings: Settings,
     modes: tuple[tuple[str, str], ...],
+    with_bus: bool,
     chain: str | None,
     method: str,
     explained: str | None,
@@ -98,6 +100,7 @@ def command(
         with_priorities=with_priorities,
         all_methods=method == "all",
         with_metrics=with_metrics,
+        with_bus=with_bus,
     )
     if explained is not None:
         result = replace(result, explanation=explain(result, explained, Quantity(quantity)))

@@ -73,6 +73,7 @@ def _window(text: str) -> tuple[Time, Time]:
 )
 @set_option
 @settings_options
+@click.option("--bus", "with_bus", is_flag=True, help="Also simulate the messages on the CAN bus of an app.yaml.")
 @click.option("--metrics", "with_metrics", is_flag=True, help="Show minimum, mean and maximum of all metrics of each process.")
 @click.option(
     "--trace",
@@ -133,6 +134,7 @@ def command(
     mode: str,
     changes: tuple[Change, ...],
     settings: Settings,
+    with_bus: bool,
     with_metrics: bool,
     traces: tuple[Path, ...],
     trace_window: tuple[Time, Time] | None,
@@ -163,10 +165,10 @@ def command(
     traced = (trace_window or (0, duration)) if traces else None
     options = Options(duration=duration, seed=seed, mode=Mode(mode), settings=settings, traced=traced)
     if is_campaign:
-        campaign = _campaign(paths, options, changes, sweeps, runs, jobs, cluster)
+        campaign = _campaign(paths, options, changes, sweeps, runs, with_bus, jobs, cluster)
         _show_campaign(campaign, table, outputs)
         sys.exit(_campaign_code(campaign))
-    plan = plan_simulation(paths, options, changes)
+    plan = plan_simulation(paths, options, changes, with_bus=with_bus)
     pictures.check(plan)
     result = simulate_plan(plan, traces, with_metrics=with_metrics)
     _show(result, table, outputs)
@@ -201,6 +203,7 @@ def _campaign(
     changes: Sequence[Change],
     sweeps: Sequence[sweeping.Sweep],
     runs: int,
+    with_bus: bool,
     jobs: int | None,
     cluster: str | None,
 ) -> CampaignResult:
@@ -217,6 +220,7 @@ def _campaign(
             changes=changes,
             sweeps=sweeps,
             repetitions=runs,
+            with_bus=with_bus,
             workers=jobs,
             cluster=cluster,
             on_outcome=advance,

@@ -72,6 +72,7 @@ def analyze_files(
     with_priorities: bool = False,
     all_methods: bool = False,
     with_metrics: bool = False,
+    with_bus: bool = False,
 ) -> AnalysisResult:
     """Analyze an `app.yaml` or AMALTHEA models.
 
@@ -81,15 +82,16 @@ def analyze_files(
     with_priorities : also propose priorities that meet all deadlines
     all_methods : show the values of all methods for chains
     with_metrics : show the metrics of all processes
+    with_bus : also analyze the messages on the CAN bus of an `app.yaml`
 
     Raises
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
     InvalidArgumentError : the settings name a core, process, callback or mode label that does not exist, or a phase in which no job is
-        released.
+        released; there is no bus.
     """
     files, settings = as_paths(paths), settings or Settings()
-    opened = open_system(files)
+    opened = open_system(files, with_bus=with_bus)
     system = opened.system
     require_settings(settings, system)
     analysis = analyze_system(system, settings)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.paths import StrPath, is_description
 
 if TYPE_CHECKING:
@@ -63,18 +64,28 @@ def open_model(paths: Sequence[StrPath]) -> ModelInput:
     return ModelInput(model=model, findings=model.findings)
 
 
-def open_system(paths: Sequence[StrPath]) -> SystemInput:
+def open_system(paths: Sequence[StrPath], *, with_bus: bool = False) -> SystemInput:
     """The system of an `app.yaml` or of AMALTHEA models.
+
+    Parameters
+    ----------
+    with_bus : with the CAN bus of the description as a further core, whose tasks are the messages
 
     Raises
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
+    InvalidArgumentError : a bus is wanted, but not described.
     """
     if _is_one_description(paths):
         from amalthea_uros.services.build import describe
 
         assembly = describe(paths[0])
-        return SystemInput(system=assembly.system, model=None, findings=assembly.findings)
+        system = assembly.system_with_bus() if with_bus else assembly.system
+        if system is None:
+            raise InvalidArgumentError(f"no CAN bus is described in {paths[0]}; set 'middleware.transport.can.bitrate'")
+        return SystemInput(system=system, model=None, findings=assembly.findings)
+    if with_bus:
+        raise InvalidArgumentError("only an app.yaml describes the messages on a CAN bus; AMALTHEA models do not")
     from amalthea_uros.bridge.extract import extract
     from amalthea_uros.xmi.load import load
 

@@ -158,16 +158,22 @@ def _received_job(system: bytes, options: Options, changes: tuple[Change, ...]) 
     return SimulationJob(system_from(system), options, changes)
 
 
-def plan_simulation(paths: StrPath | Iterable[StrPath], options: Options, changes: Sequence[Change] = ()) -> SimulationPlan:
+def plan_simulation(
+    paths: StrPath | Iterable[StrPath], options: Options, changes: Sequence[Change] = (), *, with_bus: bool = False
+) -> SimulationPlan:
     """Read what is to be simulated, and change it.
+
+    Parameters
+    ----------
+    with_bus : also simulate the messages on the CAN bus of an `app.yaml`
 
     Raises
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
-    InvalidArgumentError : the changes or settings name what does not exist, or are wrong.
+    InvalidArgumentError : the changes or settings name what does not exist, or are wrong; there is no bus.
     """
     files = as_paths(paths)
-    opened = open_system(files)
+    opened = open_system(files, with_bus=with_bus)
     differences = describe(opened.system, options.settings, changes)
     system, settings = apply(opened.system, options.settings, changes)
     require_settings(settings, system)
@@ -201,6 +207,7 @@ def simulate_files(
     changes: Sequence[Change] = (),
     trace_paths: Iterable[StrPath] = (),
     with_metrics: bool = False,
+    with_bus: bool = False,
 ) -> SimulationResult:
     """Simulate an `app.yaml` or AMALTHEA models.
 
@@ -209,6 +216,7 @@ def simulate_files(
     changes : of the system and the settings, made before the run
     trace_paths : files for the events; the suffix says which format
     with_metrics : show the metrics of all processes
+    with_bus : also simulate the messages on the CAN bus of an `app.yaml`
 
     Raises
     ------
@@ -216,7 +224,8 @@ def simulate_files(
     WriteError : a trace cannot be written.
     InvalidArgumentError : the changes or settings name what does not exist or are wrong, or the format of a trace is not known.
     """
-    return simulate_plan(plan_simulation(paths, options, changes), trace_paths, with_metrics=with_metrics)
+    plan = plan_simulation(paths, options, changes, with_bus=with_bus)
+    return simulate_plan(plan, trace_paths, with_metrics=with_metrics)
 
 
 def run_simulation(
@@ -258,6 +267,7 @@ def simulate_campaign(
     changes: Sequence[Change] = (),
     sweeps: Sequence[Sweep] = (),
     repetitions: int = 1,
+    with_bus: bool = False,
     workers: int | None = None,
     cluster: str | None = None,
     on_outcome: Callable[[Outcome], None] | None = None,
@@ -270,6 +280,7 @@ def simulate_campaign(
     ----------
     options : the seed is that of the first repetition
     repetitions : runs of each variant
+    with_bus : also simulate the messages on the CAN bus of an `app.yaml`
     workers : runs at the same time on this computer; None: as many as there are cores
     cluster : address of a Dask scheduler, on whose workers the runs are executed instead
     on_outcome : called after each run
@@ -283,7 +294,7 @@ def simulate_campaign(
 
     files = as_paths(paths)
     runs = plan_runs(sweeps, repetitions, options.seed)
-    opened = open_system(files)
+    opened = open_system(files, with_bus=with_bus)
     differences = describe(opened.system, options.settings, changes)
     _check_changes(opened.system, options.settings, changes, sweeps)
     job, executor = SimulationJob(opened.system, options, tuple(changes)), _executor(len(runs), workers, cluster)

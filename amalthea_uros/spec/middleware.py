@@ -8,7 +8,18 @@ from pydantic import Field
 
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import BitRate, Count, CountOrNone, Duration, Name, Offset, Priority, Size, SizeOrNothing
+from amalthea_uros.spec.values import (
+    BitRate,
+    CanIdentifier,
+    Count,
+    CountOrNone,
+    Duration,
+    Name,
+    Offset,
+    Priority,
+    Size,
+    SizeOrNothing,
+)
 
 
 class MessageCost(Shorthand):
@@ -100,6 +111,8 @@ class Can(Section):
     """Bit rate of the bus."""
     identifier: Literal["standard", "extended"] = "standard"
     """`standard`: identifiers of 11 bits; `extended`: 29 bits."""
+    identifiers: dict[Name, CanIdentifier] = Field(default_factory=dict)
+    """Identifiers of messages, e.g. `{odometry_topic: 0x120, lift_request: 0x80}`; all others have one that loses against these."""
     interrupt: Interrupt | None = None
     """The interrupt for each received frame; if omitted, its cost is part of other execution times."""
 

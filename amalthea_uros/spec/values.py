@@ -12,6 +12,7 @@ from amalthea_uros import units
 
 #: In characters.
 MAX_NAME_LENGTH = 200
+_GREATEST_IDENTIFIER = 2**29 - 1
 
 
 def problem(message: str) -> PydanticCustomError:
@@ -60,6 +61,17 @@ def _name(value: Any) -> Any:
     return text
 
 
+def _identifier(value: Any) -> Any:
+    if isinstance(value, str) and value.startswith("0x"):
+        try:
+            value = int(value, 16)
+        except ValueError:
+            raise problem("expected a hexadecimal number such as 0x120") from None
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= _GREATEST_IDENTIFIER:
+        raise problem(f"expected an identifier of up to 29 bits, 0 to {_GREATEST_IDENTIFIER:#x}")
+    return value
+
+
 _TIME = BeforeValidator(_quantity(units.parse_time, units.TIME))
 _FREQUENCY = BeforeValidator(_quantity(units.parse_frequency, units.FREQUENCY))
 _DATA_SIZE = BeforeValidator(_quantity(units.parse_data_size, units.DATA_SIZE))
@@ -85,3 +97,16 @@ Count: TypeAlias = Annotated[int, Field(strict=True, ge=1, le=1_000_000)]
 CountOrNone: TypeAlias = Annotated[int, Field(strict=True, ge=0, le=1_000_000)]
 #: A scheduling priority; a higher number is a higher priority.
 Priority: TypeAlias = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]
+#: An identifier of CAN frames, of 11 or 29 bits: a whole number, or text such as "0x120".
+CanIdentifier: TypeAlias = Annotated[
+    int,
+    BeforeValidator(_identifier),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "integer", "minimum": 0, "maximum": _GREATEST_IDENTIFIER},
+                {"type": "string", "examples": ["0x120"]},
+            ]
+        }
+    ),
+]

@@ -126,12 +126,12 @@ def _body(context: AssemblyContext, callback: Callback, executor_core: str) -> R
         writes=dict.fromkeys(section.writes),
         sends=[message.channel for message in callback.outgoing if message.channel in context.channels],
     )
-    return Runnable(name=body_name(callback), activities=activities, callback=callback.in_executor, origin=callback.origin)
+    return Runnable(name=body_name(callback.name), activities=activities, callback=callback.in_executor, origin=callback.origin)
 
 
-def body_name(callback: Callback) -> str:
+def body_name(callback: str) -> str:
     """The name of the runnable of a callback."""
-    return f"{callback.name}_Callback"
+    return f"{callback}_Callback"
 
 
 def _add_own_task(context: AssemblyContext, callback: Callback, period: Time, body: Runnable) -> None:

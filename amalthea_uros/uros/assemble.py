@@ -18,8 +18,10 @@ from amalthea_uros.spec.hardware import Hardware
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.uros.application import add_callbacks, add_interrupt
 from amalthea_uros.uros.background_tasks import add_background_tasks
-from amalthea_uros.uros.bus_messages import BusMessage, bus_messages, check_bus_load
+from amalthea_uros.uros.bus_messages import BusMessage, bus_messages, bus_of, check_bus_load, check_identifiers
+from amalthea_uros.uros.bus_traffic import with_traffic
 from amalthea_uros.uros.callbacks import Callback, callbacks_of, internal_channels
+from amalthea_uros.uros.can import CanBus
 from amalthea_uros.uros.chain_elements import chain_elements
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
@@ -44,7 +46,7 @@ class Assembly:
     Attributes
     ----------
     choices : the periods of the executor and of the callbacks' tasks, with reasons
-    messages : on the CAN bus
+    bus, messages : the CAN bus, None if there is none, and what is sent on it
     pools : static pools of the middleware
     findings : of severity warning and info
     """
@@ -52,9 +54,14 @@ class Assembly:
     system: System
     choices: tuple[PeriodChoice, ...]
     messages: tuple[BusMessage, ...]
+    bus: CanBus | None
     initialisation: Initialisation | None
     pools: tuple[Pool, ...]
     findings: tuple[Finding, ...]
+
+    def system_with_bus(self) -> System | None:
+        """The system with the CAN bus as a further core, whose tasks are the messages; None if there is no bus."""
+        return None if self.bus is None else with_traffic(self.system, self.bus, self.messages)
 
 
 def assemble(description: Description, hardware: Hardware, platform: str | None) -> Assembly:
@@ -85,6 +92,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
     callbacks = callbacks_of(application, middleware.executor, context.notes)
     messages = bus_messages(callbacks, middleware.transport)
     check_bus_load(messages, middleware.transport, context.notes)
+    check_identifiers(messages, middleware.transport, context.notes)
     pools = pools_of(application, middleware)
     check_pools(pools, callbacks, middleware, context.notes)
     check_streams(callbacks, middleware, context.notes)
@@ -102,6 +110,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
         system=system,
         choices=choices,
         messages=messages,
+        bus=bus_of(middleware.transport.can) if middleware.transport.can is not None else None,
         initialisation=initialisation(application, choices[0].period, response_time) if choices else None,
         pools=pools,
         findings=tuple(context.notes.findings),

@@ -13,6 +13,9 @@ from amalthea_uros.uros.callbacks import Callback, Message
 from amalthea_uros.uros.can import FRAME_BYTES, CanBus, Identifier, frames, max_message_bits, transmission_time
 from amalthea_uros.uros.notes import Notes
 
+#: The greatest identifier of 11 bits.
+_GREATEST_STANDARD = 0x7FF
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BusMessage:
@@ -21,6 +24,7 @@ class BusMessage:
     Attributes
     ----------
     length : of the XRCE-DDS message in bytes, with headers
+    identifier : None: it has the common one of the client
     transmission_time : maximum, of all its frames
     bus_load : maximum share of the bus, 1 for all of it
     """
@@ -31,6 +35,7 @@ class BusMessage:
     frames: int
     transmission_time: Time
     bus_load: Fraction
+    identifier: int | None = None
 
 
 def bus_of(can: Can) -> CanBus:
@@ -65,6 +70,7 @@ def _bus_message(message: Message, incoming: bool, bus: CanBus, transport: Trans
         frames=frames(length),
         transmission_time=transmission_time(bus, length),
         bus_load=Fraction(max_message_bits(bus, length) * SECOND, bus.bit_rate * message.interval),
+        identifier=transport.can.identifiers.get(message.channel) if transport.can is not None else None,
     )
 
 
@@ -75,6 +81,20 @@ def check_bus_load(messages: Iterable[BusMessage], transport: Transport, notes: 
         text = f"overload: the messages need up to {100 * load:.1f} % of the CAN bus"
         advice = "Increase the bit rate, or send fewer or smaller messages."
         notes.warning("UR131", text, transport.can.location("bitrate"), advice)
+
+
+def check_identifiers(messages: Iterable[BusMessage], transport: Transport, notes: Notes) -> None:
+    """Report identifiers of messages that do not exist, and those with too many bits."""
+    can = transport.can
+    if can is None:
+        return
+    names = {message.message.channel for message in messages}
+    for name, identifier in can.identifiers.items():
+        if name not in names:
+            notes.undefined("message", name, names, can.location("identifiers"))
+        if can.identifier == "standard" and identifier > _GREATEST_STANDARD:
+            text = f"the identifier {identifier:#x} of {name!r} has more than 11 bits"
+            notes.error("APP003", text, can.location("identifiers"), "Use a smaller one, or set 'identifier: extended'.")
 
 
 def receive_stimulus(received: BusMessage, bus: CanBus) -> Stimulus:

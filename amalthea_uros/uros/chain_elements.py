@@ -50,7 +50,7 @@ def chain_elements(context: AssemblyContext, callbacks: Sequence[Callback]) -> M
         found.setdefault(name, _element(caller, name, [context.runnables[name]]))
     for callback in callbacks:
         # In the executor, a callback is one of its runnables; otherwise it is a task of the same name.
-        body = body_name(callback)
+        body = body_name(callback.name)
         element = _with_messages(
             found.get(body if callback.in_executor else callback.name) or _without_task(callback), callback
         )

@@ -246,13 +246,15 @@ class _Body:
             number = self.number
             if len(self.code.operations) > MAX_OPERATIONS:
                 raise NotSimulatedError(f"it executes more than {MAX_OPERATIONS:,} activities")
+            if isinstance(activity, Call):
+                self._call(activity, above)
+                self._return()
+                continue
             self._add_all(self.hooks.before.get(number, ()))
             for demand in self.resources.context.demand_model.overheads.of_activity(activity, self.core):
                 self._demand(demand)
             self._activity(activity, above)
             self._add_all(self.hooks.after.get(number, ()))
-            if isinstance(activity, Call):
-                self._return()
 
     def _return(self) -> None:
         """After a call, other cooperative tasks can go first."""
@@ -280,8 +282,6 @@ class _Body:
                 self.code.add(SEND, self.owner.modes.channel(channel), elements)
             case Receive():
                 self._receive(activity)
-            case Call():
-                self._call(activity, above)
             case Group():
                 self._group(activity, above)
             case ProbabilitySwitch():
@@ -351,9 +351,12 @@ class _Body:
             raise NotSimulatedError(f"the runnable {runnable.name!r} calls itself")
         if len(above) > MAX_CALL_DEPTH:
             raise NotSimulatedError(f"calls are nested deeper than {MAX_CALL_DEPTH} levels")
+        number = self.number
         skip = self._counted(call, call.counter)
         again, done = self._repeated(call)
         skip_inner = self._tested(runnable.condition)
+        # The runnable starts and ends only in calls that have an effect, each time.
+        self._add_all(self.hooks.before.get(number, ()))
         service = self.resources.services.get(runnable.name, 0)
         site = self.resources.site(runnable.name) if self.owner.is_noted else 0
         if site:
@@ -365,6 +368,7 @@ class _Body:
             self.code.add(SERVED, service)
         if site:
             self.code.add(END_RUNNABLE, site)
+        self._add_all(self.hooks.after.get(number, ()))
         self._mark(skip_inner)
         if again is not None:
             self.code.add(JUMP, again)

@@ -1,0 +1,78 @@
+"""The messages of an application on its bus, and what queues them.
+
+The agent sends at any time, but never more often than the description says. The controller sends at the end of callbacks; if one runs
+in activations of its own task between two messages, too, it does not publish in these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from amalthea_uros.perf.activities import Call
+from amalthea_uros.perf.distributions import Constant
+from amalthea_uros.perf.events import RunnableChange, RunnableEvent
+from amalthea_uros.perf.stimuli import Counter, EventTriggered, Periodic, RelativePeriodic, Stimulus
+from amalthea_uros.perf.system import System
+from amalthea_uros.units import Time
+from amalthea_uros.uros.application import body_name
+from amalthea_uros.uros.bus_messages import BusMessage
+from amalthea_uros.uros.bus_system import Transmission, with_bus
+from amalthea_uros.uros.can import BLOCK_BYTES, FRAME_BYTES, CanBus
+
+#: Greater than all identifiers.
+_OF_CLIENT = 2**29
+
+
+def with_traffic(system: System, bus: CanBus, messages: Iterable[BusMessage]) -> System:
+    """The system of an application with its bus, which changes nothing of its other processes.
+
+    Messages without an identifier of their own have the one of the client, which loses against the others: they are sent in the order
+    in which they were queued.
+    """
+    transmissions, events = [], []
+    for message in messages:
+        name = transmission_name(message)
+        if not message.incoming:
+            events.append(_end_of_callback(message, name))
+        transmissions.append(
+            Transmission(
+                name=name,
+                frames=block_bytes(message.length),
+                identifier=_OF_CLIENT if message.identifier is None else message.identifier,
+                stimulus=_stimulus(message, name, system),
+                origin=message.message.origin,
+            )
+        )
+    return with_bus(system, bus, transmissions, events)
+
+
+def transmission_name(message: BusMessage) -> str:
+    """The name of the task of a message, such as `factor_topic_to_Message_Factor`."""
+    return f"{message.message.channel}_{'to' if message.incoming else 'from'}_{message.message.callback}"
+
+
+def block_bytes(length: int) -> list[tuple[int, int]]:
+    """Minimum and maximum data bytes of the frames of a message: a transport may pad the last block."""
+    full, rest = divmod(max(1, length) - 1, BLOCK_BYTES)
+    return [*[(FRAME_BYTES, FRAME_BYTES)] * full, (rest + 2, FRAME_BYTES)]
+
+
+def _end_of_callback(message: BusMessage, name: str) -> RunnableEvent:
+    return RunnableEvent(name=name, runnable=body_name(message.message.callback), change=RunnableChange.TERMINATE)
+
+
+def _stimulus(message: BusMessage, name: str, system: System) -> Stimulus:
+    interval = message.message.interval
+    if message.incoming:
+        return RelativePeriodic(name=name, distance=Constant(interval), has_maximum=False)
+    every = _runs_per_message(message.message.callback, interval, system)
+    return EventTriggered(name=name, events=(name,), counter=Counter(prescaler=every) if every > 1 else None)
+
+
+def _runs_per_message(callback: str, interval: Time, system: System) -> int:
+    """How often a callback runs for each message: more than once if it runs in every activation of a task of its own."""
+    task = system.processes.get(callback)
+    if task is None or any(isinstance(each, Call) and each.counter is not None for each in task.activities):
+        return 1
+    stimulus = system.stimuli_by_name[task.stimuli[0]]
+    return max(1, interval // stimulus.period) if isinstance(stimulus, Periodic) else 1
