@@ -61,7 +61,7 @@ class Delays:
 
     def quantities(self, end: int) -> Iterator[LimitedQuantity]:
         """What was observed up to the end of the run."""
-        values, violation = self._values(end), self._violation(end)
+        values, violation = self._values(end), self._violation()
         for limit, is_upper in ((self.constraint.upper, True), (self.constraint.lower, False)):
             if limit is not None:
                 yield LimitedQuantity(
@@ -77,7 +77,7 @@ class Delays:
     def _values(self, end: int) -> LimitedValues:
         raise NotImplementedError
 
-    def _violation(self, _end: int) -> str:
+    def _violation(self) -> str:
         return ""
 
     def _violated(self, time: int) -> None:
@@ -126,14 +126,15 @@ class OneToOne(Delays):
         self.extremes.add(targets[:count] - sources[:count], sources[:count])
         self._sources, self._targets = sources[count:], targets[count:]
         self._is_over = max(len(self._sources), len(self._targets)) > WINDOW
-        if len(self._targets):
-            self._violated(int(self._targets[0]))
+        early = np.flatnonzero(targets[:count] < sources[:count])
+        if len(early) or len(self._targets):
+            self._violated(int(targets[early[0] if len(early) else count]))
 
     def _values(self, end: int) -> LimitedValues:
         pending = end - int(self._sources[0]) if len(self._sources) else 0
         return self.extremes.limited(_TOO_FAR if self._is_over else "no target occurred", pending, not self._is_over)
 
-    def _violation(self, _end: int) -> str:
+    def _violation(self) -> str:
         """A target that occurs before its source, or without one, is never right."""
         return "" if self.first_violation < 0 else "a target occurs before the source that it belongs to"
 
@@ -176,7 +177,7 @@ class UniqueReactions(Delays):
         self._drop_missed(end)
         return self.extremes.limited("no target occurred" if self._is_complete else _TOO_FAR, is_complete=self._is_complete)
 
-    def _violation(self, _end: int) -> str:
+    def _violation(self) -> str:
         counts = {"without a target": self._missed, "without a source": self._stray}
         return ", ".join(f"{count:,} {what}" for what, count in counts.items() if count)
 
