@@ -428,10 +428,12 @@ class Simulation:
         return pd.DataFrame(rows, columns=["object", "quantity", "count", *_COLUMNS])
 
     def _observations(self) -> Iterator[tuple[str, str, MetricObservation]]:
-        items: list[tuple[str, Mapping[Any, MetricObservation]]] = [(each.name, each.metrics) for each in self.processes]
-        items += [(each.name, each.quantities) for each in self.chains]
-        items += [(each.name, each.metrics) for each in self.runnables]
+        # Of equal names, that of a process counts in a row of a table: the last one.
+        items: list[tuple[str, Mapping[Any, MetricObservation]]] = []
         items += [(each.name, {"age": each.age}) for each in self.labels if each.age is not None]
+        items += [(each.name, each.metrics) for each in self.runnables]
+        items += [(each.name, each.metrics) for each in self.processes]
+        items += [(each.name, each.quantities) for each in self.chains]
         yield from ((name, str(quantity), found) for name, values in items for quantity, found in values.items())
 
     def _cells(self) -> Iterator[tuple[str, Cell]]:
@@ -443,6 +445,11 @@ class Simulation:
             yield f"{process.name}.load", float(process.load)
             yield f"{process.name}.lost_activations", process.lost_activations
             yield f"{process.name}.verdict", process.verdict
+        for label in self.labels:
+            yield f"{label.name}.reads", label.reads
+            yield f"{label.name}.writes", label.writes
+            yield f"{label.name}.unwritten_reads", label.unwritten_reads
+            yield f"{label.name}.overwritten", label.overwritten
         for name, quantity, found in self._observations():
             yield from ((f"{name}.{quantity}.{column}", value) for column, value in _times(found).items())
         # Of several limits with one name, the worst verdict counts: the last cell.
