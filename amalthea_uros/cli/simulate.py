@@ -53,6 +53,10 @@ def _window(text: str) -> tuple[Time, Time]:
     return times
 
 
+def _labels(text: str) -> tuple[str, ...]:
+    return tuple(filter(None, map(str.strip, text.split(","))))
+
+
 @click.command("simulate")
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL_OR_YAML...")
 @click.option(
@@ -75,6 +79,12 @@ def _window(text: str) -> tuple[Time, Time]:
 @settings_options
 @click.option("--bus", "with_bus", is_flag=True, help="Also simulate the messages on the CAN bus of an app.yaml.")
 @click.option("--metrics", "with_metrics", is_flag=True, help="Show minimum, mean and maximum of all metrics of each process.")
+@click.option(
+    "--labels",
+    type=Parsed("all|NAME,...", _labels),
+    default="",
+    help="Show how often these labels are read and written, and how old the values are that are read, e.g. speed,torque or all.",
+)
 @click.option(
     "--trace",
     "traces",
@@ -136,6 +146,7 @@ def command(
     settings: Settings,
     with_bus: bool,
     with_metrics: bool,
+    labels: tuple[str, ...],
     traces: tuple[Path, ...],
     trace_window: tuple[Time, Time] | None,
     gantt: Path | None,
@@ -163,7 +174,7 @@ def command(
     if trace_window is not None and not traces:
         raise click.UsageError("--trace-window needs --trace FILE")
     traced = (trace_window or (0, duration)) if traces else None
-    options = Options(duration=duration, seed=seed, mode=Mode(mode), settings=settings, traced=traced)
+    options = Options(duration=duration, seed=seed, mode=Mode(mode), settings=settings, traced=traced, labels=labels)
     if is_campaign:
         campaign = _campaign(paths, options, changes, sweeps, runs, with_bus, jobs, cluster)
         _show_campaign(campaign, table, outputs)

@@ -84,6 +84,8 @@ def _tightest(simulation: Simulation) -> str:
 def _failure(item: Judged) -> str:
     if isinstance(item, RequirementObservation):
         what = f"{item.quantity} of {item.object}" if item.object else item.quantity
+        if item.value is None or item.limit is None:
+            return f"{what}: {item.reason}"
         reason = f" ({item.reason})" if item.reason else ""
         return f"{what} is {value_text(item, item.value)}{reason}, limit {limit_text(item)}"
     if item.reason or item.response_time is None:

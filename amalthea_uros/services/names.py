@@ -7,6 +7,7 @@ from difflib import get_close_matches
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
+from amalthea_uros.simulate.options import ALL_LABELS
 from amalthea_uros.timing.phases import sources
 from amalthea_uros.timing.settings import Settings
 
@@ -34,6 +35,11 @@ def require_settings(settings: Settings, system: System) -> None:
     if settings.phases:
         require("callback with a phase", settings.phases, sources(system))
     require("mode label", settings.modes, [label.name for label in system.software.mode_labels])
+
+
+def require_labels(names: Iterable[str], system: System) -> None:
+    """Refuse labels that a system does not have; raises as `require`."""
+    require("label", (name for name in names if name != ALL_LABELS), system.labels)
 
 
 def _advice(kind: str, name: str, existing: list[str]) -> str:

@@ -19,7 +19,7 @@ from amalthea_uros.services.changes.apply import Difference, apply, describe
 from amalthea_uros.services.changes.change import Change, parse_change
 from amalthea_uros.services.changes.sweep import Sweep
 from amalthea_uros.services.inputs import open_system
-from amalthea_uros.services.names import require_settings
+from amalthea_uros.services.names import require_labels, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
@@ -177,6 +177,7 @@ def plan_simulation(
     differences = describe(opened.system, options.settings, changes)
     system, settings = apply(opened.system, options.settings, changes)
     require_settings(settings, system)
+    require_labels(options.labels, system)
     return SimulationPlan(
         paths=files,
         system=system,
@@ -237,6 +238,7 @@ def run_simulation(
     settings: Settings | None = None,
     changes: Iterable[str | Change] = (),
     trace_paths: Iterable[StrPath] = (),
+    labels: Iterable[str] = (),
 ) -> Simulation:
     """Simulate files, an AMALTHEA model, or a system.
 
@@ -246,6 +248,7 @@ def run_simulation(
     mode : how values that vary are chosen: "sampled", "worst", "best" or "average"
     changes : such as "Executor_Task.period=2ms"
     trace_paths : files for the events of the whole run; the suffix says which format
+    labels : of which accesses and ages of values are observed; "all": of all
 
     Raises
     ------
@@ -257,7 +260,10 @@ def run_simulation(
     require_settings(settings, system)
     time, openers = _duration(duration), [*map(_trace_opener, trace_paths)]
     traced = (0, time) if openers else None
-    return _simulated(system, Options(duration=time, seed=seed, mode=_mode(mode), settings=settings, traced=traced), openers)
+    observed = tuple(labels)
+    require_labels(observed, system)
+    options = Options(duration=time, seed=seed, mode=_mode(mode), settings=settings, traced=traced, labels=observed)
+    return _simulated(system, options, openers)
 
 
 def simulate_campaign(
@@ -296,7 +302,7 @@ def simulate_campaign(
     runs = plan_runs(sweeps, repetitions, options.seed)
     opened = open_system(files, with_bus=with_bus)
     differences = describe(opened.system, options.settings, changes)
-    _check_changes(opened.system, options.settings, changes, sweeps)
+    _check_changes(opened.system, options, changes, sweeps)
     job, executor = SimulationJob(opened.system, options, tuple(changes)), _executor(len(runs), workers, cluster)
     outcomes: list[Outcome] = []
     with suppress(KeyboardInterrupt), closing(run_campaign(job, runs, executor)) as finished:
@@ -327,11 +333,12 @@ def _trace_opener(path: StrPath) -> OpenSink:
     return partial(open_sink, Path(path))
 
 
-def _check_changes(system: System, settings: Settings, changes: Sequence[Change], sweeps: Sequence[Sweep]) -> None:
+def _check_changes(system: System, options: Options, changes: Sequence[Change], sweeps: Sequence[Sweep]) -> None:
     """Refuse wrong names and values before the first run; of long sweeps the ends are tried."""
     for values in ([], *([change] for sweep in sweeps for change in _ends(sweep))):
-        changed = apply(system, settings, (*changes, *values))
+        changed = apply(system, options.settings, (*changes, *values))
         require_settings(changed.settings, changed.system)
+        require_labels(options.labels, changed.system)
 
 
 def _ends(sweep: Sweep) -> list[Change]:

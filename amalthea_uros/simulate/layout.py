@@ -102,8 +102,9 @@ ARRIVAL_SIZE, JOB_SIZE, OBSERVATION_SIZE, EVENT_SIZE = 2, 11, 4, 7
     WAITS_ANSWER,
     TICKET,
     IS_CHOSEN,
+    WATCHED,
     PROCESS_SIZE,
-) = range(58)
+) = range(59)
 
 #: A place in the queue of activations of a process: time, number, and then a value for each capture.
 QUEUE_TIME, QUEUE_INSTANCE, QUEUE_CAPTURES = range(3)
@@ -114,7 +115,7 @@ QUEUE_TIME, QUEUE_INSTANCE, QUEUE_CAPTURES = range(3)
 # A domain: cores that share processes.
 (IS_DUE, RAISED, IS_STATIC, HAS_COOPERATIVE, MEMBERS, MEMBERS_END, ITS_CORES, ITS_CORES_END, DOMAIN_SIZE) = range(9)
 
-# A stimulus; an assignment is (mode label, value).
+# A stimulus; an assignment is (mode label, value). What is watched is the number of a source of events plus 1, or 0.
 (
     TARGETS,
     TARGETS_END,
@@ -125,8 +126,9 @@ QUEUE_TIME, QUEUE_INSTANCE, QUEUE_CAPTURES = range(3)
     OCCURRENCES,
     STIMULUS_ENTITY,
     MESSAGES,
+    STIMULUS_SOURCE,
     STIMULUS_SIZE,
-) = range(10)
+) = range(11)
 
 # Places of the model that keep a state.
 (COUNTED, EVERY, FIRST_EFFECT, COUNTER_SIZE) = range(4)
@@ -203,6 +205,19 @@ DEFERRABLE, POLLING_SERVER, SPORADIC, CONSTANT_BANDWIDTH = range(4)
 ) = range(18)
 # A route of a chain.
 (STAMPS, ROUTE_NUMBER, ROUTE_SIZE) = range(3)
+
+# A runnable whose executions in a process are measured: when the last one began, and the account of the job at that time.
+(
+    EXECUTION_NUMBER,
+    BEGAN,
+    BEFORE_RUNNING,
+    BEFORE_WAITING,
+    BEFORE_POLLING,
+    BEFORE_PARKING,
+    BEFORE_PREEMPTIONS,
+    BEFORE_MIGRATIONS,
+    EXECUTION_SIZE,
+) = range(9)
 
 #: An operation and its two arguments.
 OPERATION_SIZE = 3

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from amalthea_uros.perf.constraints import (
+    Bound,
     CountLimit,
     CountMetric,
     Limit,
@@ -16,7 +17,7 @@ from amalthea_uros.perf.constraints import (
     TimeLimit,
     TimeMetric,
 )
-from amalthea_uros.simulate.results import MetricObservation, ProcessObservation
+from amalthea_uros.simulate.results import MetricObservation, ProcessObservation, RunnableObservation
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time
 
@@ -61,6 +62,7 @@ class LimitedValues:
     pending : what has already passed of one that had not ended at the end of the run
     is_complete : whether all values are known
     reason : why values are missing
+    low_at, high_at : when the smallest and the greatest one were observed, in picoseconds; None if that is not one time
     """
 
     low: Fraction | None = None
@@ -68,16 +70,42 @@ class LimitedValues:
     pending: Fraction = Fraction(0)
     is_complete: bool = True
     reason: str = ""
+    low_at: Fraction | None = None
+    high_at: Fraction | None = None
 
     @classmethod
     def of(cls, found: MetricObservation | None, reason: str) -> LimitedValues:
         """Those of a time, or the reason why there is none."""
-        return cls(reason=reason) if found is None else cls(low=found.min, high=found.max)
+        if found is None:
+            return cls(reason=reason)
+        return cls(low=found.min, high=found.max, low_at=found.at_min.time, high_at=found.at_max.time)
 
     @classmethod
     def only(cls, value: Fraction | int) -> LimitedValues:
         """Those of something that has one value in a run."""
         return cls(low=Fraction(value), high=Fraction(value))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LimitedQuantity:
+    """What a constraint limits, as it was observed.
+
+    Attributes
+    ----------
+    object : what it belongs to
+    limit : in picoseconds; None if the constraint is kept or not, without a number
+    violation : why the constraint is not kept, whatever the values are
+    violated_at : when that was first seen, in picoseconds
+    """
+
+    object: str
+    quantity: str
+    limit: Time | None
+    values: LimitedValues
+    is_upper: bool = True
+    is_time: bool = True
+    violation: str = ""
+    violated_at: Fraction | None = None
 
 
 def limited_values(limit: Limit, process: ProcessObservation, duration: Time) -> LimitedValues:
@@ -90,7 +118,7 @@ def limited_values(limit: Limit, process: ProcessObservation, duration: Time) ->
             pending = process.longest_unfinished
             if found is None:
                 return LimitedValues(pending=pending, reason=_missing(process))
-            return LimitedValues(low=found.min, high=found.max, pending=pending)
+            return replace(LimitedValues.of(found, ""), pending=pending)
         case TimeLimit(metric=metric) if metric in _METRICS:
             return LimitedValues.of(process.metrics.get(_METRICS[metric]), _missing(process, _METRICS[metric]))
         case CountLimit(metric=CountMetric.PREEMPTIONS) if process.jobs:
@@ -99,10 +127,17 @@ def limited_values(limit: Limit, process: ProcessObservation, duration: Time) ->
             return LimitedValues(low=Fraction(process.migrations.min), high=Fraction(process.migrations.max))
         case CountLimit(metric=CountMetric.LOST_ACTIVATIONS):
             return LimitedValues.only(process.lost_activations)
-        case CountLimit(metric=CountMetric.ACTIVATIONS):
-            return LimitedValues(reason="the number of activations depends on the duration of the run")
+        case CountLimit(metric=CountMetric.BOUNDED_MIGRATIONS | CountMetric.FULL_MIGRATIONS) if process.core is not None:
+            return LimitedValues.only(0)
+        case CountLimit(metric=CountMetric.ACTIVATIONS, bound=bound, value=value):
+            activations = process.jobs + process.unfinished
+            if bound is Bound.LOWER and activations < value:
+                return LimitedValues(reason=f"the run is too short: there were {activations:,} activations")
+            return LimitedValues.only(activations)
+        case LoadLimit(core=core) if core is not None and process.core is None:
+            return LimitedValues(reason=f"jobs can run on several cores, and their load on {core!r} alone is not observed")
         case LoadLimit(core=core) if core not in (None, process.core):
-            return LimitedValues(reason=f"the load of {process.name!r} on {core!r} is not observed")
+            return LimitedValues.only(0)
         case LoadLimit(metric=LoadMetric.LOAD):
             return LimitedValues.only(process.load)
         case LoadLimit(metric=metric) if metric in _SHARES:
@@ -111,6 +146,28 @@ def limited_values(limit: Limit, process: ProcessObservation, duration: Time) ->
         case RatioLimit(metric=metric) if metric in _RATIOS:
             return _normalized(process, _RATIOS[metric])
     return LimitedValues(reason=f"the simulation does not observe the {limit.metric}")
+
+
+def limited_values_of_runnable(limit: Limit, runnable: RunnableObservation) -> LimitedValues:
+    """What a requirement on a runnable limits; each execution has to keep it."""
+    missing = f"no execution of {runnable.name!r} ended"
+    match limit:
+        case CountLimit(metric=CountMetric.ACTIVATIONS):
+            return LimitedValues(reason="only processes are activated")
+        case TimeLimit(metric=TimeMetric.CORE_EXECUTION_TIME) if runnable.migrations.total:
+            return LimitedValues(reason="jobs migrate, and their execution times on each core are not observed")
+        case TimeLimit(metric=TimeMetric.LATENESS | TimeMetric.ACTIVATE_TO_ACTIVATE as metric):
+            return LimitedValues(reason=f"a runnable has no {metric} of its own")
+        case TimeLimit(metric=metric) if metric in _METRICS:
+            few = missing if not runnable.executions else f"only one execution of {runnable.name!r} ended"
+            return LimitedValues.of(runnable.metrics.get(_METRICS[metric]), few)
+        case CountLimit(metric=CountMetric.PREEMPTIONS) if runnable.executions:
+            return LimitedValues(low=Fraction(runnable.preemptions.min), high=Fraction(runnable.preemptions.max))
+        case CountLimit(metric=CountMetric.FULL_MIGRATIONS) if runnable.executions:
+            return LimitedValues(low=Fraction(runnable.migrations.min), high=Fraction(runnable.migrations.max))
+        case CountLimit(metric=CountMetric.PREEMPTIONS | CountMetric.FULL_MIGRATIONS):
+            return LimitedValues(reason=missing)
+    return LimitedValues(reason=f"the simulation does not observe the {limit.metric} of runnables")
 
 
 def _normalized(process: ProcessObservation, metric: JobMetric) -> LimitedValues:

@@ -13,13 +13,24 @@ from types import FunctionType, ModuleType
 from typing import Any, TypeAlias
 
 from amalthea_uros.simulate import layout, operations
-from amalthea_uros.simulate.kernel import accounts, activation, budgets, conditions, cores, following, jobs, loop, waiting
+from amalthea_uros.simulate.kernel import (
+    accounts,
+    activation,
+    budgets,
+    conditions,
+    cores,
+    following,
+    jobs,
+    loop,
+    waiting,
+    watching,
+)
 from amalthea_uros.simulate.memory import Memory
 
 #: Plays until something needs the driver, as `kernel.loop.play` does.
 Play: TypeAlias = Callable[[Memory], int]
 
-_MODULES = (accounts, activation, budgets, conditions, cores, following, jobs, loop, waiting)
+_MODULES = (accounts, activation, budgets, conditions, cores, following, jobs, loop, waiting, watching)
 
 
 #: Seconds after which the speed of a run is known; to load machine code, with numba itself; and of a run that is worth making it.

@@ -6,8 +6,12 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.system import System
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time
+
+#: Among `Options.labels`: all labels.
+ALL_LABELS = "all"
 
 
 class Mode(StrEnum):
@@ -33,6 +37,7 @@ class Options:
     seed : of all random values; runs with the same seed are equal on every machine
     settings : as of an analysis
     traced : the part of the model time of which events are recorded; None: nothing is
+    labels : whose accesses and ages of values are observed; ALL_LABELS: of all labels
     """
 
     duration: Time
@@ -40,9 +45,14 @@ class Options:
     mode: Mode = Mode.SAMPLED
     settings: Settings = field(default_factory=Settings)
     traced: tuple[Time, Time] | None = None
+    labels: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.duration <= 0:
             raise InvalidArgumentError("the duration of a simulation must be greater than zero")
         if self.seed < 0:
             raise InvalidArgumentError("the seed of a simulation must not be negative")
+
+    def watched_labels(self, system: System) -> tuple[str, ...]:
+        """The names of the labels that are observed in a system."""
+        return tuple(system.labels) if ALL_LABELS in self.labels else self.labels

@@ -270,6 +270,43 @@ class ChainObservation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class RunnableObservation:
+    """A runnable that a requirement limits, in all processes that call it.
+
+    Attributes
+    ----------
+    executions : number of executions that ended
+    metrics : of each execution, from its start to its end; response time and initial pending time begin at the activation of the job
+    """
+
+    name: str
+    executions: int
+    metrics: Mapping[JobMetric, MetricObservation] = field(repr=False)
+    preemptions: CountObservation
+    migrations: CountObservation
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LabelObservation:
+    """The accesses to a label.
+
+    Attributes
+    ----------
+    reads, writes : numbers of executed accesses
+    unwritten_reads : number of reads before anybody had written
+    overwritten : number of values that another value replaced before anybody had read them
+    age : at each other read: the time since the value was written that is read; None if there is none
+    """
+
+    name: str
+    reads: int
+    writes: int
+    unwritten_reads: int
+    overwritten: int
+    age: MetricObservation | None = field(default=None, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RequirementObservation:
     """The verdict on a requirement or a constraint.
 
@@ -278,6 +315,7 @@ class RequirementObservation:
     limit, value : of a time, in picoseconds, or of a number; None if it is unknown
     is_time : whether they are times
     reason : why it is missed although the value does not show it, or not observed
+    at : when the value, or what is wrong, was first observed, in picoseconds; None if that is not one time
     """
 
     name: str
@@ -289,6 +327,7 @@ class RequirementObservation:
     value: Fraction | None = None
     is_time: bool = True
     reason: str = ""
+    at: Fraction | None = None
 
     @property
     def margin(self) -> Fraction | None:
@@ -308,6 +347,8 @@ class Simulation:
     Attributes
     ----------
     duration : model time
+    runnables : those that requirements limit
+    labels : those that were asked for
     assumptions : on which the run is based
     findings : what the simulation does not take into account
     """
@@ -318,6 +359,8 @@ class Simulation:
     cores: Results[CoreObservation]
     processes: Results[ProcessObservation]
     chains: Results[ChainObservation] = field(default_factory=Results)
+    runnables: Results[RunnableObservation] = field(default_factory=Results)
+    labels: Results[LabelObservation] = field(default_factory=Results)
     requirements: Results[RequirementObservation] = field(default_factory=Results)
     assumptions: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
@@ -385,7 +428,11 @@ class Simulation:
         return pd.DataFrame(rows, columns=["object", "quantity", "count", *_COLUMNS])
 
     def _observations(self) -> Iterator[tuple[str, str, MetricObservation]]:
-        items: list[tuple[str, Mapping[Any, MetricObservation]]] = [(each.name, each.metrics) for each in self.processes]
+        # Of equal names, that of a process counts in a row of a table: the last one.
+        items: list[tuple[str, Mapping[Any, MetricObservation]]] = []
+        items += [(each.name, {"age": each.age}) for each in self.labels if each.age is not None]
+        items += [(each.name, each.metrics) for each in self.runnables]
+        items += [(each.name, each.metrics) for each in self.processes]
         items += [(each.name, each.quantities) for each in self.chains]
         yield from ((name, str(quantity), found) for name, values in items for quantity, found in values.items())
 
@@ -398,6 +445,11 @@ class Simulation:
             yield f"{process.name}.load", float(process.load)
             yield f"{process.name}.lost_activations", process.lost_activations
             yield f"{process.name}.verdict", process.verdict
+        for label in self.labels:
+            yield f"{label.name}.reads", label.reads
+            yield f"{label.name}.writes", label.writes
+            yield f"{label.name}.unwritten_reads", label.unwritten_reads
+            yield f"{label.name}.overwritten", label.overwritten
         for name, quantity, found in self._observations():
             yield from ((f"{name}.{quantity}.{column}", value) for column, value in _times(found).items())
         # Of several limits with one name, the worst verdict counts: the last cell.

@@ -9,7 +9,7 @@ from enum import IntEnum
 
 
 class Job(IntEnum):
-    """The columns of a row about a job that has ended.
+    """The columns of a row about a job that has ended, or an execution of a runnable: their numbers follow those of the processes.
 
     `ACTIVATION`, `START` and `END` are points in time. `RUNNING`, `WAITING`, `POLLING` and `PARKING` are the time in these states
     (BTF state chart); the rest between start and end is the time in the state READY.
@@ -29,10 +29,11 @@ class Job(IntEnum):
 
 
 class Observation(IntEnum):
-    """The columns of a row about a chain.
+    """The columns of a row about a chain, or about an occurrence of something that is watched.
 
     `STAMP` is the number of the occurrence of the chain's stimulus, counted from 0: its own number for a stimulus; for a response
-    that of the newest stimulus whose effect the response shows, or -1 as long as it shows none.
+    that of the newest stimulus whose effect the response shows, or -1 as long as it shows none. An occurrence has the number of its
+    source instead of a route, and the number of the core instead of a stamp, or -1.
     """
 
     ROUTE = 0
@@ -42,4 +43,4 @@ class Observation(IntEnum):
 
 
 #: The kinds of observations.
-STIMULUS, RESPONSE = 0, 1
+STIMULUS, RESPONSE, OCCURRENCE = 0, 1, 2

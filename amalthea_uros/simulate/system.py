@@ -28,11 +28,19 @@ from amalthea_uros.simulate.layout import (
 from amalthea_uros.simulate.metrics import chains, jobs
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
 from amalthea_uros.simulate.metrics.jobs import JobMetrics
+from amalthea_uros.simulate.observers import Observers
 from amalthea_uros.simulate.operations import POLLING, RUNNING
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.player import EndlessJobError, Player
 from amalthea_uros.simulate.program.build import Program, build_program
-from amalthea_uros.simulate.results import ChainObservation, CoreObservation, ProcessObservation, Simulation
+from amalthea_uros.simulate.results import (
+    ChainObservation,
+    CoreObservation,
+    ProcessObservation,
+    RunnableObservation,
+    Simulation,
+)
+from amalthea_uros.simulate.rows import OCCURRENCE, Observation
 from amalthea_uros.simulate.verdicts import deadline_of, judge_process, judge_requirements
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.critical_sections import spinlocks_of
@@ -78,6 +86,8 @@ class _Run:
     player: Player = field(init=False)
     jobs: list[JobMetrics] = field(init=False)
     routes: list[RouteMetrics] = field(init=False)
+    observers: Observers = field(init=False)
+    runnables: list[JobMetrics] = field(init=False)
     sinks: Sequence[TraceSink] = ()
     suspensions: RunnableSuspensions = field(default_factory=RunnableSuspensions)
     semaphores: SemaphoreStates = field(init=False)
@@ -85,14 +95,16 @@ class _Run:
     def __post_init__(self) -> None:
         program = self.program
         self.jobs = [JobMetrics(program.units) for _ in program.processes]
+        self.runnables = [JobMetrics(program.units) for _ in program.runnables]
+        self.observers = Observers(self.context.system, self.options, program, self.end)
         self.routes = [RouteMetrics(program.units) for _ in program.routes]
         self.semaphores = _semaphore_states(self.context.system, program)
         traced = self.options.traced or (0, 0)
         self.player = Player(
             program,
             until=self.end,
-            jobs=lambda rows: jobs.add_rows(rows, self.jobs),
-            observations=lambda rows: chains.add_rows(rows, self.routes),
+            jobs=lambda rows: jobs.add_rows(rows, [*self.jobs, *self.runnables]),
+            observations=self._observe,
             events=self._write,
             traced=(traced[0] * program.units, traced[1] * program.units),
         )
@@ -112,6 +124,12 @@ class _Run:
             message = f"{name!r} executes activities forever without taking time; the run ends there"
             self.context.notes.error("SIM003", message, self.context.system.processes[name])
 
+    def _observe(self, rows: NDArray[np.int64]) -> None:
+        """Give rows about chains and about other occurrences to those that they are for."""
+        is_occurrence = rows[:, Observation.KIND] == OCCURRENCE
+        chains.add_rows(rows[~is_occurrence], self.routes)
+        self.observers.add(rows[is_occurrence])
+
     def _write(self, rows: NDArray[np.int64]) -> None:
         """Hand events on to all sinks."""
         table = self.suspensions.insert(self.semaphores.insert(_event_table(rows, self.program)))
@@ -122,10 +140,12 @@ class _Run:
         """What was observed."""
         system, program, notes = self.context.system, self.program, self.context.notes
         self._note_left_out()
+        self.observers.finish()
         processes = Results(map(judge_process, self._processes()))
         found = Results(self._chain(name) for name in system.chains)
         duration = self.options.duration
-        requirements = Results(judge_requirements(system, processes, found, duration))
+        runnables = Results(map(self._runnable, self.program.runnables, self.runnables))
+        requirements = Results(judge_requirements(system, processes, found, duration, runnables, self.observers))
         return Simulation(
             duration=duration,
             seed=self.options.seed,
@@ -133,6 +153,8 @@ class _Run:
             cores=Results(self._core(name, record) for name, record in program.cores.items()),
             processes=processes,
             chains=found,
+            runnables=runnables,
+            labels=Results(self.observers.labels()),
             requirements=requirements,
             assumptions=tuple(notes.assumptions),
             findings=tuple(finding for finding in notes.found if finding.rule not in _OF_ANALYSES),
@@ -187,6 +209,15 @@ class _Run:
         used = int(memory[record + TIME_RUNNING]) + int(memory[record + TIME_POLLING])
         is_on_core = memory[record + STATE] in (RUNNING, POLLING)
         return used + (self.end - int(memory[record + SINCE]) if is_on_core else 0)
+
+    def _runnable(self, name: str, found: JobMetrics) -> RunnableObservation:
+        return RunnableObservation(
+            name=name,
+            executions=found.count,
+            metrics=found.observations(None),
+            preemptions=found.preemptions,
+            migrations=found.migrations,
+        )
 
     def _core(self, name: str, record: int) -> CoreObservation:
         memory = self.player.memory

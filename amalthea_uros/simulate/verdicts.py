@@ -5,47 +5,55 @@ That a limit was kept in a run is no proof that it always is: the verdict is *ob
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Protocol, TypeAlias
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.perf.constraints import (
     Bound,
-    ChainSynchronization,
+    Constraint,
     DataAgeConstraint,
-    DelayConstraint,
-    EventSynchronization,
     LatencyConstraint,
     LatencyKind,
     OrderConstraint,
-    RepetitionConstraint,
     Requirement,
     TimeLimit,
 )
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate.limited_values import LimitedValues, limited_values
+from amalthea_uros.simulate.limited_values import (
+    LimitedQuantity,
+    LimitedValues,
+    limited_values,
+    limited_values_of_runnable,
+)
 from amalthea_uros.simulate.results import (
     ChainObservation,
     ChainQuantity,
     ObservedVerdict,
     ProcessObservation,
     RequirementObservation,
+    RunnableObservation,
 )
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.deadlines import implicit_deadline
 from amalthea_uros.timing.releases import response_time_limits
 from amalthea_uros.units import Time, time_text
 
-_UNOBSERVED = {
-    DelayConstraint: "delays between events",
-    RepetitionConstraint: "repetitions of events",
-    EventSynchronization: "the distance of events",
-    ChainSynchronization: "the distance of the ends of chains",
-    DataAgeConstraint: "the age of the data of single labels",
-    OrderConstraint: "the order of runnables",
-}
+#: A constraint that is about occurrences.
+ObservedConstraint: TypeAlias = Constraint | DataAgeConstraint | OrderConstraint
+
+
+class ConstraintObservers(Protocol):
+    """What has observed the constraints."""
+
+    def quantities(self, constraint: ObservedConstraint) -> Sequence[LimitedQuantity]:
+        """What was observed of a constraint; nothing if it limits nothing, or cannot be observed."""
+
+    def reason(self, constraint: ObservedConstraint) -> str:
+        """Why nothing was observed of a constraint."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,29 +92,43 @@ def judge_process(process: ProcessObservation) -> ProcessObservation:
 
 
 def judge_requirements(
-    system: System, processes: Results[ProcessObservation], chains: Results[ChainObservation], duration: Time
+    system: System,
+    processes: Results[ProcessObservation],
+    chains: Results[ChainObservation],
+    duration: Time,
+    runnables: Results[RunnableObservation],
+    observers: ConstraintObservers,
 ) -> Iterator[RequirementObservation]:
     """The verdicts on all requirements, then on all constraints."""
     constraints = system.constraints
     for requirement in constraints.requirements:
-        yield _requirement(requirement, processes, duration)
+        yield _requirement(requirement, processes, duration, runnables)
     for constraint in (*constraints.constraints, *constraints.data_ages, *constraints.orders):
         if isinstance(constraint, LatencyConstraint):
             yield from _latency(constraint, chains)
-        else:
-            reason = f"the simulation does not observe {_UNOBSERVED[type(constraint)]}"
-            yield _not_observed(constraint, type(constraint).__name__, reason)
+            continue
+        quantities = observers.quantities(constraint)
+        yield from (_constraint(constraint.name, quantity) for quantity in quantities)
+        if not quantities:
+            yield _not_observed(constraint, type(constraint).__name__, observers.reason(constraint))
 
 
-def _requirement(requirement: Requirement, processes: Results[ProcessObservation], duration: Time) -> RequirementObservation:
+def _requirement(
+    requirement: Requirement,
+    processes: Results[ProcessObservation],
+    duration: Time,
+    runnables: Results[RunnableObservation],
+) -> RequirementObservation:
     limit = requirement.limit
     process = next((each for each in processes if each.name == requirement.process), None)
+    runnable = next((each for each in runnables if each.name == requirement.runnable), None)
     if process is not None:
         values = limited_values(limit, process, duration)
-    elif requirement.runnable is not None:
-        values = LimitedValues(reason="the simulation does not observe single runnables")
+    elif runnable is not None:
+        values = limited_values_of_runnable(limit, runnable)
     else:
-        values = LimitedValues(reason="the process that it limits is not defined, or was left out when reading")
+        kind = "process" if requirement.runnable is None else "runnable"
+        values = LimitedValues(reason=f"the {kind} that it limits is not defined, or was left out when reading")
     return _judged(
         RequirementObservation(
             name=requirement.name,
@@ -120,6 +142,29 @@ def _requirement(requirement: Requirement, processes: Results[ProcessObservation
         ),
         values,
     )
+
+
+def _constraint(name: str, found: LimitedQuantity) -> RequirementObservation:
+    """The verdict on a constraint of occurrences."""
+    values = found.values
+    judged = RequirementObservation(
+        name=name,
+        object=found.object,
+        quantity=found.quantity,
+        is_upper=found.is_upper,
+        limit=None if found.limit is None else Fraction(found.limit),
+        is_time=found.is_time,
+        verdict=ObservedVerdict.NOT_OBSERVED,
+    )
+    if found.limit is not None:
+        judged = _judged(judged, values)
+    elif values.high is not None:
+        judged = replace(judged, verdict=ObservedVerdict.OK)
+    else:
+        judged = replace(judged, reason=values.reason)
+    if not found.violation:
+        return judged
+    return replace(judged, verdict=ObservedVerdict.MISSED, reason=found.violation, at=found.violated_at)
 
 
 def _latency(constraint: LatencyConstraint, chains: Results[ChainObservation]) -> Iterator[RequirementObservation]:
@@ -161,8 +206,10 @@ def _judged(found: RequirementObservation, values: LimitedValues) -> Requirement
     if found.is_upper and found.limit is not None and values.pending > found.limit:
         longest = max(values.pending, values.high or Fraction(0))
         reason = "" if longest == values.high else "not ended at the end of the run"
-        return replace(found, value=longest, verdict=ObservedVerdict.MISSED, reason=reason)
-    compared = replace(found, value=values.high if found.is_upper else values.low)
+        at = values.high_at if longest == values.high else None
+        return replace(found, value=longest, verdict=ObservedVerdict.MISSED, reason=reason, at=at)
+    value, at = (values.high, values.high_at) if found.is_upper else (values.low, values.low_at)
+    compared = replace(found, value=value, at=at)
     if compared.margin is None:
         return replace(compared, reason=values.reason)
     if compared.margin < 0:

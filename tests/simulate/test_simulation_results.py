@@ -4,7 +4,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from simulations import CHAIN, CONTROL, EXECUTOR, SIMULATION, latencies, process
+from simulations import CHAIN, CONTROL, EXECUTOR, SIMULATION, latencies, observation, process
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.perf.constraints import (
@@ -28,7 +28,7 @@ from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.software import Software, Task
 from amalthea_uros.perf.stimuli import Periodic, Stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate.results import ChainObservation, CountObservation, ObservedVerdict
+from amalthea_uros.simulate.results import ChainObservation, CountObservation, ObservedVerdict, RunnableObservation
 from amalthea_uros.simulate.verdicts import Deadline, deadline_of, judge_process, judge_requirements
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.job_metric import JobMetric
@@ -36,6 +36,13 @@ from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import SECOND
 
+CALLBACK = RunnableObservation(
+    name="Callback",
+    executions=300,
+    metrics={JobMetric.RESPONSE_TIME: observation(2 * US, 5 * US, 9 * US)},
+    preemptions=CountObservation(total=7, min=0, max=2),
+    migrations=CountObservation(total=0, min=0, max=0),
+)
 OK, MISSED, NOT_OBSERVED = ObservedVerdict.OK, ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED
 
 
@@ -162,7 +169,18 @@ def test_the_verdict_on_a_process(changes, verdict, reason):
 
 def verdict_on(*constraints, requirements=(), processes=(EXECUTOR, CONTROL), chains=(CHAIN,), **others):
     demanded = Constraints(constraints=constraints, requirements=requirements, **others)
-    return list(judge_requirements(System(constraints=demanded), Results(processes), Results(chains), 300 * SECOND))
+    system = System(constraints=demanded)
+    return list(
+        judge_requirements(system, Results(processes), Results(chains), 300 * SECOND, Results([CALLBACK]), NothingObserved())
+    )
+
+
+class NothingObserved:
+    def quantities(self, constraint):
+        return ()
+
+    def reason(self, constraint):
+        return f"nothing about {constraint.name}"
 
 
 def limited(limit, **changes):
@@ -196,11 +214,19 @@ def limited(limit, **changes):
         (CountLimit(metric=CountMetric.PREEMPTIONS, value=1), {}, MISSED, 2),
         (CountLimit(metric=CountMetric.LOST_ACTIVATIONS, value=0), {}, OK, 0),
         (CountLimit(metric=CountMetric.LOST_ACTIVATIONS, value=0), {"lost_activations": 1}, MISSED, 1),
-        (CountLimit(metric=CountMetric.ACTIVATIONS, value=5), {}, NOT_OBSERVED, None),
+        # 300 jobs; a longer run can have more.
+        (CountLimit(metric=CountMetric.ACTIVATIONS, value=300), {}, OK, 300),
+        (CountLimit(metric=CountMetric.ACTIVATIONS, value=300), {"unfinished": 1}, MISSED, 301),
+        (CountLimit(metric=CountMetric.ACTIVATIONS, value=300, bound=Bound.LOWER), {}, OK, 300),
+        (CountLimit(metric=CountMetric.ACTIVATIONS, value=301, bound=Bound.LOWER), {}, NOT_OBSERVED, None),
+        # On one core, jobs neither move nor start on another one.
+        (CountLimit(metric=CountMetric.BOUNDED_MIGRATIONS, value=0), {}, OK, 0),
+        (CountLimit(metric=CountMetric.BOUNDED_MIGRATIONS, value=0), {"core": None}, NOT_OBSERVED, None),
         (CountLimit(metric=CountMetric.CACHE_MISSES, value=5), {}, NOT_OBSERVED, None),
         (LoadLimit(metric=LoadMetric.LOAD, value=0.004), {}, OK, Fraction(4, 1000)),
         (LoadLimit(metric=LoadMetric.LOAD, value=0.003), {}, MISSED, Fraction(4, 1000)),
-        (LoadLimit(metric=LoadMetric.LOAD, value=0.5, core="Other"), {}, NOT_OBSERVED, None),
+        (LoadLimit(metric=LoadMetric.LOAD, value=0.5, core="Other"), {}, OK, 0),
+        (LoadLimit(metric=LoadMetric.LOAD, value=0.5, core="Other"), {"core": None}, NOT_OBSERVED, None),
         # 300 jobs of 4 us in 300 s.
         (LoadLimit(metric=LoadMetric.RUNNING, value=0.000004), {}, OK, Fraction(4, 10**6)),
         (LoadLimit(metric=LoadMetric.BUFFERING, value=0.1), {}, NOT_OBSERVED, None),
@@ -220,7 +246,7 @@ def test_the_verdict_on_a_requirement(limit, changes, verdict, value):
     ("limited", "reason"),
     [
         ({"process": "Unknown"}, "the process that it limits is not defined, or was left out when reading"),
-        ({"runnable": "R"}, "the simulation does not observe single runnables"),
+        ({"runnable": "unknown"}, "the runnable that it limits is not defined, or was left out when reading"),
     ],
 )
 def test_what_is_not_simulated_is_not_observed(limited, reason):
@@ -291,9 +317,42 @@ def test_a_chain_that_is_not_defined_is_not_observed():
 def test_other_constraints_are_not_observed():
     found = verdict_on(DelayConstraint(name="D", source="a", target="b"), orders=(OrderConstraint(name="O", groups=()),))
     assert [(each.name, each.verdict, each.reason) for each in found] == [
-        ("D", NOT_OBSERVED, "the simulation does not observe delays between events"),
-        ("O", NOT_OBSERVED, "the simulation does not observe the order of runnables"),
+        ("D", NOT_OBSERVED, "nothing about D"),
+        ("O", NOT_OBSERVED, "nothing about O"),
     ]
+
+
+# Runnables: response times from 2 to 9 us
+
+
+@pytest.mark.parametrize(
+    ("limit", "verdict", "value"),
+    [
+        (TimeLimit(metric=TimeMetric.RESPONSE_TIME, value=9 * US), OK, 9 * US),
+        (TimeLimit(metric=TimeMetric.RESPONSE_TIME, value=8 * US), MISSED, 9 * US),
+        (TimeLimit(metric=TimeMetric.RESPONSE_TIME, value=3 * US, bound=Bound.LOWER), MISSED, 2 * US),
+        (TimeLimit(metric=TimeMetric.WAITING_TIME, value=8 * US), NOT_OBSERVED, None),
+        (TimeLimit(metric=TimeMetric.LATENESS, value=0), NOT_OBSERVED, None),
+        (TimeLimit(metric=TimeMetric.ACTIVATE_TO_ACTIVATE, value=MS), NOT_OBSERVED, None),
+        (CountLimit(metric=CountMetric.PREEMPTIONS, value=2), OK, 2),
+        (CountLimit(metric=CountMetric.FULL_MIGRATIONS, value=0), OK, 0),
+        (CountLimit(metric=CountMetric.ACTIVATIONS, value=9), NOT_OBSERVED, None),
+        (LoadLimit(metric=LoadMetric.LOAD, value=0.5), NOT_OBSERVED, None),
+    ],
+)
+def test_the_verdict_on_a_requirement_of_a_runnable(limit, verdict, value):
+    (found,) = verdict_on(requirements=(Requirement(name="R", runnable="Callback", limit=limit),))
+    assert (found.object, found.verdict, found.value) == ("Callback", verdict, value)
+    assert bool(found.reason) == (verdict is NOT_OBSERVED)
+
+
+def test_the_verdict_says_when_the_value_was_observed():
+    (found,) = verdict_on(requirements=(Requirement(name="R", process="Control", limit=limit_of(28 * US)),))
+    assert found.at == CONTROL.response_time.at_max.time
+
+
+def limit_of(time):
+    return TimeLimit(metric=TimeMetric.RESPONSE_TIME, value=time)
 
 
 def test_the_worst_route_counts_for_the_chain():

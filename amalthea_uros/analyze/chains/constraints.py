@@ -14,7 +14,6 @@ from itertools import permutations
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
-from amalthea_uros.analyze.chains.runnable_order import satisfies_order
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.implausible_limits import note_implausible
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, RequirementResult, Value
@@ -40,6 +39,7 @@ from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.routes import routes
 from amalthea_uros.timing.event_models import EventModel, Periodic, is_strictly_periodic
 from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.timing.runnable_order import satisfies_order
 from amalthea_uros.units import Time
 
 _REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)

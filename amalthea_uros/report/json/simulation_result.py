@@ -11,11 +11,13 @@ from amalthea_uros.report.simulated import SimulationShown, closing_line
 from amalthea_uros.simulate.results import (
     ChainObservation,
     Histogram,
+    LabelObservation,
     MetricObservation,
     Occurrence,
     ProcessObservation,
     RequirementObservation,
     RouteObservation,
+    RunnableObservation,
     Simulation,
 )
 
@@ -33,6 +35,8 @@ def content(result: SimulationShown) -> dict[str, Any]:
         "processors": [{"name": core.name, "load": float(core.load)} for core in simulation.cores],
         "processes": [_process(process) for process in simulation.processes],
         "chains": [_chain(chain) for chain in simulation.chains],
+        "runnables": [_runnable(runnable) for runnable in simulation.runnables],
+        "labels": [_label(label) for label in simulation.labels],
         "lost_activations": simulation.lost_activations,
         "requirements": [_requirement(requirement) for requirement in simulation.requirements],
         "summary": _summary(simulation),
@@ -56,6 +60,27 @@ def _process(process: ProcessObservation) -> dict[str, Any]:
         "deadline_is_period": process.is_implicit,
         "verdict": process.verdict,
         "reason": process.reason,
+    }
+
+
+def _runnable(runnable: RunnableObservation) -> dict[str, Any]:
+    return {
+        "name": runnable.name,
+        "executions": runnable.executions,
+        "metrics": _observations(runnable.metrics),
+        "preemptions": runnable.preemptions.total,
+        "migrations": runnable.migrations.total,
+    }
+
+
+def _label(label: LabelObservation) -> dict[str, Any]:
+    return {
+        "name": label.name,
+        "reads": label.reads,
+        "writes": label.writes,
+        "unwritten_reads": label.unwritten_reads,
+        "overwritten": label.overwritten,
+        "age": None if label.age is None else _observation(label.age),
     }
 
 
@@ -84,19 +109,20 @@ def _route(route: RouteObservation) -> dict[str, Any]:
 
 
 def _observations(found: Mapping[Any, MetricObservation]) -> dict[str, Any]:
+    return {name: _observation(each) for name, each in found.items()}
+
+
+def _observation(found: MetricObservation) -> dict[str, Any]:
     return {
-        name: {
-            "count": each.count,
-            "min_ps": round(each.min),
-            "avg_ps": round(each.mean),
-            "max_ps": round(each.max),
-            "std_ps": round(each.std),
-            "jitter_ps": round(each.jitter),
-            "at_min": _occurrence(each.at_min),
-            "at_max": _occurrence(each.at_max),
-            **({} if each.histogram is None else {"histogram": _histogram(each.histogram)}),
-        }
-        for name, each in found.items()
+        "count": found.count,
+        "min_ps": round(found.min),
+        "avg_ps": round(found.mean),
+        "max_ps": round(found.max),
+        "std_ps": round(found.std),
+        "jitter_ps": round(found.jitter),
+        "at_min": _occurrence(found.at_min),
+        "at_max": _occurrence(found.at_max),
+        **({} if found.histogram is None else {"histogram": _histogram(found.histogram)}),
     }
 
 
@@ -117,6 +143,7 @@ def _requirement(requirement: RequirementObservation) -> dict[str, Any]:
         **{f"{name}_ps": _rounded(value) if requirement.is_time else None for name, value in values.items()},
         **{name: None if requirement.is_time or value is None else float(value) for name, value in values.items()},
         "verdict": requirement.verdict,
+        "at_ps": _rounded(requirement.at),
         "reason": requirement.reason,
     }
 

@@ -15,8 +15,10 @@ from amalthea_uros.simulate.results import (
     MetricObservation,
     ObservedVerdict,
     ProcessObservation,
+    RequirementObservation,
     Simulation,
 )
+from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import NANOSECOND, time_text
 
 _BADNESS = (ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED, ObservedVerdict.OK, None)
@@ -32,6 +34,8 @@ def write(result: SimulationShown, terminal: Terminal) -> None:
     if result.with_metrics:
         _metrics(terminal, simulation)
     _chains(terminal, simulation)
+    _runnables(terminal, simulation)
+    _labels(terminal, simulation)
     _requirements(terminal, simulation)
     if simulation.assumptions:
         terminal.heading("Assumptions")
@@ -129,6 +133,37 @@ def _chain(chain: ChainObservation) -> tuple[str, ...]:
     )
 
 
+def _runnables(terminal: Terminal, simulation: Simulation) -> None:
+    if simulation.runnables:
+        terminal.heading("Runnables with requirements")
+        rows = [
+            (
+                runnable.name,
+                f"{runnable.executions:,}",
+                *_min_mean_max(runnable.metrics.get(JobMetric.RESPONSE_TIME)),
+                _min_mean_max(runnable.metrics.get(JobMetric.NET_EXECUTION_TIME))[2],
+            )
+            for runnable in simulation.runnables
+        ]
+        headings = ("runnable", "executions", "min response", "mean", "max", "max net execution")
+        terminal.table(headings, rows, right=range(1, 6))
+
+
+def _labels(terminal: Terminal, simulation: Simulation) -> None:
+    if simulation.labels:
+        terminal.heading("Labels")
+        rows = [
+            (
+                label.name,
+                *(f"{number:,}" for number in (label.reads, label.writes, label.unwritten_reads, label.overwritten)),
+                *_min_mean_max(label.age),
+            )
+            for label in simulation.labels
+        ]
+        headings = ("label", "reads", "writes", "unwritten", "overwritten", "min age", "mean", "max")
+        terminal.table(headings, rows, right=range(1, 8))
+
+
 def _requirements(terminal: Terminal, simulation: Simulation) -> None:
     if not simulation.requirements:
         return
@@ -141,8 +176,15 @@ def _requirements(terminal: Terminal, simulation: Simulation) -> None:
             value_text(requirement, requirement.value),
             _verdict(requirement.verdict),
             value_text(requirement, requirement.margin) if requirement.margin is not None else "",
-            requirement.reason,
+            _remark(requirement),
         )
         for requirement in sorted(simulation.requirements, key=lambda each: _BADNESS.index(each.verdict))
     ]
     terminal.table(("requirement", "what", "limit", "observed", "verdict", "margin", ""), rows, right=(3, 5))
+
+
+def _remark(requirement: RequirementObservation) -> str:
+    """Why, and when a limit was missed first."""
+    is_missed = requirement.verdict is ObservedVerdict.MISSED and requirement.at is not None
+    when = f"at {time_text(round(requirement.at or 0))}" if is_missed else ""
+    return ", ".join(filter(None, (requirement.reason, when)))

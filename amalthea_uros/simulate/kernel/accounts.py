@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from amalthea_uros.simulate.kernel.watching import watch
 from amalthea_uros.simulate.layout import (
     CORE_ENTITY,
     ENTITY,
@@ -21,6 +22,7 @@ from amalthea_uros.simulate.layout import (
     TIME_POLLING,
     TIME_RUNNING,
     TIME_WAITING,
+    WATCHED,
 )
 from amalthea_uros.simulate.memory import Memory
 from amalthea_uros.simulate.operations import PARKING, POLLING, RUNNING, WAITING
@@ -60,7 +62,9 @@ def emit(m: Memory, kind: int, source: int, source_instance: int, target: int, t
 
 
 def tell(m: Memory, kind: int, core: int, process: int) -> None:
-    """Record a transition of a process on a core, if there is a trace."""
+    """Record a transition of a process on a core, if there is a trace or it is watched."""
+    if m[process + WATCHED]:
+        watch(m, process, kind, core)
     if m[IS_TRACED] and m[process + IS_REPORTED]:
         emit(m, kind, m[core + CORE_ENTITY], 0, m[process + ENTITY], m[process + INSTANCE], NO_NOTE)
 

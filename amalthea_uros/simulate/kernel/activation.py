@@ -7,6 +7,7 @@ from amalthea_uros.simulate.kernel.budgets import rest, wake
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode
 from amalthea_uros.simulate.kernel.cores import leave_core, restore_level
 from amalthea_uros.simulate.kernel.following import publish
+from amalthea_uros.simulate.kernel.watching import observe, watch
 from amalthea_uros.simulate.layout import (
     ACTIVATION,
     ACTIVATIONS,
@@ -60,6 +61,7 @@ from amalthea_uros.simulate.layout import (
     START,
     STATE,
     STIMULUS_ENTITY,
+    STIMULUS_SOURCE,
     TARGETS,
     TARGETS_END,
     TIME_PARKING,
@@ -67,6 +69,7 @@ from amalthea_uros.simulate.layout import (
     TIME_RUNNING,
     TIME_WAITING,
     WAITING_MESSAGES,
+    WATCHED,
 )
 from amalthea_uros.simulate.memory import Memory
 from amalthea_uros.simulate.operations import ACTIVATED, GO_ON, QUEUE_FULL, TERMINATED
@@ -94,6 +97,8 @@ def fire(m: Memory, stimulus: int, origin: int) -> int:
         emit(m, _TRIGGER, m[origin + ENTITY], m[origin + INSTANCE], entity, number, NO_NOTE)
     elif m[IS_TRACED]:
         emit(m, _TRIGGER, entity, number, entity, number, NO_NOTE)
+    if m[stimulus + STIMULUS_SOURCE]:
+        observe(m, m[stimulus + STIMULUS_SOURCE] - 1, 0)
     source = m[stimulus + MESSAGES]
     if source and m[source + WAITING_MESSAGES] < m[source + MESSAGE_LIMIT]:
         m[source + WAITING_MESSAGES] += 1
@@ -119,6 +124,8 @@ def activate(m: Memory, process: int, stimulus: int, number: int) -> None:
             emit(m, _LOST, stimulus, number, m[process + ENTITY], instance, NO_NOTE)
         return
     m[process + ACTIVATIONS] += 1
+    if m[process + WATCHED]:
+        watch(m, process, _ACTIVATE, 0)
     if m[IS_TRACED]:
         emit(m, _ACTIVATE, stimulus, number, m[process + ENTITY], instance, NO_NOTE)
     _enqueue(m, process, instance)

@@ -8,6 +8,7 @@ from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode, st
 from amalthea_uros.simulate.kernel.cores import change_level, run
 from amalthea_uros.simulate.kernel.following import follow
 from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
+from amalthea_uros.simulate.kernel.watching import begin_execution, end_execution, observe
 from amalthea_uros.simulate.layout import (
     AT,
     CAPACITY,
@@ -42,12 +43,14 @@ from amalthea_uros.simulate.layout import (
 from amalthea_uros.simulate.memory import Memory
 from amalthea_uros.simulate.operations import (
     AGAIN,
+    BEGIN_EXECUTION,
     BEGIN_RUNNABLE,
     CHOOSE,
     CLEAR_EVENT,
     COUNT,
     DRAW,
     END,
+    END_EXECUTION,
     END_RUNNABLE,
     ENDLESS,
     ENTER,
@@ -58,6 +61,7 @@ from amalthea_uros.simulate.operations import (
     MASK,
     NEXT,
     NOTE,
+    OBSERVE,
     POINT,
     RECEIVE,
     REPEAT,
@@ -163,6 +167,12 @@ def _carry_out(m: Memory, core: int, process: int, at: int) -> int:
         tell_of(m, first, process, second)
     elif operation == BEGIN_RUNNABLE or operation == END_RUNNABLE:
         tell_execution(m, process, first, operation == BEGIN_RUNNABLE)
+    elif operation == OBSERVE:
+        observe(m, first, core)
+    elif operation == BEGIN_EXECUTION:
+        begin_execution(m, first, process)
+    elif operation == END_EXECUTION:
+        end_execution(m, first, process)
     elif operation == MASK or operation == UNMASK:
         m[process + MASKS] += 1 if operation == MASK else -1
         change_level(m, process)

@@ -14,11 +14,15 @@ from amalthea_uros.simulate.layout import (
     CORES_END,
     DOMAINS,
     DOMAINS_END,
+    EVENTS,
+    EVENTS_END,
     IS_DUE,
     ITS_CORES,
     ITS_CORES_END,
     NEEDS_STEP,
     NOW,
+    OBSERVATIONS,
+    OBSERVATIONS_END,
     RUNS,
     SERVER_AT,
     SERVERS,
@@ -28,7 +32,7 @@ from amalthea_uros.simulate.layout import (
     UNTIL,
 )
 from amalthea_uros.simulate.memory import Memory
-from amalthea_uros.simulate.operations import WINDOW
+from amalthea_uros.simulate.operations import ROWS_FULL, WINDOW
 
 
 def play(m: Memory) -> int:
@@ -68,6 +72,9 @@ def play(m: Memory) -> int:
                 now = min(now, m[m[place] + SERVER_AT])
         if now >= m[UNTIL]:
             return WINDOW
+        # Activations and preemptions are reported without any job going on.
+        if m[OBSERVATIONS] >= m[OBSERVATIONS_END] or m[EVENTS] >= m[EVENTS_END]:
+            return ROWS_FULL
         m[NOW] = now
         m[STEPS] = 0
         for place in range(first_core, last_core):

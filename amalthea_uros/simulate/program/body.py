@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -12,6 +13,7 @@ from amalthea_uros.perf.activities import (
     Activity,
     Call,
     ClearEvent,
+    Communication,
     Count,
     Demand,
     Execute,
@@ -42,10 +44,26 @@ from amalthea_uros.perf.activities import (
 )
 from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.perf.distributions import Statistics
+from amalthea_uros.perf.events import (
+    ChannelChange,
+    ChannelEvent,
+    CustomEvent,
+    Event,
+    LabelChange,
+    LabelEvent,
+    ModeChange,
+    ModeLabelEvent,
+    RunnableChange,
+    RunnableEvent,
+    SemaphoreChange,
+    SemaphoreEvent,
+)
 from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import Isr, Preemption, Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.simulate.layout import (
+    EXECUTION_NUMBER,
+    EXECUTION_SIZE,
     GROUP_SIZE,
     LOOP_SIZE,
     ORDERED_PARTS,
@@ -57,12 +75,14 @@ from amalthea_uros.simulate.operations import (
     AGAIN,
     ASK,
     AWAIT,
+    BEGIN_EXECUTION,
     BEGIN_RUNNABLE,
     CHOOSE,
     CLEAR_EVENT,
     COUNT,
     DRAW,
     END,
+    END_EXECUTION,
     END_RUNNABLE,
     EXCLUSIVE,
     EXECUTE,
@@ -71,6 +91,7 @@ from amalthea_uros.simulate.operations import (
     MASK,
     NEXT,
     NOTE,
+    OBSERVE,
     POINT,
     RECEIVE,
     REPEAT,
@@ -92,6 +113,7 @@ from amalthea_uros.simulate.program.code import Argument, Code, Label, Table
 from amalthea_uros.simulate.program.modes import Modes
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.resources import Resources, constant
+from amalthea_uros.simulate.program.watches import Source, Watches
 from amalthea_uros.simulate.sampling.streams import Stream
 from amalthea_uros.timing.critical_sections import spinlocks_of, waits_actively
 from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH
@@ -106,6 +128,12 @@ from amalthea_uros.trace.table import EntityKind, EventKind
 Operation: TypeAlias = tuple[int, Argument, Argument]
 #: A program with more operations is not built.
 MAX_OPERATIONS = 1_000_000
+_MODE_CHANGES = {
+    ModeOperation.READ: ModeChange.READ,
+    ModeOperation.SET: ModeChange.WRITE,
+    ModeOperation.INCREMENT: ModeChange.INCREMENT,
+    ModeOperation.DECREMENT: ModeChange.DECREMENT,
+}
 
 
 @dataclass(slots=True)
@@ -126,6 +154,7 @@ class BodyCompiler:
     ----------
     processes, stimuli : their records
     is_noted : whether events of runnables and labels are recorded
+    watches : what is observed apart from jobs and chains
     """
 
     resources: Resources
@@ -133,6 +162,7 @@ class BodyCompiler:
     processes: dict[str, int]
     stimuli: dict[str, int]
     is_noted: bool
+    watches: Watches
 
     def process(self, process: Process, core: str, hooks: Hooks, scheduler: Scheduler | None, in_group: bool) -> Code:
         """The program of a process.
@@ -175,6 +205,7 @@ class _Body:
     end: Label = field(default_factory=Label)
     number: int = 0
     masks: int = 0
+    executions: dict[str, int] = field(default_factory=dict)
 
     @property
     def resources(self) -> Resources:
@@ -270,18 +301,20 @@ class _Body:
                 for name, need in needs:
                     factor = self.resources.context.demand_model.ticks_per_unit(name, self.core)
                     self._execute(self.resources.ticks(need, self.core, factor, f"{self.place} {name}"))
-            case LabelAccess(label=label, kind=kind, times=times):
+            case LabelAccess(label=label, kind=kind, communication=communication, times=times):
                 self._access(label, kind, times)
-                self._note_access(label, kind)
+                self._label_accessed(label, kind, communication, above)
             case SenderReceiverAccess(label=label, kind=kind):
                 self._check(activity)
                 self._access(label, kind, None)
-                self._note_access(label, kind)
+                self._label_accessed(label, kind, None, above)
             case Send(channel=channel, elements=elements):
                 self._access(channel, AccessKind.WRITE, max(1, elements))
                 self.code.add(SEND, self.owner.modes.channel(channel), elements)
+                self._observe(ChannelEvent, channel, ChannelChange.SEND, above)
             case Receive():
                 self._receive(activity)
+                self._observe(ChannelEvent, activity.channel, ChannelChange.RECEIVE, above)
             case Group():
                 self._group(activity, above)
             case ProbabilitySwitch():
@@ -291,7 +324,7 @@ class _Body:
             case Loop(activities=inner, condition=condition):
                 self._loop(inner, condition, above)
             case SemaphoreAccess():
-                self._semaphore(activity)
+                self._semaphore(activity, above)
             case Trigger(stimulus=stimulus):
                 skip = self._counted(activity, activity.counter)
                 self.code.add(FIRE, self._stimulus(stimulus))
@@ -300,6 +333,7 @@ class _Body:
                 self._os_events(activity)
             case ModeAccess():
                 self._mode(activity)
+                self._observe(ModeLabelEvent, activity.label, _MODE_CHANGES[activity.operation], above)
             case ServerCall():
                 self._server_call(activity)
             case SchedulePoint():
@@ -310,8 +344,9 @@ class _Body:
                     self.code.add(UNMASK)
                 self.code.add(JUMP, self.end)
                 self._mark(skip)
-            case RaiseEvent():
-                pass  # what it activates is among the hooks
+            case RaiseEvent(event=event):
+                # What it activates is among the hooks.
+                self._observe(CustomEvent, event, None, above)
             case Migrate():
                 raise NotSimulatedError("it migrates to another scheduler, which is not simulated")
             case Incomplete(reason=reason, is_access=is_access):
@@ -331,10 +366,13 @@ class _Body:
         if label is not None:
             self.code.mark(label)
 
-    def _note_access(self, label: str, kind: AccessKind) -> None:
+    def _label_accessed(
+        self, label: str, kind: AccessKind, communication: Communication | None, above: tuple[str, ...]
+    ) -> None:
         if self.owner.is_noted and label in self.resources.context.system.labels:
             event = EventKind.READ if kind is AccessKind.READ else EventKind.WRITE
             self.code.add(NOTE, int(event), self.resources.entities.number(EntityKind.LABEL, label))
+        self._observe(LabelEvent, label, LabelChange(kind), above, communication)
 
     def _receive(self, receive: Receive) -> None:
         most = max(1, receive.elements)
@@ -361,11 +399,18 @@ class _Body:
         site = self.resources.site(runnable.name) if self.owner.is_noted else 0
         if site:
             self.code.add(BEGIN_RUNNABLE, site)
+        execution = self._execution(runnable.name)
+        if execution:
+            self.code.add(BEGIN_EXECUTION, execution)
+        self._observe(RunnableEvent, runnable.name, RunnableChange.START, above)
         if service:
             self.code.add(SERVE, service)
         self.activities(runnable.activities, (*above, runnable.name))
         if service:
             self.code.add(SERVED, service)
+        self._observe(RunnableEvent, runnable.name, RunnableChange.TERMINATE, above)
+        if execution:
+            self.code.add(END_EXECUTION, execution)
         if site:
             self.code.add(END_RUNNABLE, site)
         self._add_all(self.hooks.after.get(number, ()))
@@ -374,6 +419,30 @@ class _Body:
             self.code.add(JUMP, again)
         self._mark(done)
         self._mark(skip)
+
+    def _execution(self, runnable: str) -> int:
+        """The record of the executions of a runnable in this process, if they are measured, or 0."""
+        number = self.owner.watches.measured.get(runnable)
+        if number is None:
+            return 0
+        if runnable not in self.executions:
+            self.executions[runnable] = self.resources.image.record(EXECUTION_SIZE, {EXECUTION_NUMBER: number})
+        return self.executions[runnable]
+
+    def _observe(
+        self,
+        kind: type[Event],
+        name: str,
+        change: StrEnum | None,
+        above: tuple[str, ...],
+        communication: Communication | None = None,
+    ) -> None:
+        """Report that an event has occurred here, if it is watched."""
+        if self.process is not None:
+            source = Source(kind, name, change, above[-1] if above else None, self.process.name, communication)
+            number = self.owner.watches.number(source)
+            if number is not None:
+                self.code.add(OBSERVE, number)
 
     def _repeated(self, call: Call) -> tuple[Label | None, Label | None]:
         """The begin and the end of a loop around what a call stands for, if it stands for several."""
@@ -477,17 +546,19 @@ class _Body:
         self.code.add(JUMP, start)
         self._mark(done)
 
-    def _semaphore(self, access: SemaphoreAccess) -> None:
+    def _semaphore(self, access: SemaphoreAccess, above: tuple[str, ...]) -> None:
         semaphore = self.resources.semaphores.get(access.semaphore)
         if semaphore is None:
             raise NotSimulatedError(f"the semaphore {access.semaphore!r} is not defined in the model")
         if access.operation is SemaphoreOperation.RELEASE:
             self.code.add(UNLOCK, semaphore)
+            self._observe(SemaphoreEvent, access.semaphore, SemaphoreChange.UNLOCK, above)
             return
         flags = EXCLUSIVE if access.operation is SemaphoreOperation.EXCLUSIVE else 0
         if waits_actively(access, spinlocks_of(self.resources.context.system)):
             flags |= ACTIVE
         self.code.add(REQUEST, semaphore, flags)
+        self._observe(SemaphoreEvent, access.semaphore, SemaphoreChange.LOCK, above)
 
     def _stimulus(self, name: str) -> int:
         if name not in self.owner.stimuli:

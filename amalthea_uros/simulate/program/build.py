@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from math import gcd, lcm
 
 from amalthea_uros.perf.activities import Trigger
+from amalthea_uros.perf.events import StimulusEvent
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Stimulus
@@ -91,9 +92,11 @@ from amalthea_uros.simulate.layout import (
     SPORADIC,
     STIMULUS_ENTITY,
     STIMULUS_SIZE,
+    STIMULUS_SOURCE,
     STOP,
     TARGETS,
     TARGETS_END,
+    WATCHED,
 )
 from amalthea_uros.simulate.operations import FIRE
 from amalthea_uros.simulate.options import Options
@@ -105,6 +108,7 @@ from amalthea_uros.simulate.program.modes import Modes
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatched, Dispatching
+from amalthea_uros.simulate.program.watches import Source, Watches, watched
 from amalthea_uros.simulate.sampling.random_source import RandomSource
 from amalthea_uros.simulate.sampling.streams import Stream
 from amalthea_uros.timing.context import TimingContext
@@ -142,6 +146,8 @@ class Program:
     processes : the names of the processes in the order of their numbers in rows
     records, cores, channels : the records of processes, cores and channels, by name
     queues : the records of everything that is activated
+    sources : of events that are watched, in the order of their numbers in rows
+    runnables : that are measured, in the order of their numbers in rows, which follow those of the processes
     left_out : why a process is not simulated
     chains_left_out : why a chain is not followed
     """
@@ -158,6 +164,8 @@ class Program:
     queues: tuple[int, ...]
     entities: tuple[Entity, ...]
     routes: tuple[FollowedRoute, ...]
+    sources: tuple[Source, ...]
+    runnables: tuple[str, ...]
     left_out: dict[str, str]
     chains_left_out: dict[str, str]
 
@@ -187,12 +195,14 @@ class _Builder:
     cores: dict[str, int] = field(default_factory=dict)
     domains: dict[str, int] = field(default_factory=dict)
     decisions: dict[tuple[str, str], int] = field(default_factory=dict)
+    watches: Watches = field(init=False)
 
     def __post_init__(self) -> None:
         self.entities = Entities(self.context.system)
         self.dispatching = Dispatching(self.context)
         self.left_out = self.dispatching.left_out | self.left_out
         self.resources = Resources(self.context, self.options, self.image, self.entities, self._units())
+        self.watches = Watches(watched(self.context.system, self.options.watched_labels(self.context.system)))
         self.modes = Modes(self.context.system, self.image, self.context.settings.modes)
 
     def _units(self) -> int:
@@ -212,6 +222,8 @@ class _Builder:
             self.processes[name] = self.image.record(PROCESS_SIZE)
         for name in system.stimuli_by_name:
             self.stimuli[name] = self.image.record(STIMULUS_SIZE)
+        runnables = self.watches.watched.runnables
+        self.watches.measured = {name: len(here) + number for number, name in enumerate(runnables)}
         chains = ChainCompiler(self.resources, self.processes)
         for chain in system.events.chains:
             chains.add(chain)
@@ -220,7 +232,7 @@ class _Builder:
         self._place_cores(here)
         self._place_servers(here)
         is_noted = self.options.traced is not None
-        bodies = BodyCompiler(self.resources, self.modes, self.processes, self.stimuli, is_noted)
+        bodies = BodyCompiler(self.resources, self.modes, self.processes, self.stimuli, is_noted, self.watches)
         for number, item in enumerate(here.values()):
             try:
                 self._process(item, number, bodies, chains)
@@ -245,6 +257,8 @@ class _Builder:
             queues=(*self.processes.values(), *self.decisions.values()),
             entities=self.entities.all,
             routes=tuple(chains.routes),
+            sources=tuple(self.watches.sources),
+            runnables=runnables,
             left_out=self.left_out,
             chains_left_out=chains.left_out,
         )
@@ -324,6 +338,7 @@ class _Builder:
         lets, lets_end = self.image.items(chains.let_stages.get(item.name, ()))
         semaphores, events = len(self.resources.semaphores), len(self.resources.os_events)
         queue, _ = self.image.items([0] * (_PLACES * (QUEUE_CAPTURES + captures_end - captures)))
+        transitions = self.watches.transitions(item.name)
         allowed, _ = self.image.items(int(name in item.cores) for name in self.cores)
         is_edf = scheduled.equal_priority is EqualPriority.EDF
         has_server_deadline = self.dispatching.has_server_deadline(scheduled)
@@ -355,6 +370,7 @@ class _Builder:
             LET_STAGES_END: lets_end,
             HOLDS: self.image.items([0] * (semaphores * HOLD_SIZE))[0],
             EVENTS_SET: self.image.items([0] * events)[0],
+            WATCHED: self.image.items(transitions)[0] if transitions else 0,
         }
         self._set(record, fields)
 
@@ -441,7 +457,8 @@ class _Builder:
             try:
                 self._stimulus(stimulus, record, targets)
                 is_internal = isinstance(stimulus, InterProcess | EventTriggered)
-                if not is_internal and (targets or stimulus.assignments):
+                is_watched = self.image.words[record + STIMULUS_SOURCE] > 0
+                if not is_internal and (targets or stimulus.assignments or is_watched):
                     first = min((order[target] for target in targets), default=len(order))
                     external.append((first, record, self._occurrences(stimulus)))
             except (NotSimulatedError, UnknownArrivalError) as error:
@@ -465,6 +482,7 @@ class _Builder:
             pairs += (self.modes.label(assignment.label), self.modes.value(assignment.label, assignment.value))
         assignments, assignments_end = self.image.items(pairs)
         counter = stimulus.counter if isinstance(stimulus, InterProcess | EventTriggered) else None
+        source = self.watches.number(Source(StimulusEvent, stimulus.name))
         fields = {
             TARGETS: first,
             TARGETS_END: end,
@@ -473,6 +491,7 @@ class _Builder:
             ASSIGNMENTS: assignments,
             ASSIGNMENTS_END: assignments_end,
             STIMULUS_ENTITY: self.entities.number(EntityKind.STIMULUS, stimulus.name),
+            STIMULUS_SOURCE: 0 if source is None else source + 1,
         }
         self._set(record, fields)
 

@@ -6,8 +6,11 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from amalthea_uros.simulate.layout import OPERATION_SIZE
-from amalthea_uros.simulate.operations import END, END_RUNNABLE, ENTER, JUMP, NOTE, POINT, UNMASK
+from amalthea_uros.simulate.operations import END, END_EXECUTION, END_RUNNABLE, ENTER, JUMP, NOTE, OBSERVE, POINT, UNMASK
 from amalthea_uros.simulate.program.image import Image
+
+#: What a job can do before its end that nobody else is affected by.
+_TIMELESS = (NOTE, OBSERVE, END_EXECUTION, END_RUNNABLE, UNMASK)
 
 
 @dataclass(slots=True, eq=False)
@@ -64,11 +67,7 @@ class Code:
             operation, first, _ = self.operations[number]
             if operation == JUMP and isinstance(first, Label):
                 number = first.number
-            elif (
-                operation in (NOTE, END_RUNNABLE, UNMASK)
-                or operation >= ENTER
-                or (operation == POINT and number in self.returns)
-            ):
+            elif operation in _TIMELESS or operation >= ENTER or (operation == POINT and number in self.returns):
                 number += 1
             else:
                 return operation == END

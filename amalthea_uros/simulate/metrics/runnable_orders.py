@@ -1,0 +1,80 @@
+"""Whether jobs call runnables in the order that a constraint asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from amalthea_uros.perf.constraints import OrderConstraint
+from amalthea_uros.perf.events import ProcessChange, ProcessEvent
+from amalthea_uros.simulate.limited_values import LimitedQuantity, LimitedValues
+from amalthea_uros.simulate.program.watches import Source
+from amalthea_uros.timing.runnable_order import satisfies_order
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.int64]
+
+
+@dataclass(slots=True)
+class RunnableOrder:
+    """The calls of the jobs of a process, each job on its own.
+
+    Attributes
+    ----------
+    sources : of the process, in the order of their numbers in `add`
+    base : time units in a picosecond
+    jobs : number of jobs that called one of the runnables, or more
+    wrong : number of those in another order
+    """
+
+    constraint: OrderConstraint
+    process: str
+    sources: Sequence[Source]
+    base: int
+    jobs: int = 0
+    wrong: int = 0
+    _first_wrong: int = -1
+    _calls: list[int] = field(default_factory=list)
+    #: Whether a sequence of calls has the order; None if the constraint is not about it.
+    _known: dict[tuple[int, ...], bool | None] = field(default_factory=dict)
+
+    def add(self, times: Numbers, which: Numbers) -> None:
+        """Take starts of calls and jobs and ends of jobs in, in the order in which they occurred."""
+        for time, number in zip(times.tolist(), which.tolist(), strict=True):
+            source = self.sources[number]
+            if source.kind is not ProcessEvent:
+                self._calls.append(number)
+                continue
+            if source.change is ProcessChange.TERMINATE:
+                self._end_job(time)
+            self._calls.clear()
+
+    def _end_job(self, time: int) -> None:
+        calls = tuple(self._calls)
+        if calls not in self._known:
+            called = [self.sources[number].name for number in calls]
+            is_limited = any(name in group for group in self.constraint.groups for name in called)
+            self._known[calls] = satisfies_order(called, self.constraint) if is_limited else None
+        is_right = self._known[calls]
+        self.jobs += is_right is not None
+        if is_right is False:
+            self.wrong += 1
+            self._first_wrong = time if self._first_wrong < 0 else self._first_wrong
+
+    def quantities(self, _end: int) -> Iterator[LimitedQuantity]:
+        """What was observed."""
+        values = LimitedValues.only(self.wrong) if self.jobs else LimitedValues(reason="no job called one of the runnables")
+        yield LimitedQuantity(
+            object=self.process,
+            quantity="order of runnables",
+            limit=None,
+            values=values,
+            is_time=False,
+            violation=f"{self.wrong:,} of {self.jobs:,} jobs in another order" if self.wrong else "",
+            violated_at=Fraction(self._first_wrong, self.base) if self.wrong else None,
+        )

@@ -1,0 +1,184 @@
+"""What observes the constraints of a system, and labels: each gets the occurrences that it is about, chunk by chunk."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from amalthea_uros.perf.constraints import (
+    ChainSynchronization,
+    Constraint,
+    DelayConstraint,
+    EventSynchronization,
+    OrderConstraint,
+    RepetitionConstraint,
+)
+from amalthea_uros.perf.system import System
+from amalthea_uros.simulate.limited_values import LimitedQuantity
+from amalthea_uros.simulate.metrics.data_ages import DataAges, LabelAges
+from amalthea_uros.simulate.metrics.delays import delays
+from amalthea_uros.simulate.metrics.event_tables import EventTable, EventTables, SourceTable, in_order
+from amalthea_uros.simulate.metrics.label_values import LabelValues
+from amalthea_uros.simulate.metrics.repetitions import Repetitions
+from amalthea_uros.simulate.metrics.runnable_orders import RunnableOrder
+from amalthea_uros.simulate.metrics.synchronizations import AllOccurrences, SubsequentOccurrences
+from amalthea_uros.simulate.options import Options
+from amalthea_uros.simulate.program.build import Program
+from amalthea_uros.simulate.program.watches import Source, event_names, is_of_label, is_of_order, scope
+from amalthea_uros.simulate.results import LabelObservation
+from amalthea_uros.simulate.rows import Observation
+from amalthea_uros.simulate.verdicts import ObservedConstraint
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.int64]
+
+
+class Metrics(Protocol):
+    """The values that a constraint limits."""
+
+    def add(self, times: Numbers, which: Numbers) -> None:
+        """Take occurrences in, in the order of time, each with a number that says of what it is."""
+
+    def quantities(self, end: int) -> Iterator[LimitedQuantity]:
+        """What was observed up to the end of the run, in time units."""
+
+
+@dataclass(slots=True)
+class _Observer:
+    """Gives metrics the occurrences of some tables."""
+
+    metrics: Metrics
+    tables: list[EventTable]
+
+    def add(self, rows: Numbers) -> None:
+        """Take rows in."""
+        places, which = in_order(table.places(rows) for table in self.tables)
+        if len(places):
+            self.metrics.add(rows[places, Observation.TIME], which)
+
+
+@dataclass(slots=True)
+class Observers:
+    """All that observe a run.
+
+    Attributes
+    ----------
+    end : of the run, in time units
+    """
+
+    system: System
+    options: Options
+    program: Program
+    end: int
+    _of_constraints: dict[int, list[_Observer]] = field(default_factory=dict)
+    _reasons: dict[int, str] = field(default_factory=dict)
+    _ages: dict[int, DataAges] = field(default_factory=dict)
+    _labels: list[LabelAges] = field(default_factory=list)
+    _values: LabelValues = field(init=False)
+    _of_values: SourceTable = field(init=False)
+    #: Rows of the latest instant: others of the same instant can follow.
+    _kept: Numbers = field(default_factory=lambda: np.empty((0, len(Observation)), np.int64))
+
+    def __post_init__(self) -> None:
+        constraints, base = self.system.constraints, self.program.units
+        tables = EventTables(self.system, self.program.sources, tuple(self.program.cores))
+        for constraint in constraints.constraints:
+            self._observe(constraint, tables)
+        for order in constraints.orders:
+            self._of_constraints[id(order)] = [self._order(order, process) for process in self._scope(order)]
+        self._ages = {id(age): DataAges(age, base) for age in constraints.data_ages}
+        labels = self.options.watched_labels(self.system)
+        self._labels = [LabelAges(label, base) for label in dict.fromkeys(labels)]
+        every = list(dict.fromkeys((*labels, *(age.label for age in constraints.data_ages))))
+        self._values = LabelValues(every, self.program.sources, self.options.settings.communication)
+        self._of_values = self._table(lambda source: is_of_label(source, every))
+
+    def _table(self, is_wanted: Callable[[Source], bool]) -> SourceTable:
+        return SourceTable(np.array([is_wanted(source) for source in self.program.sources], bool))
+
+    def _observe(self, constraint: Constraint, tables: EventTables) -> None:
+        names = event_names(constraint, self.system)
+        found = [tables.table(name) for name in names]
+        missing = [name for name, table in zip(names, found, strict=True) if table is None]
+        if missing:
+            self._reasons[id(constraint)] = f"the event {missing[0]!r} does not occur in what is simulated"
+        elif metrics := self._metrics(constraint, names):
+            self._of_constraints[id(constraint)] = [_Observer(metrics, [table for table in found if table is not None])]
+
+    def _metrics(self, constraint: Constraint, names: Sequence[str]) -> Metrics | None:
+        base = self.program.units
+        match constraint:
+            case DelayConstraint():
+                return delays(constraint, base)
+            case RepetitionConstraint():
+                return Repetitions(constraint, base)
+            case EventSynchronization():
+                what, quantity = ", ".join(constraint.events), "spread"
+            case ChainSynchronization():
+                what, quantity = ", ".join(constraint.chains), f"spread at the {constraint.end}"
+            case _:
+                return None
+        if not names:
+            return None
+        reading = AllOccurrences if constraint.every_occurrence else SubsequentOccurrences
+        return reading(object=what, quantity=quantity, tolerance=constraint.tolerance, events=len(names), base=base)
+
+    def _scope(self, order: OrderConstraint) -> Iterable[str]:
+        """The processes whose jobs call what has to be in order."""
+        limited = {name for group in order.groups for name in group}
+        calling = {source.process for source in self.program.sources if is_of_order(source) and source.name in limited}
+        return [process for process in scope(order, self.system) if process in calling]
+
+    def _order(self, order: OrderConstraint, process: str) -> _Observer:
+        sources = [source for source in self.program.sources if is_of_order(source) and source.process == process]
+        tables = [self._table(lambda each, source=source: each == source) for source in sources]  # type: ignore[misc]
+        return _Observer(RunnableOrder(order, process, sources, self.program.units), [*tables])
+
+    # Rows and results.
+
+    def add(self, rows: Numbers) -> None:
+        """Take rows about occurrences in, in the order of time."""
+        rows = np.concatenate([self._kept, rows])
+        if len(rows):
+            complete = int(np.searchsorted(rows[:, Observation.TIME], rows[-1, Observation.TIME]))
+            self._kept = rows[complete:].copy()
+            self._add(rows[:complete])
+
+    def finish(self) -> None:
+        """Take in what is left at the end of the run."""
+        self._add(self._kept)
+        self._kept = self._kept[:0]
+
+    def _add(self, rows: Numbers) -> None:
+        for observers in self._of_constraints.values():
+            for observer in observers:
+                observer.add(rows)
+        if self._labels or self._ages:
+            self._add_accesses(rows[self._of_values.places(rows)])
+
+    def _add_accesses(self, rows: Numbers) -> None:
+        readings = list(self._values.readings(rows[:, Observation.TIME], rows[:, Observation.ROUTE]))
+        for ages in self._ages.values():
+            ages.add(readings)
+        for label in self._labels:
+            label.add(readings)
+
+    def quantities(self, constraint: ObservedConstraint) -> list[LimitedQuantity]:
+        """What was observed of a constraint; nothing if it limits nothing, or cannot be observed."""
+        if (ages := self._ages.get(id(constraint))) is not None:
+            return list(ages.quantities(self.end))
+        observers = self._of_constraints.get(id(constraint), ())
+        return [quantity for observer in observers for quantity in observer.metrics.quantities(self.end)]
+
+    def reason(self, constraint: ObservedConstraint) -> str:
+        """Why nothing was observed of a constraint."""
+        return self._reasons.get(id(constraint), "it states no limit, or nothing that is simulated is limited by it")
+
+    def labels(self) -> Iterator[LabelObservation]:
+        """What was observed of the labels that were asked for."""
+        return (ages.observation(self._values) for ages in self._labels)
