@@ -271,7 +271,7 @@ def test_events_are_observed_alike_by_machine_code(monkeypatch):
         requirements=(Requirement(name="Q", runnable="Step", limit=limit),),
     )
     interpreted = simulated(model, labels=(ALL_LABELS,))
-    monkeypatch.setattr("amalthea_uros.simulate.machine_code.is_worth_it", lambda _seconds: True)
+    monkeypatch.setattr("amalthea_uros.simulate.machine_code.is_worth_it", lambda _seconds, _left: True)
     assert simulated(model, labels=(ALL_LABELS,)) == interpreted
 
 

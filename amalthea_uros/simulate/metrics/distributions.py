@@ -1,13 +1,15 @@
 """Distributions of several quantities that are observed together, such as the times of each job of a process.
 
-Numbers, minima, maxima, sums and histograms are exact. Squares are summed in floating point, as deviations from the first value, so
-that the standard deviation of small variations of great values does not suffer from cancellation.
+Everything is exact, so that it does not depend on how the observations are divided into chunks; squares are those of deviations from the
+first value, which are small.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import combinations_with_replacement
 from math import sqrt
 from typing import TYPE_CHECKING
 
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
     Numbers = NDArray[np.int64]
 
 _HALF = 32
+#: The sum of so many products of such digits fits into the 53 bits of a floating-point number.
+_COLUMNS, _DIGIT_BITS = 2048, 21
+_DIGIT = (1 << _DIGIT_BITS) - 1
 
 
 @dataclass(slots=True, kw_only=True)
@@ -50,7 +55,7 @@ class Distributions:
     highest: list[tuple[int, int]] = field(init=False)
     _histograms: dict[int, BinCounts] = field(init=False)
     _reference: Numbers = field(init=False)
-    _squares: NDArray[np.float64] = field(init=False)
+    _squares: list[int] = field(init=False)
 
     def __post_init__(self) -> None:
         limits = np.iinfo(np.int64)
@@ -60,7 +65,7 @@ class Distributions:
         self.lowest, self.highest = [(0, 0)] * self.size, [(0, 0)] * self.size
         # Bins that are narrower than a picosecond could not be told apart.
         self._histograms = {index: BinCounts((self.base - 1).bit_length()) for index in self.with_histograms}
-        self._squares = np.zeros(self.size)
+        self._squares = [0] * self.size
 
     def add(self, values: Numbers, instances: Numbers, times: Numbers) -> None:
         """Take observations in.
@@ -77,8 +82,7 @@ class Distributions:
         self.count += values.shape[1]
         self._note_extremes(values, instances, times)
         self.totals = [total + more for total, more in zip(self.totals, _exact_sums(values), strict=True)]
-        deviations = (values - self._reference[:, None]).astype(np.float64)
-        self._squares += np.einsum("ij,ij->i", deviations, deviations)
+        self._add_squares(values - self._reference[:, None])
         for index, histogram in self._histograms.items():
             histogram.add(values[index], int(self.minima[index]), int(self.maxima[index]))
 
@@ -89,9 +93,10 @@ class Distributions:
         if self.count == 0:
             self._reference = other._reference.copy()
         # The squares of the other one, about the reference of this one.
-        moved = (other._reference - self._reference).astype(np.float64)
-        sums = np.array([float(t - other.count * int(r)) for t, r in zip(other.totals, other._reference, strict=True)])
-        self._squares += other._squares + 2 * moved * sums + other.count * moved**2
+        for index, reference in enumerate(other._reference.tolist()):
+            moved = reference - int(self._reference[index])
+            deviations = other.totals[index] - other.count * reference
+            self._squares[index] += other._squares[index] + 2 * moved * deviations + other.count * moved**2
         self.count += other.count
         self.totals = [one + more for one, more in zip(self.totals, other.totals, strict=True)]
         for index in range(self.size):
@@ -107,17 +112,25 @@ class Distributions:
         if self.count == 0:
             return None
         mean = Fraction(self.totals[index], self.count)
-        squares = float(self._squares[index]) / self.count - float(mean - int(self._reference[index])) ** 2
+        variance = Fraction(self._squares[index], self.count) - (mean - int(self._reference[index])) ** 2
         return MetricObservation(
             count=self.count,
             min=Fraction(int(self.minima[index]), self.base),
             mean=mean / self.base,
             max=Fraction(int(self.maxima[index]), self.base),
-            std=sqrt(max(0.0, squares)) / self.base,
+            std=sqrt(variance) / self.base,
             at_min=self._occurrence(self.lowest[index]),
             at_max=self._occurrence(self.highest[index]),
             histogram=self._histogram(index),
         )
+
+    def _add_squares(self, deviations: Numbers) -> None:
+        """Add the squares of deviations, exactly: results must not depend on how observations are divided into chunks."""
+        size = deviations.shape[1]
+        for first in range(0, size, _COLUMNS):
+            chunk = np.abs(deviations[:, first : first + _COLUMNS])
+            for shift, sums in _products(chunk):
+                self._squares = [square + (int(more) << shift) for square, more in zip(self._squares, sums, strict=True)]
 
     def _note_extremes(self, values: Numbers, instances: Numbers, times: Numbers) -> None:
         for index, low in enumerate(values.min(axis=1).tolist()):
@@ -139,6 +152,21 @@ class Distributions:
             return None
         width = Fraction(1 << found.shift, self.base)
         return Histogram(start=found.first * width, width=width, counts=tuple(found.counts.tolist()))
+
+
+def _products(values: Numbers) -> Iterator[tuple[int, NDArray[np.float64]]]:
+    """The sums of squares of each row, as numbers that are to be shifted and added.
+
+    The values are divided into digits so small that floating point, which is quicker, gives exact sums of their products.
+    """
+    digits = [(values & _DIGIT).astype(np.float64)]
+    rest = values >> _DIGIT_BITS
+    while rest.any():
+        digits.append((rest & _DIGIT).astype(np.float64))
+        rest = rest >> _DIGIT_BITS
+    for (low, one), (high, other) in combinations_with_replacement(enumerate(digits), 2):
+        twice = int(low != high)
+        yield (low + high) * _DIGIT_BITS + twice, np.einsum("ij,ij->i", one, other)
 
 
 def _exact_sums(values: Numbers) -> list[int]:
