@@ -10,6 +10,7 @@ from amalthea_uros.simulate.kernel.following import publish
 from amalthea_uros.simulate.layout import (
     ACTIVATION,
     ACTIVATIONS,
+    ARRIVED,
     ASSIGNMENTS,
     ASSIGNMENTS_END,
     AT,
@@ -34,8 +35,8 @@ from amalthea_uros.simulate.layout import (
     LET_STAGES,
     LET_STAGES_END,
     LIMIT,
-    LINK,
     LOST,
+    LOST_MESSAGES,
     MESSAGE_LIMIT,
     MESSAGES,
     MIGRATIONS,
@@ -60,13 +61,13 @@ from amalthea_uros.simulate.layout import (
     START,
     STATE,
     STIMULUS_ENTITY,
+    TAKEN_MESSAGES,
     TARGETS,
     TARGETS_END,
     TIME_PARKING,
     TIME_POLLING,
     TIME_RUNNING,
     TIME_WAITING,
-    WAITING_MESSAGES,
 )
 from amalthea_uros.simulate.memory import Memory
 from amalthea_uros.simulate.operations import ACTIVATED, GO_ON, QUEUE_FULL, TERMINATED
@@ -94,12 +95,19 @@ def fire(m: Memory, stimulus: int, origin: int) -> int:
         emit(m, _TRIGGER, m[origin + ENTITY], m[origin + INSTANCE], entity, number, NO_NOTE)
     elif m[IS_TRACED]:
         emit(m, _TRIGGER, entity, number, entity, number, NO_NOTE)
-    source = m[stimulus + MESSAGES]
-    if source and m[source + WAITING_MESSAGES] < m[source + MESSAGE_LIMIT]:
-        m[source + WAITING_MESSAGES] += 1
+    if m[stimulus + MESSAGES]:
+        _arrive(m, m[stimulus + MESSAGES])
     for place in range(first, last):
         activate(m, m[place], entity, number)
     return GO_ON
+
+
+def _arrive(m: Memory, queue: int) -> None:
+    """A message arrives in a queue, or is lost."""
+    if m[queue + ARRIVED] - m[queue + TAKEN_MESSAGES] < m[queue + MESSAGE_LIMIT]:
+        m[queue + ARRIVED] += 1
+    else:
+        m[queue + LOST_MESSAGES] += 1
 
 
 def publish_all(m: Memory, stimulus: int) -> None:
@@ -136,7 +144,7 @@ def _enqueue(m: Memory, process: int, instance: int) -> None:
     m[place + QUEUE_TIME] = m[NOW]
     m[place + QUEUE_INSTANCE] = instance
     for capture in range(captures, end):
-        m[place + QUEUE_CAPTURES + capture - captures] = m[m[capture] + LINK]
+        m[place + QUEUE_CAPTURES + capture - captures] = m[m[capture]]
     m[process + PENDING] += 1
     if m[process + PENDING] == 1:
         _begin_job(m, process)

@@ -81,6 +81,7 @@ from amalthea_uros.simulate.operations import (
     SHUFFLE,
     STEP_MODE,
     TEST,
+    TEST_MESSAGE,
     UNLOCK,
     UNMASK,
     WAIT_EVENT,
@@ -123,6 +124,7 @@ class BodyCompiler:
     Attributes
     ----------
     processes, stimuli : their records
+    queues : of messages with arrivals of their own, by process and source
     is_noted : whether events of runnables and labels are recorded
     """
 
@@ -130,6 +132,7 @@ class BodyCompiler:
     modes: Modes
     processes: dict[str, int]
     stimuli: dict[str, int]
+    queues: dict[tuple[str, str], int]
     is_noted: bool
 
     def process(self, process: Process, core: str, hooks: Hooks, scheduler: Scheduler | None, in_group: bool) -> Code:
@@ -172,17 +175,18 @@ class _Body:
     code: Code = field(default_factory=Code)
     end: Label = field(default_factory=Label)
     number: int = 0
+    places: int = 0
     masks: int = 0
 
     @property
     def resources(self) -> Resources:
         return self.owner.resources
 
-    @property
-    def place(self) -> str:
-        """What draws values here: the random numbers of one place do not depend on others."""
+    def _place(self) -> str:
+        """What draws values here: its random numbers depend neither on other places nor on what is recorded."""
         name = self.process.name if self.process is not None else f"decision on {self.core}"
-        return f"{name} activity {self.number} {len(self.code.operations)}"
+        self.places += 1
+        return f"{name} activity {self.number} place {self.places}"
 
     def compile(self, scheduler: Scheduler | None) -> Code:
         process, model = self.process, self.resources.context.demand_model
@@ -225,10 +229,10 @@ class _Body:
     def _demand(self, demand: Demand | None) -> None:
         if demand is not None:
             ticks = self.resources.context.demand_model.ticks(demand, self.core)
-            self._execute(self.resources.ticks(ticks, self.core, Fraction(1), self.place))
+            self._execute(self.resources.ticks(ticks, self.core, Fraction(1), self._place()))
 
     def _frame(self, frame: Frame) -> None:
-        self._execute(self.resources.frame(frame, self.core, self.place))
+        self._execute(self.resources.frame(frame, self.core, self._place()))
 
     def _access(self, name: str, kind: AccessKind, times: Count | float | None) -> None:
         model = self.resources.context.demand_model
@@ -265,7 +269,7 @@ class _Body:
             case ExecutionNeed(needs=needs):
                 for name, need in needs:
                     factor = self.resources.context.demand_model.ticks_per_unit(name, self.core)
-                    self._execute(self.resources.ticks(need, self.core, factor, f"{self.place} {name}"))
+                    self._execute(self.resources.ticks(need, self.core, factor, f"{self._place()} {name}"))
             case LabelAccess(label=label, kind=kind, times=times):
                 self._access(label, kind, times)
                 self._note_access(label, kind)
@@ -318,11 +322,13 @@ class _Body:
 
     def _counted(self, owner: Activity, counter: Counter | None) -> Label | None:
         """A label to which a job goes if a counter does not let this time take effect."""
-        place = self.resources.counter(owner, counter)
+        name = self.process.name if self.process is not None else ""
+        queue = self.owner.queues.get((name, counter.source)) if counter is not None and counter.arrivals is not None else None
+        place = queue or self.resources.counter(owner, counter)
         if not place:
             return None
         label = Label()
-        self.code.add(COUNT, place, label)
+        self.code.add(TEST_MESSAGE if queue else COUNT, place, label)
         return label
 
     def _mark(self, label: Label | None) -> None:
@@ -377,7 +383,7 @@ class _Body:
         least, mean, most = count_of(call.times)
         loop, done = self.resources.image.record(LOOP_SIZE), Label()
         passes = Statistics(lower=least, average=float(mean), upper=most)
-        self.code.add(REPEAT, loop, self.resources.count(passes, f"{self.place} passes"))
+        self.code.add(REPEAT, loop, self.resources.count(passes, f"{self._place()} passes"))
         again = self.code.here()
         self.code.add(AGAIN, loop, done)
         return again, done
@@ -407,7 +413,7 @@ class _Body:
         ordered, _ = image.items([0] * total)
         parts, _ = image.items([0] * total)
         group = image.record(GROUP_SIZE, {ORDERED_PARTS: ordered, PARTS: parts, PARTS_TOTAL: total})
-        self.code.add(SHUFFLE, group, self.resources.order(f"{self.place} order"))
+        self.code.add(SHUFFLE, group, self.resources.order(f"{self._place()} order"))
         following = self.code.here()
         self.code.add(NEXT, group, done)
         labels = []
@@ -430,7 +436,7 @@ class _Body:
         else:
             only, jump = -1, Label()
             weights = [branch.weight for branch in switch.branches]
-            self.code.add(CHOOSE, self.resources.choice(weights, f"{self.place} branch"), table)
+            self.code.add(CHOOSE, self.resources.choice(weights, f"{self._place()} branch"), table)
         for index, branch in enumerate(switch.branches):
             labels.append(self.code.here())
             if index == only:

@@ -101,6 +101,7 @@ from amalthea_uros.simulate.program.body import BodyCompiler, Hooks
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
 from amalthea_uros.simulate.program.entities import Entities
 from amalthea_uros.simulate.program.image import Image
+from amalthea_uros.simulate.program.messages import Messages
 from amalthea_uros.simulate.program.modes import Modes
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.resources import Resources
@@ -141,6 +142,7 @@ class Program:
     arrivals : of each stimulus that comes from outside: its record, and when it occurs
     processes : the names of the processes in the order of their numbers in rows
     records, cores, channels : the records of processes, cores and channels, by name
+    messages : the queues of messages with arrivals of their own, by process and source
     queues : the records of everything that is activated
     left_out : why a process is not simulated
     chains_left_out : why a chain is not followed
@@ -155,6 +157,7 @@ class Program:
     records: dict[str, int]
     cores: dict[str, int]
     channels: dict[str, int]
+    messages: dict[tuple[str, str], int]
     queues: tuple[int, ...]
     entities: tuple[Entity, ...]
     routes: tuple[FollowedRoute, ...]
@@ -220,9 +223,11 @@ class _Builder:
         self._place_cores(here)
         self._place_servers(here)
         is_noted = self.options.traced is not None
-        bodies = BodyCompiler(self.resources, self.modes, self.processes, self.stimuli, is_noted)
+        messages = Messages(self.resources, chains)
+        bodies = BodyCompiler(self.resources, self.modes, self.processes, self.stimuli, messages.queues, is_noted)
         for number, item in enumerate(here.values()):
             try:
+                messages.add(item.scheduled.process)
                 self._process(item, number, bodies, chains)
             except NotSimulatedError as error:
                 self.left_out[item.name] = str(error)
@@ -237,7 +242,9 @@ class _Builder:
             units=self.resources.units,
             streams=self.resources.streams,
             stream_records=self.resources.stream_records,
-            arrivals=arrivals,
+            # What arrives at the time of an activation is there before it.
+            arrivals=[*messages.arrivals, *arrivals],
+            messages=messages.queues,
             processes=tuple(here),
             records=self.processes,
             cores=self.cores,

@@ -60,7 +60,8 @@ class ChainCompiler:
     Attributes
     ----------
     hooks : by process
-    captures, let_stages : by process: the stages whose output each activation keeps, and those that write at the end of the period
+    captures : by process: the places of the words that each activation keeps
+    let_stages : by process: the stages that write at the end of the period
     left_out : why a chain is not followed
     """
 
@@ -146,7 +147,7 @@ class ChainCompiler:
             captures = self.captures.setdefault(stage.process.name, [])
             words = self.resources.image.words
             words[record + CAPTURE] = len(captures)
-            captures.append(words[record + BEFORE_STAGE])
+            captures.append(words[record + BEFORE_STAGE] + LINK)
         if position is not None:
             hooks.before.setdefault(position.number, []).append((TAKE, record, int(has_snapshot)))
 
