@@ -62,15 +62,15 @@ def follow(m: Memory, process: int, operation: int, stage: int, argument: int) -
         m[stage + MARKED_AT] = m[process + ACTIVATION] if argument else m[NOW]
         _number(m, stage)
     elif operation == PUT or m[stage + REACHED] == m[stage + NEEDED]:
-        _leave(m, process, operation, stage)
+        _leave(m, process, operation, stage, argument)
 
 
-def _leave(m: Memory, process: int, operation: int, stage: int) -> None:
+def _leave(m: Memory, process: int, operation: int, stage: int, argument: int) -> None:
     value = m[stage + VALUE]
     if m[IS_TRACED] and value >= 0:
         emit(m, _CHAIN_STEP, m[process + ENTITY], m[process + INSTANCE], m[stage + CHAIN_ENTITY], value, m[stage + STEP])
     if operation == RESPOND:
-        _observe(m, stage, _RESPONSE, m[NOW], value)
+        _observe(m, stage, _RESPONSE, m[process + argument] if argument else m[NOW], value)
     elif operation != PUBLISH:
         m[stage + LINK] = value
     elif m[process + PENDING] > 1:
