@@ -43,7 +43,9 @@ MARK = 43  # the stimulus of the chain of (a stage) occurs now, or, if (1), occu
 PUT = 44  # (a stage) gives away what it has
 LEAVE = 45  # the same if the job has reached all positions
 PUBLISH = 46  # the same, at the end of the period
-RESPOND = 47  # the response of the chain of (a stage) occurs now or at (a time of the job), if the job has reached all positions
+RESPOND = (
+    47  # the response of the chain of (a stage) occurs now or at (a time of the job), if the job has reached all positions
+)
 
 #: Flags of REQUEST and AWAIT.
 EXCLUSIVE, ACTIVE = 1, 2

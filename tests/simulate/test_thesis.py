@@ -1,6 +1,7 @@
 """The figures of the source case.
 
-S. R. Bappanadu, "Modeling and Timing Analysis of Micro-ROS Application on an Off-Road Vehicle Control Unit", University of Stuttgart, 2022.
+S. R. Bappanadu, "Modeling and Timing Analysis of Micro-ROS Application on an Off-Road Vehicle Control Unit", University of Stuttgart,
+2022.
 """
 
 from fractions import Fraction
@@ -95,7 +96,7 @@ def check_figure(simulation, jobs):
 
 
 def test_figure_6_6_in_a_short_run(interpreted):
-    """The message comes in the first job: the mean distance of two starts is below 1 ms only if the first job is longer than the last."""
+    """The message comes in the first job: the mean distance of two starts is below 1 ms if the first job is longer than the last."""
     jobs = 999
     simulation = simulate(ADVANCED, jobs * MS, changes=["Message_Factor.phase=0ms"])
     assert [simulation[task].jobs for task in FIGURE] == [jobs, jobs]
@@ -167,8 +168,8 @@ def test_table_6_5_swept_in_steps_of_half_a_millisecond(interpreted):
 def test_table_6_5_with_an_agent_that_drifts(interpreted):
     """Every 20.05 ms: of 400 messages, 20 are taken in each phase of the tasks, and the latencies are 1 ... 20 ms and 16 us.
 
-    A message that waits for 20 ms is late by 13 us, because the executor takes the next one 20 ms later: not so the last one of these 20,
-    after which the phase changes.
+    A message that waits for 20 ms is late by 13 us, because the executor takes the next one 20 ms later, except for the last one of
+    these 20, after which the phase changes.
     """
     changes = ["Message_Factor.phase=0ms", "Message_Factor.arrival_period=20.05ms"]
     chain = simulate(ADVANCED, 400 * 20_050 * US, changes=changes).chains[0]

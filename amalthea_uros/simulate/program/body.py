@@ -248,13 +248,25 @@ class _Body:
             number = self.number
             if len(self.code.operations) > MAX_OPERATIONS:
                 raise NotSimulatedError(f"it executes more than {MAX_OPERATIONS:,} activities")
+            # Only the service of the operating system knows whether an occurrence counts.
+            is_counted = getattr(activity, "counter", None) is not None
+            if is_counted:
+                self._services(activity)
+            skips = self._skips(activity)
             self._add_all(self.hooks.before.get(number, ()))
-            for demand in self.resources.context.demand_model.overheads.of_activity(activity, self.core):
-                self._demand(demand)
+            if not is_counted:
+                self._services(activity)
             self._activity(activity, above)
             self._add_all(self.hooks.after.get(number, ()))
+            for label in skips:
+                self._mark(label)
             if isinstance(activity, Call):
                 self._return()
+
+    def _services(self, activity: Activity) -> None:
+        """The time of the services of the operating system that an activity calls."""
+        for demand in self.resources.context.demand_model.overheads.of_activity(activity, self.core):
+            self._demand(demand)
 
     def _return(self) -> None:
         """After a call, other cooperative tasks can go first."""
@@ -295,9 +307,7 @@ class _Body:
             case SemaphoreAccess():
                 self._semaphore(activity)
             case Trigger(stimulus=stimulus):
-                skip = self._counted(activity, activity.counter)
                 self.code.add(FIRE, self._stimulus(stimulus))
-                self._mark(skip)
             case SetEvent() | ClearEvent() | WaitEvent():
                 self._os_events(activity)
             case ModeAccess():
@@ -307,11 +317,9 @@ class _Body:
             case SchedulePoint():
                 self.code.add(POINT)
             case Terminate():
-                skip = self._counted(activity, activity.counter)
                 for _ in range(self.masks):
                     self.code.add(UNMASK)
                 self.code.add(JUMP, self.end)
-                self._mark(skip)
             case RaiseEvent():
                 pass  # what it activates is among the hooks
             case Migrate():
@@ -319,6 +327,14 @@ class _Body:
             case Incomplete(reason=reason, is_access=is_access):
                 if not is_access or self.resources.context.settings.memory is not Memory.NONE:
                     raise NotSimulatedError(f"it contains {reason}")
+
+    def _skips(self, activity: Activity) -> list[Label | None]:
+        """Labels to which a job goes if an activity does not take effect: then it is no event of a chain, either."""
+        labels = [self._counted(activity, getattr(activity, "counter", None))]
+        if isinstance(activity, Call) and activity.times is None:
+            runnable = self.resources.context.system.runnables.get(activity.runnable)
+            labels.append(None if runnable is None else self._tested(runnable.condition))
+        return labels
 
     def _counted(self, owner: Activity, counter: Counter | None) -> Label | None:
         """A label to which a job goes if a counter does not let this time take effect."""
@@ -355,9 +371,8 @@ class _Body:
             raise NotSimulatedError(f"the runnable {runnable.name!r} calls itself")
         if len(above) > MAX_CALL_DEPTH:
             raise NotSimulatedError(f"calls are nested deeper than {MAX_CALL_DEPTH} levels")
-        skip = self._counted(call, call.counter)
         again, done = self._repeated(call)
-        skip_inner = self._tested(runnable.condition)
+        skip = self._tested(runnable.condition) if call.times is not None else None
         service = self.resources.services.get(runnable.name, 0)
         self._note(EventKind.RUNNABLE_START, runnable.name)
         if service:
@@ -366,11 +381,10 @@ class _Body:
         if service:
             self.code.add(SERVED, service)
         self._note(EventKind.RUNNABLE_TERMINATE, runnable.name)
-        self._mark(skip_inner)
+        self._mark(skip)
         if again is not None:
             self.code.add(JUMP, again)
         self._mark(done)
-        self._mark(skip)
 
     def _note(self, event: EventKind, runnable: str) -> None:
         if self.owner.is_noted:
@@ -496,10 +510,8 @@ class _Body:
         return self.owner.stimuli[name]
 
     def _os_events(self, activity: SetEvent | ClearEvent | WaitEvent) -> None:
-        skip = self._counted(activity, activity.counter)
         operation = {SetEvent: SET_EVENT, ClearEvent: CLEAR_EVENT, WaitEvent: WAIT_EVENT}[type(activity)]
         self.code.add(operation, self.resources.event_row(activity, self.owner.processes))
-        self._mark(skip)
 
     def _mode(self, access: ModeAccess) -> None:
         if access.operation is ModeOperation.READ:
