@@ -26,7 +26,7 @@ from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.counters import first_effect, is_always
+from amalthea_uros.timing.counters import first_effect, is_always, min_distance
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.multiframe import MultiframeDemand
@@ -129,7 +129,7 @@ class CallbackEvaluator:
             return limit
         events = self.solution.event_models.get(sites[0].process.name)
         counter = sites[0].counter
-        return None if events is None else events.delta_min(1 + (counter.prescaler if counter is not None else 1))
+        return None if events is None else events.delta_min(1 + (min_distance(counter) if counter is not None else 1))
 
 
 @dataclass(frozen=True, slots=True)

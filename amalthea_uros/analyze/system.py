@@ -49,6 +49,7 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     settings = settings or Settings()
     system = with_stated_phases(system, settings.phases)
     solution = solve(TimingContext.of(system, settings))
+    system = solution.context.system
     unknown = unknown_phases(system)
     every = _of_all_phases(solution, unknown) if unknown else None
     found = every or _analysis(solution)

@@ -13,6 +13,20 @@ from amalthea_uros.units import Frequency, Time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Arrivals:
+    """When messages arrive that do not arrive at exact distances, or not at those that a counter says.
+
+    Attributes
+    ----------
+    period : nominal distance of two messages; None: as many periods of the process as the counter counts
+    jitter : maximum delay of a message; delays do not accumulate
+    """
+
+    period: Time | None = None
+    jitter: Time = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Counter:
     """Lets only every n-th time take effect; counting goes on across jobs and callers.
 
@@ -23,12 +37,16 @@ class Counter:
     source : the message or timer that the counter represents; counters of a process with the same source take effect together
     is_phase_known : whether the offset is stated; otherwise any time can be the first effective one, and without a source, one time
         more can pass between two effective ones
+    arrivals : of the source, if they are not regular: then a job takes what arrived before its activation, and counts nothing
+    jitter : number of times by which an effective one can be late, if the phase is unknown
     """
 
     prescaler: int = 1
     offset: int = 0
     source: str = ""
     is_phase_known: bool = True
+    arrivals: Arrivals | None = None
+    jitter: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -134,7 +134,6 @@ QUEUE_TIME, QUEUE_INSTANCE, QUEUE_CAPTURES = range(3)
 (COUNTED, EVERY, FIRST_EFFECT, COUNTER_SIZE) = range(4)
 (WORD, PARTS_LEFT, PARTS, PARTS_TOTAL, ORDERED_PARTS, GROUP_SIZE) = range(6)
 (PASSES, LOOP_SIZE) = range(2)
-(WAITING_MESSAGES, MESSAGE_LIMIT, MESSAGE_SIZE) = range(3)
 (MODE_VALUE, LITERALS, IS_CONSTANT, MODE_SIZE) = range(4)
 (FILL, CAPACITY, OVERFLOWS, CHANNEL_SIZE) = range(4)
 (STREAM_AT, STREAM_END, STREAM_NUMBER, STREAM_SIZE) = range(4)
@@ -142,6 +141,9 @@ QUEUE_TIME, QUEUE_INSTANCE, QUEUE_CAPTURES = range(3)
 # A place that executes a runnable, and the executions of the runnable by all.
 (EXECUTED, EXECUTION, SITE_SIZE) = range(3)
 (EXECUTIONS, RUNNABLE_ENTITY, RUNNABLE_SIZE) = range(3)
+
+# A queue of messages of a process: numbers of those that have arrived, were taken and did not fit, and whether the job has taken one.
+(ARRIVED, TAKEN_MESSAGES, LOST_MESSAGES, HAS_TAKEN, MESSAGE_LIMIT, MESSAGE_CAPTURE, MESSAGE_SIZE) = range(7)
 
 # A condition: alternatives, each of comparisons.
 (ALTERNATIVES, ALTERNATIVES_END, CONDITION_SIZE) = range(3)

@@ -33,13 +33,14 @@ ASK = 25  # asks for (a runnable)
 AWAIT = 26  # waits until (a runnable) has answered, with (ACTIVE)
 SERVE = 27  # begins (a runnable) for all that have asked
 SERVED = 28  # ends it
-TAKE_MESSAGE = 29  # takes a message out of (a source); if there is none, goes to (an operation)
+TAKE_MESSAGE = 29  # takes a message out of (a queue) if one has arrived before the activation
 NOTE = 30  # an event of (a kind) about (an entity), for the trace
 BEGIN_RUNNABLE = 31  # an execution of a runnable at (a site) begins, for the trace
 END_RUNNABLE = 32  # and ends
 OBSERVE = 33  # (a source) of events that are watched has an occurrence
 BEGIN_EXECUTION = 34  # an execution of (a measured runnable) begins
 END_EXECUTION = 35  # and ends
+TEST_MESSAGE = 36  # if the job has taken no message out of (a queue), goes to (an operation)
 ENTER = 40  # (a stage) keeps what there is at the start of the job, and has it at once if (1)
 TAKE = 41  # (a stage) takes what is there now, or, if (1), what was there at the start
 REACH = 42  # a position of (a stage) is reached: (a bit)
@@ -47,7 +48,9 @@ MARK = 43  # the stimulus of the chain of (a stage) occurs now, or, if (1), occu
 PUT = 44  # (a stage) gives away what it has
 LEAVE = 45  # the same if the job has reached all positions
 PUBLISH = 46  # the same, at the end of the period
-RESPOND = 47  # the response of the chain of (a stage) occurs; it counts when the job has reached all positions
+RESPOND = (
+    47  # the response of the chain of (a stage) occurs now or, if given, at (a time of the job); it counts when all is reached
+)
 
 #: Flags of REQUEST and AWAIT.
 EXCLUSIVE, ACTIVE = 1, 2

@@ -18,6 +18,7 @@ from amalthea_uros.simulate.layout import (
     BEGIN,
     BUSY,
     LOST,
+    LOST_MESSAGES,
     OVERFLOWS,
     RUNS,
     SINCE,
@@ -46,7 +47,7 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.critical_sections import spinlocks_of
 from amalthea_uros.timing.deadlines import ASSUMPTION
 from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.timing.phases import with_stated_phases
+from amalthea_uros.timing.phases import with_first_arrivals
 from amalthea_uros.trace.semaphore_states import SemaphoreStates
 from amalthea_uros.trace.sinks import TraceSink
 from amalthea_uros.trace.suspensions import RunnableSuspensions
@@ -68,7 +69,7 @@ def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] 
     ----------
     sinks : for the events of `options.traced`
     """
-    context = TimingContext.of_scheduling(with_stated_phases(system, options.settings.phases), options.settings)
+    context = TimingContext.of_scheduling(with_first_arrivals(system, options.settings.phases), options.settings)
     program = build_program(context, options)
     run = _Run(context, options, program)
     with ExitStack() as stack:
@@ -172,6 +173,13 @@ class _Run:
             if lost:
                 message = f"the channel {name!r} was full: {lost:,} elements were lost"
                 notes.warning("SIM004", message, system.channels[name])
+        for (process, source), queue in self.program.messages.items():
+            lost = int(self.player.memory[queue + LOST_MESSAGES])
+            if lost:
+                message = (
+                    f"the queue of {source!r} was full: {lost:,} messages were lost, because {process!r} takes one in a job"
+                )
+                notes.warning("SIM005", message, system.processes[process])
 
     # Cores and processes.
 

@@ -12,6 +12,7 @@ from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation import Activations, UnknownActivationError
 from amalthea_uros.timing.allocation import allocated_cores, effective_priority
+from amalthea_uros.timing.arrivals import arrival_assumptions, with_bounded_arrivals
 from amalthea_uros.timing.critical_sections import Locks, Protection, protection_of
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
@@ -71,7 +72,9 @@ class TimingContext:
     @classmethod
     def of(cls, system: System, settings: Settings | None = None) -> TimingContext:
         """The timing context of a system."""
-        context = cls.of_scheduling(system, settings)
+        context = cls.of_scheduling(with_bounded_arrivals(system), settings)
+        for sentence in arrival_assumptions(system):
+            context.notes.assume(sentence)
         context._find_demands()
         context._find_locks()
         return context

@@ -40,7 +40,12 @@ def is_always(counter: Counter) -> bool:
 
 def max_distance(counter: Counter) -> int:
     """Maximum number of occurrences from one that takes effect to the next."""
-    return counter.prescaler + (not counter.is_phase_known and not counter.source)
+    return counter.prescaler + (not counter.is_phase_known and not counter.source) + counter.jitter
+
+
+def min_distance(counter: Counter) -> int:
+    """Minimum number of occurrences from one that takes effect to the next."""
+    return max(1, counter.prescaler - counter.jitter)
 
 
 def composed(outer: Counter, inner: Counter) -> Counter:
@@ -53,6 +58,7 @@ def composed(outer: Counter, inner: Counter) -> Counter:
         prescaler=outer.prescaler * inner.prescaler,
         offset=first_effect(outer) + (first_effect(inner) - 1) * outer.prescaler,
         is_phase_known=outer.is_phase_known and inner.is_phase_known,
+        jitter=outer.jitter + inner.jitter * outer.prescaler,
     )
 
 

@@ -298,7 +298,14 @@ class DemandModel:
         if counter is None:
             return None
         is_certain = frame.is_certain and counter.is_phase_known
-        return replace(frame, prescaler=counter.prescaler, offset=first_effect(counter), is_certain=is_certain)
+        return replace(
+            frame,
+            best=0 if counter.jitter else frame.best,
+            prescaler=counter.prescaler,
+            offset=first_effect(counter),
+            is_certain=is_certain,
+            jitter=counter.jitter,
+        )
 
     def _prepare(self, runnable: Runnable, core: str) -> None:
         """Find the frames of the called runnables first, innermost first, which avoids deep recursion."""
@@ -376,9 +383,9 @@ def _ends_early(position: ActivityPosition) -> bool:
 
 def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:
     """The frames of the same jobs added up."""
-    found: dict[tuple[int, int, bool], list[Frame]] = {}
+    found: dict[tuple[int, int, bool, int], list[Frame]] = {}
     for frame in frames:
-        found.setdefault((frame.prescaler, frame.offset, frame.is_certain), []).append(frame)
+        found.setdefault((frame.prescaler, frame.offset, frame.is_certain, frame.jitter), []).append(frame)
     return tuple(same[0] if len(same) == 1 else _sum(same) for same in found.values())
 
 

@@ -21,6 +21,7 @@ class Frame:
     average : mean, for loads
     offset : number of the first such job, counted from 1; below 1 only its remainder modulo the prescaler counts
     is_certain : whether exactly these jobs have the demand; otherwise any job may have it or not, but at most every n-th one
+    jitter : number of jobs by which the demand can be late, if it is not certain which jobs have it
     """
 
     worst: Time
@@ -29,6 +30,7 @@ class Frame:
     prescaler: int = 1
     offset: int = 0
     is_certain: bool = True
+    jitter: int = 0
 
     @property
     def is_always(self) -> bool:
@@ -58,7 +60,7 @@ class MultiframeDemand:
 
     def max_demand(self, count: int) -> Time:
         """Maximum demand of that many consecutive jobs."""
-        return sum(frame.worst * -(-count // frame.prescaler) for frame in self.frames)
+        return sum(frame.worst * min(count, -(-(count + frame.jitter) // frame.prescaler)) for frame in self.frames)
 
     def min_demand(self, count: int) -> Time:
         """Minimum demand of that many consecutive jobs."""

@@ -44,7 +44,7 @@ class Occurrence:
 
 def sources(system: System) -> list[str]:
     """The names of everything from outside that counters represent."""
-    return list(dict.fromkeys(counter.source for _, counter in _counters(system) if counter.source))
+    return list(dict.fromkeys(counter.source for _, counter in counters(system) if counter.source))
 
 
 def unknown_phases(system: System) -> tuple[Occurrence, ...]:
@@ -52,7 +52,7 @@ def unknown_phases(system: System) -> tuple[Occurrence, ...]:
     return tuple(
         dict.fromkeys(
             Occurrence.of(process, counter)
-            for process, counter in _counters(system)
+            for process, counter in counters(system)
             if counter.source and not counter.is_phase_known
         )
     )
@@ -74,7 +74,7 @@ def phase_variants(system: System, occurrences: Sequence[Occurrence]) -> Iterato
                 return counter
             return replace(counter, offset=first, is_phase_known=True)
 
-        yield _with_counters(system, known)
+        yield with_counters(system, known)
 
 
 def with_stated_phases(system: System, times: Mapping[str, Time]) -> System:
@@ -87,16 +87,28 @@ def with_stated_phases(system: System, times: Mapping[str, Time]) -> System:
     InvalidArgumentError : no job that takes it is released at that time.
     """
     for source, time in times.items():
-        takers = [process for process, counter in _counters(system) if counter.source == source]
+        takers = [process for process, counter in counters(system) if counter.source == source]
         if takers and not any(_is_release(time, system.processes[taker], system) for taker in takers):
             raise InvalidArgumentError(_no_release(time, source, system.processes[takers[0]], system))
+    return with_first_arrivals(system, times)
+
+
+def with_first_arrivals(system: System, times: Mapping[str, Time]) -> System:
+    """The system in which some sources are due for the first time at any times: the first job released then or later takes it.
+
+    Irregular arrivals are left as they are.
+
+    Raises
+    ------
+    InvalidArgumentError : the release times of a process that takes it are unknown.
+    """
 
     def stated(process: Process, counter: Counter) -> Counter:
-        if counter.source not in times:
+        if counter.source not in times or counter.arrivals is not None:
             return counter
         return replace(counter, offset=_first_job(times[counter.source], process, system), is_phase_known=True)
 
-    return _with_counters(system, stated) if times else system
+    return with_counters(system, stated) if times else system
 
 
 def _is_release(time: Time, process: Process, system: System) -> bool:
@@ -122,7 +134,7 @@ def _first_job(time: Time, process: Process, system: System) -> int:
 
 def phase_assumptions(system: System, are_all_evaluated: bool) -> Iterator[str]:
     """What is assumed about phases, in sentences."""
-    for process, counter in _counters(system):
+    for process, counter in counters(system):
         if not counter.source:
             continue
         due = f"{counter.source} is due regularly, in one of {counter.prescaler} jobs of {process}"
@@ -135,15 +147,21 @@ def phase_assumptions(system: System, are_all_evaluated: bool) -> Iterator[str]:
         yield f"{due}, first in job {first}{at}, as stated"
 
 
-def _counters(system: System) -> Iterator[tuple[str, Counter]]:
+def counters(system: System) -> Iterator[tuple[str, Counter]]:
     """The counters in the jobs of processes, with the name of the process."""
     for name, process in system.processes.items():
-        for activity in walk(process.activities):
-            if isinstance(activity, Call | Trigger) and activity.counter is not None:
-                yield name, activity.counter
+        for counter in own_counters(process):
+            yield name, counter
 
 
-def _with_counters(system: System, change: Callable[[Process, Counter], Counter]) -> System:
+def own_counters(process: Process) -> Iterator[Counter]:
+    """The counters in the jobs of a process."""
+    for activity in walk(process.activities):
+        if isinstance(activity, Call | Trigger) and activity.counter is not None:
+            yield activity.counter
+
+
+def with_counters(system: System, change: Callable[[Process, Counter], Counter]) -> System:
     """The system with the counters in the jobs of its processes changed."""
 
     def changed(process: Process) -> tuple[Activity, ...]:

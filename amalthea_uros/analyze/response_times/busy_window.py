@@ -75,11 +75,11 @@ def _rows(task: Task) -> list[tuple[tuple[int, int, int], int, int]]:
             # No window exceeds the limit; assuming shorter distances is safe.
             (
                 min(events.period * frame.prescaler, LIMIT),
-                events.jitter,
-                min(events.min_interarrival * frame.prescaler, LIMIT),
+                min(events.jitter + events.period * frame.jitter, LIMIT),
+                min(events.min_interarrival * max(1, frame.prescaler - frame.jitter), LIMIT),
             ),
             frame.worst,
-            frame.best if is_certain else 0,
+            frame.best if is_certain and not frame.jitter else 0,
         )
         for frame in task.demand.frames
     ]

@@ -37,4 +37,11 @@ KINDS = (
         rationale="A channel was full when something was put into it.",
         remedy="Receive more often, or give the channel a greater capacity.",
     ),
+    FindingKind(
+        id="SIM005",
+        title="messages lost in a full queue",
+        severity=Severity.WARNING,
+        rationale="A message arrived while as many as the middleware keeps were waiting: the executor takes one in a job at most.",
+        remedy="Run the executor more often, or send less often.",
+    ),
 )

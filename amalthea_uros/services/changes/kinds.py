@@ -9,7 +9,7 @@ from typing import Any
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.services.changes import allocation, execution_time, scheduler, stimulus
+from amalthea_uros.services.changes import allocation, execution_time, message, scheduler, stimulus
 from amalthea_uros.services.changes.key import (
     CLOCKS,
     ISR_ALLOCATIONS,
@@ -25,7 +25,7 @@ from amalthea_uros.services.changes.key import (
 from amalthea_uros.services.changes.values import duration, one_of, positive_frequency, positive_number, whole_number
 from amalthea_uros.timing.clocks import frequency_of
 from amalthea_uros.timing.phases import sources
-from amalthea_uros.units import Frequency, Time, frequency_text, time_text
+from amalthea_uros.units import Frequency, frequency_text, time_text
 
 
 def _show_core_frequency(configuration: Configuration, core: str) -> str:
@@ -38,16 +38,6 @@ def _set_core_frequency(configuration: Configuration, core: str, frequency: Freq
     """Change the frequency of one core; other cores with the same clock keep theirs."""
     settings = configuration.settings
     return configuration._replace(settings=replace(settings, frequencies={**settings.frequencies, core: frequency}))
-
-
-def _show_phase(configuration: Configuration, source: str) -> str:
-    phase = configuration.settings.phases.get(source)
-    return UNSET if phase is None else time_text(phase)
-
-
-def _set_phase(configuration: Configuration, source: str, phase: Time) -> Configuration:
-    settings = configuration.settings
-    return configuration._replace(settings=replace(settings, phases={**settings.phases, source: phase}))
 
 
 def _set_mode(configuration: Configuration, label: str, value: str) -> Configuration:
@@ -101,7 +91,7 @@ KINDS = (
     Kind("scheduler", lambda system: system.schedulers, scheduler.SCHEDULER_KEYS),
     Kind("stimulus", lambda system: system.stimuli_by_name, stimulus.STIMULUS_KEYS),
     Kind("mode label", lambda system: [label.name for label in system.software.mode_labels], {"mode": _MODE_KEY}),
-    Kind("message", sources, {"phase": Key(duration, _show_phase, _set_phase)}),
+    Kind("message", sources, message.MESSAGE_KEYS),
 )
 
 #: Execution times are converted to ticks at the frequency of a core, so those that decide about it are changed before the others.

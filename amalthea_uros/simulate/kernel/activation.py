@@ -11,6 +11,7 @@ from amalthea_uros.simulate.kernel.watching import observe, watch
 from amalthea_uros.simulate.layout import (
     ACTIVATION,
     ACTIVATIONS,
+    ARRIVED,
     ASSIGNMENTS,
     ASSIGNMENTS_END,
     AT,
@@ -35,8 +36,8 @@ from amalthea_uros.simulate.layout import (
     LET_STAGES,
     LET_STAGES_END,
     LIMIT,
-    LINK,
     LOST,
+    LOST_MESSAGES,
     MESSAGE_LIMIT,
     MESSAGES,
     MIGRATIONS,
@@ -62,13 +63,13 @@ from amalthea_uros.simulate.layout import (
     STATE,
     STIMULUS_ENTITY,
     STIMULUS_SOURCE,
+    TAKEN_MESSAGES,
     TARGETS,
     TARGETS_END,
     TIME_PARKING,
     TIME_POLLING,
     TIME_RUNNING,
     TIME_WAITING,
-    WAITING_MESSAGES,
     WATCHED,
 )
 from amalthea_uros.simulate.memory import Memory
@@ -99,12 +100,19 @@ def fire(m: Memory, stimulus: int, origin: int) -> int:
         emit(m, _TRIGGER, entity, number, entity, number, NO_NOTE)
     if m[stimulus + STIMULUS_SOURCE]:
         observe(m, m[stimulus + STIMULUS_SOURCE] - 1, 0)
-    source = m[stimulus + MESSAGES]
-    if source and m[source + WAITING_MESSAGES] < m[source + MESSAGE_LIMIT]:
-        m[source + WAITING_MESSAGES] += 1
+    if m[stimulus + MESSAGES]:
+        _arrive(m, m[stimulus + MESSAGES])
     for place in range(first, last):
         activate(m, m[place], entity, number)
     return GO_ON
+
+
+def _arrive(m: Memory, queue: int) -> None:
+    """A message arrives in a queue, or is lost."""
+    if m[queue + ARRIVED] - m[queue + TAKEN_MESSAGES] < m[queue + MESSAGE_LIMIT]:
+        m[queue + ARRIVED] += 1
+    else:
+        m[queue + LOST_MESSAGES] += 1
 
 
 def publish_all(m: Memory, stimulus: int) -> None:
@@ -143,7 +151,7 @@ def _enqueue(m: Memory, process: int, instance: int) -> None:
     m[place + QUEUE_TIME] = m[NOW]
     m[place + QUEUE_INSTANCE] = instance
     for capture in range(captures, end):
-        m[place + QUEUE_CAPTURES + capture - captures] = m[m[capture] + LINK]
+        m[place + QUEUE_CAPTURES + capture - captures] = m[m[capture]]
     m[process + PENDING] += 1
     if m[process + PENDING] == 1:
         _begin_job(m, process)

@@ -66,7 +66,7 @@ def follow(m: Memory, process: int, operation: int, stage: int, argument: int) -
         _complete(m, process, stage)
     elif operation == RESPOND:
         m[stage + HAS_RESPONDED] = 1
-        m[stage + RESPONDED_AT] = m[NOW]
+        m[stage + RESPONDED_AT] = m[process + argument] if argument else m[NOW]
         _complete(m, process, stage)
     elif operation == PUT or m[stage + REACHED] == m[stage + NEEDED]:
         _leave(m, process, operation, stage)

@@ -17,11 +17,14 @@ from amalthea_uros.simulate.layout import (
     EVENTS,
     EVENTS_END,
     FILL,
+    FIRST_PLACE,
+    HAS_TAKEN,
     IS_DUE,
     JOBS,
     JOBS_END,
     LEFT,
     MASKS,
+    MESSAGE_CAPTURE,
     NEEDS_STEP,
     OBSERVATIONS,
     OBSERVATIONS_END,
@@ -32,11 +35,12 @@ from amalthea_uros.simulate.layout import (
     PARTS_LEFT,
     PARTS_TOTAL,
     PASSES,
+    QUEUE_CAPTURES,
     RUNS,
     STEPS,
     STREAM_AT,
     STREAM_END,
-    WAITING_MESSAGES,
+    TAKEN_MESSAGES,
     WORD,
     YIELDS,
 )
@@ -75,6 +79,7 @@ from amalthea_uros.simulate.operations import (
     STREAM_EMPTY,
     TAKE_MESSAGE,
     TEST,
+    TEST_MESSAGE,
     UNLOCK,
     UNMASK,
     WAIT_EVENT,
@@ -190,10 +195,9 @@ def _carry_out(m: Memory, core: int, process: int, at: int) -> int:
     elif operation == STEP_MODE:
         step_mode(m, first, second)
     elif operation == TAKE_MESSAGE:
-        if m[first + WAITING_MESSAGES] > 0:
-            m[first + WAITING_MESSAGES] -= 1
-        else:
-            following = second
+        _take_message(m, process, first)
+    elif operation == TEST_MESSAGE:
+        following = following if m[first + HAS_TAKEN] else second
     else:
         # Who waits goes on after this operation.
         m[process + AT] = following
@@ -224,6 +228,13 @@ def _change_channel(m: Memory, channel: int, elements: int) -> None:
         m[channel + OVERFLOWS] += fill - capacity
         fill = capacity
     m[channel + FILL] = fill
+
+
+def _take_message(m: Memory, process: int, queue: int) -> None:
+    """Take the first message of a queue if it has arrived before the activation of the job, or at the same time."""
+    arrived = m[m[process + FIRST_PLACE] + QUEUE_CAPTURES + m[queue + MESSAGE_CAPTURE]]
+    m[queue + HAS_TAKEN] = 1 if arrived > m[queue + TAKEN_MESSAGES] else 0
+    m[queue + TAKEN_MESSAGES] += m[queue + HAS_TAKEN]
 
 
 def _shuffle(m: Memory, group: int, word: int) -> None:

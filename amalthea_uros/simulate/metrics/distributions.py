@@ -1,7 +1,7 @@
 """Distributions of several quantities that are observed together, such as the times of each job of a process.
 
-Everything is exact, so that it does not depend on how the observations are divided into chunks; squares are those of deviations from the
-first value, which are small.
+Everything is exact, so that it does not depend on how the observations are divided into chunks; squares are those of deviations from
+the first value, which are small.
 """
 
 from __future__ import annotations

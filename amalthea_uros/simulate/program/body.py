@@ -104,6 +104,7 @@ from amalthea_uros.simulate.operations import (
     SHUFFLE,
     STEP_MODE,
     TEST,
+    TEST_MESSAGE,
     UNLOCK,
     UNMASK,
     WAIT_EVENT,
@@ -153,6 +154,7 @@ class BodyCompiler:
     Attributes
     ----------
     processes, stimuli : their records
+    queues : of messages with arrivals of their own, by process and source
     is_noted : whether events of runnables and labels are recorded
     watches : what is observed apart from jobs and chains
     """
@@ -161,6 +163,7 @@ class BodyCompiler:
     modes: Modes
     processes: dict[str, int]
     stimuli: dict[str, int]
+    queues: dict[tuple[str, str], int]
     is_noted: bool
     watches: Watches
 
@@ -204,6 +207,7 @@ class _Body:
     code: Code = field(default_factory=Code)
     end: Label = field(default_factory=Label)
     number: int = 0
+    places: int = 0
     masks: int = 0
     executions: dict[str, int] = field(default_factory=dict)
 
@@ -211,11 +215,11 @@ class _Body:
     def resources(self) -> Resources:
         return self.owner.resources
 
-    @property
-    def place(self) -> str:
-        """What draws values here: the random numbers of one place do not depend on others."""
+    def _place(self) -> str:
+        """What draws values here: its random numbers depend neither on other places nor on what is recorded."""
         name = self.process.name if self.process is not None else f"decision on {self.core}"
-        return f"{name} activity {self.number} {len(self.code.operations)}"
+        self.places += 1
+        return f"{name} activity {self.number} place {self.places}"
 
     def compile(self, scheduler: Scheduler | None) -> Code:
         process, model = self.process, self.resources.context.demand_model
@@ -258,10 +262,10 @@ class _Body:
     def _demand(self, demand: Demand | None) -> None:
         if demand is not None:
             ticks = self.resources.context.demand_model.ticks(demand, self.core)
-            self._execute(self.resources.ticks(ticks, self.core, Fraction(1), self.place))
+            self._execute(self.resources.ticks(ticks, self.core, Fraction(1), self._place()))
 
     def _frame(self, frame: Frame) -> None:
-        self._execute(self.resources.frame(frame, self.core, self.place))
+        self._execute(self.resources.frame(frame, self.core, self._place()))
 
     def _access(self, name: str, kind: AccessKind, times: Count | float | None) -> None:
         model = self.resources.context.demand_model
@@ -277,15 +281,28 @@ class _Body:
             number = self.number
             if len(self.code.operations) > MAX_OPERATIONS:
                 raise NotSimulatedError(f"it executes more than {MAX_OPERATIONS:,} activities")
+            # Only the service of the operating system knows whether an occurrence counts.
+            is_counted = getattr(activity, "counter", None) is not None
+            if is_counted:
+                self._services(activity)
+            skips = self._skips(activity)
             if isinstance(activity, Call):
                 self._call(activity, above)
+            else:
+                self._add_all(self.hooks.before.get(number, ()))
+                if not is_counted:
+                    self._services(activity)
+                self._activity(activity, above)
+                self._add_all(self.hooks.after.get(number, ()))
+            for label in skips:
+                self._mark(label)
+            if isinstance(activity, Call):
                 self._return()
-                continue
-            self._add_all(self.hooks.before.get(number, ()))
-            for demand in self.resources.context.demand_model.overheads.of_activity(activity, self.core):
-                self._demand(demand)
-            self._activity(activity, above)
-            self._add_all(self.hooks.after.get(number, ()))
+
+    def _services(self, activity: Activity) -> None:
+        """The time of the services of the operating system that an activity calls."""
+        for demand in self.resources.context.demand_model.overheads.of_activity(activity, self.core):
+            self._demand(demand)
 
     def _return(self) -> None:
         """After a call, other cooperative tasks can go first."""
@@ -300,7 +317,7 @@ class _Body:
             case ExecutionNeed(needs=needs):
                 for name, need in needs:
                     factor = self.resources.context.demand_model.ticks_per_unit(name, self.core)
-                    self._execute(self.resources.ticks(need, self.core, factor, f"{self.place} {name}"))
+                    self._execute(self.resources.ticks(need, self.core, factor, f"{self._place()} {name}"))
             case LabelAccess(label=label, kind=kind, communication=communication, times=times):
                 self._access(label, kind, times)
                 self._label_accessed(label, kind, communication, above)
@@ -326,9 +343,7 @@ class _Body:
             case SemaphoreAccess():
                 self._semaphore(activity, above)
             case Trigger(stimulus=stimulus):
-                skip = self._counted(activity, activity.counter)
                 self.code.add(FIRE, self._stimulus(stimulus))
-                self._mark(skip)
             case SetEvent() | ClearEvent() | WaitEvent():
                 self._os_events(activity)
             case ModeAccess():
@@ -339,11 +354,9 @@ class _Body:
             case SchedulePoint():
                 self.code.add(POINT)
             case Terminate():
-                skip = self._counted(activity, activity.counter)
                 for _ in range(self.masks):
                     self.code.add(UNMASK)
                 self.code.add(JUMP, self.end)
-                self._mark(skip)
             case RaiseEvent(event=event):
                 # What it activates is among the hooks.
                 self._observe(CustomEvent, event, None, above)
@@ -353,13 +366,23 @@ class _Body:
                 if not is_access or self.resources.context.settings.memory is not Memory.NONE:
                     raise NotSimulatedError(f"it contains {reason}")
 
+    def _skips(self, activity: Activity) -> list[Label | None]:
+        """Labels to which a job goes if an activity does not take effect: then it is no event of a chain, either."""
+        labels = [self._counted(activity, getattr(activity, "counter", None))]
+        if isinstance(activity, Call) and activity.times is None:
+            runnable = self.resources.context.system.runnables.get(activity.runnable)
+            labels.append(None if runnable is None else self._tested(runnable.condition))
+        return labels
+
     def _counted(self, owner: Activity, counter: Counter | None) -> Label | None:
         """A label to which a job goes if a counter does not let this time take effect."""
-        place = self.resources.counter(owner, counter)
+        name = self.process.name if self.process is not None else ""
+        queue = self.owner.queues.get((name, counter.source)) if counter is not None and counter.arrivals is not None else None
+        place = queue or self.resources.counter(owner, counter)
         if not place:
             return None
         label = Label()
-        self.code.add(COUNT, place, label)
+        self.code.add(TEST_MESSAGE if queue else COUNT, place, label)
         return label
 
     def _mark(self, label: Label | None) -> None:
@@ -390,10 +413,9 @@ class _Body:
         if len(above) > MAX_CALL_DEPTH:
             raise NotSimulatedError(f"calls are nested deeper than {MAX_CALL_DEPTH} levels")
         number = self.number
-        skip = self._counted(call, call.counter)
         again, done = self._repeated(call)
-        skip_inner = self._tested(runnable.condition)
-        # The runnable starts and ends only in calls that have an effect, each time.
+        skip = self._tested(runnable.condition) if call.times is not None else None
+        # It starts and ends each time.
         self._add_all(self.hooks.before.get(number, ()))
         service = self.resources.services.get(runnable.name, 0)
         site = self.resources.site(runnable.name) if self.owner.is_noted else 0
@@ -414,11 +436,10 @@ class _Body:
         if site:
             self.code.add(END_RUNNABLE, site)
         self._add_all(self.hooks.after.get(number, ()))
-        self._mark(skip_inner)
+        self._mark(skip)
         if again is not None:
             self.code.add(JUMP, again)
         self._mark(done)
-        self._mark(skip)
 
     def _execution(self, runnable: str) -> int:
         """The record of the executions of a runnable in this process, if they are measured, or 0."""
@@ -451,7 +472,7 @@ class _Body:
         least, mean, most = count_of(call.times)
         loop, done = self.resources.image.record(LOOP_SIZE), Label()
         passes = Statistics(lower=least, average=float(mean), upper=most)
-        self.code.add(REPEAT, loop, self.resources.count(passes, f"{self.place} passes"))
+        self.code.add(REPEAT, loop, self.resources.count(passes, f"{self._place()} passes"))
         again = self.code.here()
         self.code.add(AGAIN, loop, done)
         return again, done
@@ -481,7 +502,7 @@ class _Body:
         ordered, _ = image.items([0] * total)
         parts, _ = image.items([0] * total)
         group = image.record(GROUP_SIZE, {ORDERED_PARTS: ordered, PARTS: parts, PARTS_TOTAL: total})
-        self.code.add(SHUFFLE, group, self.resources.order(f"{self.place} order"))
+        self.code.add(SHUFFLE, group, self.resources.order(f"{self._place()} order"))
         following = self.code.here()
         self.code.add(NEXT, group, done)
         labels = []
@@ -504,7 +525,7 @@ class _Body:
         else:
             only, jump = -1, Label()
             weights = [branch.weight for branch in switch.branches]
-            self.code.add(CHOOSE, self.resources.choice(weights, f"{self.place} branch"), table)
+            self.code.add(CHOOSE, self.resources.choice(weights, f"{self._place()} branch"), table)
         for index, branch in enumerate(switch.branches):
             labels.append(self.code.here())
             if index == only:
@@ -566,10 +587,8 @@ class _Body:
         return self.owner.stimuli[name]
 
     def _os_events(self, activity: SetEvent | ClearEvent | WaitEvent) -> None:
-        skip = self._counted(activity, activity.counter)
         operation = {SetEvent: SET_EVENT, ClearEvent: CLEAR_EVENT, WaitEvent: WAIT_EVENT}[type(activity)]
         self.code.add(operation, self.resources.event_row(activity, self.owner.processes))
-        self._mark(skip)
 
     def _mode(self, access: ModeAccess) -> None:
         if access.operation is ModeOperation.READ:

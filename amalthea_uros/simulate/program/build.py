@@ -104,6 +104,7 @@ from amalthea_uros.simulate.program.body import BodyCompiler, Hooks
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
 from amalthea_uros.simulate.program.entities import Entities
 from amalthea_uros.simulate.program.image import Image
+from amalthea_uros.simulate.program.messages import Messages
 from amalthea_uros.simulate.program.modes import Modes
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.resources import Resources
@@ -145,6 +146,7 @@ class Program:
     arrivals : of each stimulus that comes from outside: its record, and when it occurs
     processes : the names of the processes in the order of their numbers in rows
     records, cores, channels : the records of processes, cores and channels, by name
+    messages : the queues of messages with arrivals of their own, by process and source
     queues : the records of everything that is activated
     sources : of events that are watched, in the order of their numbers in rows
     runnables : that are measured, in the order of their numbers in rows, which follow those of the processes
@@ -161,6 +163,7 @@ class Program:
     records: dict[str, int]
     cores: dict[str, int]
     channels: dict[str, int]
+    messages: dict[tuple[str, str], int]
     queues: tuple[int, ...]
     entities: tuple[Entity, ...]
     routes: tuple[FollowedRoute, ...]
@@ -232,9 +235,11 @@ class _Builder:
         self._place_cores(here)
         self._place_servers(here)
         is_noted = self.options.traced is not None
-        bodies = BodyCompiler(self.resources, self.modes, self.processes, self.stimuli, is_noted, self.watches)
+        messages = Messages(self.resources, chains)
+        bodies = BodyCompiler(self.resources, self.modes, self.processes, self.stimuli, messages.queues, is_noted, self.watches)
         for number, item in enumerate(here.values()):
             try:
+                messages.add(item.scheduled.process)
                 self._process(item, number, bodies, chains)
             except NotSimulatedError as error:
                 self.left_out[item.name] = str(error)
@@ -249,7 +254,9 @@ class _Builder:
             units=self.resources.units,
             streams=self.resources.streams,
             stream_records=self.resources.stream_records,
-            arrivals=arrivals,
+            # What arrives at the time of an activation is there before it.
+            arrivals=[*messages.arrivals, *arrivals],
+            messages=messages.queues,
             processes=tuple(here),
             records=self.processes,
             cores=self.cores,

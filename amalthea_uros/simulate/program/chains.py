@@ -9,6 +9,7 @@ from amalthea_uros.perf.activities import Communication, Trigger
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Process
 from amalthea_uros.simulate.layout import (
+    ACTIVATION,
     BEFORE_STAGE,
     CAPTURE,
     CHAIN_ENTITY,
@@ -20,6 +21,7 @@ from amalthea_uros.simulate.layout import (
     ROUTE_NUMBER,
     ROUTE_SIZE,
     STAGE_SIZE,
+    START,
     STEP,
     TAKEN,
     VALUE,
@@ -38,6 +40,9 @@ from amalthea_uros.trace.table import EntityKind
 
 #: Links whose effect is not followed, because the model does not say when it takes place.
 _NOT_FOLLOWED = (LinkKind.OS_EVENT, LinkKind.SERVER_CALL, LinkKind.TOPIC)
+
+#: When a response at no activity of a job occurs: where the record of the process has the time; 0: now.
+_RESPONSE_TIMES = {JobPhase.ACTIVATION: ACTIVATION, JobPhase.START: START, JobPhase.END: 0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +65,8 @@ class ChainCompiler:
     Attributes
     ----------
     hooks : by process
-    captures, let_stages : by process: the stages whose output each activation keeps, and those that write at the end of the period
+    captures : by process: the places of the words that each activation keeps
+    let_stages : by process: the stages that write at the end of the period
     left_out : why a chain is not followed
     """
 
@@ -146,7 +152,7 @@ class ChainCompiler:
             captures = self.captures.setdefault(stage.process.name, [])
             words = self.resources.image.words
             words[record + CAPTURE] = len(captures)
-            captures.append(words[record + BEFORE_STAGE])
+            captures.append(words[record + BEFORE_STAGE] + LINK)
         if position is not None:
             hooks.before.setdefault(position.number, []).append((TAKE, record, int(has_snapshot)))
 
@@ -182,10 +188,9 @@ class ChainCompiler:
             case At(occurrence=occurrence):
                 if occurrence.position is not None:
                     self._at(occurrence.when, occurrence.position, hooks).append((RESPOND, record, 0))
-                elif occurrence.when is JobPhase.END:
-                    hooks.end.append((RESPOND, record, 0))
                 else:
-                    hooks.start.append((RESPOND, record, 0))
+                    # Only at its end is it known which job has taken part.
+                    hooks.end.append((RESPOND, record, _RESPONSE_TIMES[occurrence.when]))
             case boundary:
                 raise NotSimulatedError(f"it leaves a process in a way that is not followed: {type(boundary).__name__}")
 

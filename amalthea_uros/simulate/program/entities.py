@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.arrivals import arriving
 from amalthea_uros.trace.table import Entity, EntityKind
 
 
@@ -36,7 +37,7 @@ def _entities(system: System) -> Iterator[Entity]:
     for name, process in system.processes.items():
         yield Entity(EntityKind.ISR if isinstance(process, Isr) else EntityKind.TASK, name)
     yield from (Entity(EntityKind.CORE, name) for name in system.cores)
-    yield from (Entity(EntityKind.STIMULUS, name) for name in system.stimuli_by_name)
+    yield from (Entity(EntityKind.STIMULUS, name) for name in (*system.stimuli_by_name, *arriving(system)))
     yield from (Entity(EntityKind.RUNNABLE, name) for name in system.runnables)
     yield from (Entity(EntityKind.LABEL, name) for name in system.labels)
     yield from (Entity(EntityKind.SEMAPHORE, semaphore.name) for semaphore in system.os.semaphores)

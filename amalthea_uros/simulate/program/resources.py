@@ -169,14 +169,24 @@ class Resources:
 
     def _phase(self, counter: Counter) -> int:
         """The occurrence that takes effect first, where nobody has stated it: any, drawn at random; not sampled, the first one."""
-        if self.options.mode is not Mode.SAMPLED:
-            self.context.notes.assume("what comes from outside with an unknown phase comes at its first possibility")
-            return 1
-        self.context.notes.assume("what comes from outside with an unknown phase has one at random, which the seed decides")
-        place = f"phase of {counter.source}"
+        self.assume_phase()
+        return 1 if self.options.mode is not Mode.SAMPLED else self.random_phase(counter.source) % counter.prescaler + 1
+
+    def assume_phase(self) -> None:
+        """Note what is assumed about the phase of what comes from outside."""
+        how = (
+            "has one at random, which the seed decides"
+            if self.options.mode is Mode.SAMPLED
+            else "comes at its first possibility"
+        )
+        self.context.notes.assume(f"what comes from outside with an unknown phase {how}")
+
+    def random_phase(self, source: str) -> int:
+        """A random number of 64 bits that stands for the phase of something from outside, the same for all that take it."""
+        place = f"phase of {source}"
         if place not in self._phases:
             self._phases[place] = int(self._source(place).words(1)[0])
-        return self._phases[place] % counter.prescaler + 1
+        return self._phases[place]
 
     # Events of the operating system.
 
