@@ -21,7 +21,7 @@ from amalthea_uros.simulate.limited_values import LimitedQuantity
 from amalthea_uros.simulate.metrics.data_ages import DataAges, LabelAges
 from amalthea_uros.simulate.metrics.delays import delays
 from amalthea_uros.simulate.metrics.event_tables import EventTable, EventTables, SourceTable, in_order
-from amalthea_uros.simulate.metrics.label_values import LabelValues
+from amalthea_uros.simulate.metrics.label_values import LabelValues, Reading
 from amalthea_uros.simulate.metrics.repetitions import Repetitions
 from amalthea_uros.simulate.metrics.runnable_orders import RunnableOrder
 from amalthea_uros.simulate.metrics.synchronizations import AllOccurrences, SubsequentOccurrences
@@ -78,7 +78,7 @@ class Observers:
     _of_constraints: dict[int, list[_Observer]] = field(default_factory=dict)
     _reasons: dict[int, str] = field(default_factory=dict)
     _ages: dict[int, DataAges] = field(default_factory=dict)
-    _labels: list[LabelAges] = field(default_factory=list)
+    _labels: dict[str, LabelAges] = field(default_factory=dict)
     _values: LabelValues = field(init=False)
     _of_values: SourceTable = field(init=False)
     #: Rows of the latest instant: others of the same instant can follow.
@@ -93,7 +93,7 @@ class Observers:
             self._of_constraints[id(order)] = [self._order(order, process) for process in self._scope(order)]
         self._ages = {id(age): DataAges(age, base) for age in constraints.data_ages}
         labels = self.options.watched_labels(self.system)
-        self._labels = [LabelAges(label, base) for label in dict.fromkeys(labels)]
+        self._labels = {label: LabelAges(label, base) for label in labels}
         every = list(dict.fromkeys((*labels, *(age.label for age in constraints.data_ages))))
         self._values = LabelValues(every, self.program.sources, self.options.settings.communication)
         self._of_values = self._table(lambda source: is_of_label(source, every))
@@ -162,11 +162,14 @@ class Observers:
             self._add_accesses(rows[self._of_values.places(rows)])
 
     def _add_accesses(self, rows: Numbers) -> None:
-        readings = list(self._values.readings(rows[:, Observation.TIME], rows[:, Observation.ROUTE]))
+        readings: dict[str, list[Reading]] = {}
+        for reading in self._values.readings(rows[:, Observation.TIME], rows[:, Observation.ROUTE]):
+            readings.setdefault(reading.source.name, []).append(reading)
         for ages in self._ages.values():
-            ages.add(readings)
-        for label in self._labels:
-            label.add(readings)
+            ages.add(readings.get(ages.constraint.label, ()))
+        for label, found in readings.items():
+            if label in self._labels:
+                self._labels[label].add(found)
 
     def quantities(self, constraint: ObservedConstraint) -> list[LimitedQuantity]:
         """What was observed of a constraint; nothing if it limits nothing, or cannot be observed."""
@@ -181,4 +184,4 @@ class Observers:
 
     def labels(self) -> Iterator[LabelObservation]:
         """What was observed of the labels that were asked for."""
-        return (ages.observation(self._values) for ages in self._labels)
+        return (ages.observation(self._values) for ages in self._labels.values())

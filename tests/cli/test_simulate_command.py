@@ -269,6 +269,8 @@ WRONG = {
     "a value of a sweep that is wrong": (["--sweep", "Control_Function.period=1ms,2"], "'2' has no unit"),
     "a sweep without steps": (["--sweep", "Control_Function.period=1ms..2ms"], "has no step"),
     "a message that does not exist": (["--phase", "Nothing=1ms"], "'Nothing'"),
+    "an unknown label": (["--labels", "memory_1, memory3"], "unknown label 'memory3'; did you mean"),
+    "an unknown label of many runs": (["--labels", "memory3", "--runs", "2"], "unknown label 'memory3'"),
     "a core that does not exist": (["--frequency", "Core_9=1MHz"], "unknown core 'Core_9'"),
     "a window that ends before it starts": (["--window", "3ms..1ms"], "not a range of times"),
     "a window of a trace without trace": (["--trace-window", "1ms..2ms"], "--trace-window needs --trace"),

@@ -13,7 +13,14 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report import formats
 from amalthea_uros.report.simulated import closing_line, duration_text
-from amalthea_uros.simulate.results import ObservedVerdict, RequirementObservation, Simulation
+from amalthea_uros.simulate.results import (
+    CountObservation,
+    LabelObservation,
+    ObservedVerdict,
+    RequirementObservation,
+    RunnableObservation,
+    Simulation,
+)
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
@@ -51,6 +58,23 @@ def limit(**values):
     return RequirementObservation(**(found | {"verdict": ObservedVerdict.MISSED, "value": Fraction(29 * US)} | values))
 
 
+CALLBACK = RunnableObservation(
+    name="Callback",
+    executions=300,
+    metrics={
+        JobMetric.RESPONSE_TIME: observation(2 * US, 5 * US, 9 * US),
+        JobMetric.NET_EXECUTION_TIME: observation(1 * US, 2 * US, 4 * US),
+    },
+    preemptions=CountObservation(total=7, min=0, max=2),
+    migrations=CountObservation(total=0, min=0, max=0),
+)
+LABELS = (
+    LabelObservation(
+        name="speed", reads=1200, writes=300, unwritten_reads=4, overwritten=7, age=observation(US, 2 * US, 3 * US)
+    ),
+    LabelObservation(name="unread", reads=0, writes=0, unwritten_reads=0, overwritten=0),
+)
+WITH_PARTS = replace(SIMULATION, runnables=Results([CALLBACK]), labels=Results(LABELS))
 SLOW = limit(name="slow")
 UNSEEN = limit(name="unseen", verdict=ObservedVerdict.NOT_OBSERVED, value=None, reason="no job of 'Control' ended")
 
@@ -118,6 +142,36 @@ def test_a_row_for_each_chain():
 def test_latencies_that_were_not_observed_are_mentioned():
     chain = replace(CHAIN, routes=(replace(CHAIN.routes[0], not_evaluated=1200),))
     assert "1,200 latencies too long to be observed" in text(replace(SIMULATION, chains=Results([chain])))
+
+
+def test_a_row_for_each_measured_runnable_and_each_label():
+    shown = text(WITH_PARTS)
+    assert [cell.strip() for cell in cells(shown, "Callback")] == ["Callback", "300", "2 us", "5 us", "9 us", "4 us"]
+    assert [cell.strip() for cell in cells(shown, "speed")] == ["speed", "1,200", "300", "4", "7", "1 us", "2 us", "3 us"]
+    assert [cell.strip() for cell in cells(shown, "unread")] == ["unread", "0", "0", "0", "0", "-", "-", "-"]
+    assert "Labels" not in text(SIMULATION)
+
+
+def test_a_missed_limit_says_when():
+    late = limit(at=Fraction(20 * MS), reason="2 without a target")
+    assert cells(text(with_requirements(late)), "R")[-1].strip() == "2 without a target, at 20 ms"
+    kept = replace(late, verdict=ObservedVerdict.OK, reason="")
+    assert "at 20 ms" not in text(with_requirements(kept))
+    assert content(with_requirements(kept))["requirements"][0]["at_ps"] == 20 * MS
+
+
+def test_a_constraint_without_a_number_is_told_by_its_reason():
+    order = limit(quantity="order of runnables", limit=None, value=None, reason="2 of 9 jobs in another order", is_time=False)
+    assert "order of runnables of Control: 2 of 9 jobs in another order" in closing_line(with_requirements(order))
+
+
+def test_runnables_and_labels_for_programs():
+    found = content(WITH_PARTS)
+    (runnable,), (label, unread) = found["runnables"], found["labels"]
+    assert (runnable["executions"], runnable["metrics"]["response_time"]["max_ps"]) == (300, 9 * US)
+    numbers = {"name": "speed", "reads": 1200, "writes": 300, "unwritten_reads": 4, "overwritten": 7}
+    assert {name: label[name] for name in numbers} == numbers
+    assert (label["age"]["min_ps"], label["age"]["max_ps"], unread["age"]) == (US, 3 * US, None)
 
 
 def test_requirements_with_missed_ones_first():

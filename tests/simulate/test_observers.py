@@ -423,6 +423,20 @@ def test_the_settings_decide_about_communication():
     assert {how: label.age.max for how, label in found.items()} == dict.fromkeys(found, (10_000 - 10) * US)
 
 
+@pytest.mark.parametrize("first", ["Reader", "Writer"])
+def test_at_a_common_release_what_is_written_under_let_is_there_before_anybody_reads(first):
+    bodies = {
+        "Reader": [access("x", "read", Communication.LET), work(1)],
+        "Writer": [work(2), access("x", "write", Communication.LET)],
+    }
+    order = [first, *(name for name in bodies if name != first)]
+    cores = {"Reader": "C0", "Writer": "C1"}
+    model = system({name: bodies[name] for name in order}, periods=dict.fromkeys(bodies, 1), cores=cores)
+    label = simulated(model, labels=("x",), milliseconds=10).labels["x"]
+    # Each job reads at its start what was written 2 us after the release before.
+    assert (label.unwritten_reads, label.age.min, label.age.max) == (1, 998 * US, 998 * US)
+
+
 def test_a_job_reads_its_own_implicit_write_but_not_under_let():
     body = [work(5), access("x", "write"), work(10), access("x", "read")]
     model = system({"Task": body}, periods={"Task": 10})

@@ -52,9 +52,7 @@ class DataAges:
 
     def _is_limited(self, reading: Reading) -> bool:
         writer = reading.value.writer if reading.value is not None else None
-        if writer is None or writer.name != self.constraint.label or writer.runnable != self.constraint.runnable:
-            return False
-        return reading.source.process != writer.process
+        return writer is not None and writer.runnable == self.constraint.runnable and writer.process != reading.source.process
 
     def quantities(self, _end: int) -> Iterator[LimitedQuantity]:
         """What was observed."""
@@ -100,9 +98,8 @@ class LabelAges:
 
     def add(self, readings: Sequence[Reading]) -> None:
         """Take reads of the label in."""
-        here = [reading for reading in readings if reading.source.name == self.label]
-        ages = [(each.time - each.value.time, each.time) for each in here if each.value is not None]
-        self.unwritten += len(here) - len(ages)
+        ages = [(each.time - each.value.time, each.time) for each in readings if each.value is not None]
+        self.unwritten += len(readings) - len(ages)
         found = np.array(ages, np.int64).reshape(-1, 2)
         self._ages.add(found[:, :1].T, np.arange(len(found)) + self._ages.count, found[:, 1])
 

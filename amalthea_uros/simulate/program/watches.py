@@ -187,10 +187,16 @@ class Watches:
     watched: Watched
     measured: dict[str, int] = field(default_factory=dict)
     sources: dict[Source, int] = field(default_factory=dict)
+    _unwatched: set[Source] = field(default_factory=set)
 
     def number(self, source: Source) -> int | None:
         """The number of a source; None if it is not watched."""
-        return self.sources.setdefault(source, len(self.sources)) if source in self.watched else None
+        if source not in self.sources and source not in self._unwatched:
+            if source in self.watched:
+                self.sources[source] = len(self.sources)
+            else:
+                self._unwatched.add(source)
+        return self.sources.get(source)
 
     def transitions(self, process: str) -> list[int]:
         """For each kind of transition of a process the number of its source plus 1, or 0; empty if none is watched."""
