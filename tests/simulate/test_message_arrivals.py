@@ -32,7 +32,7 @@ RCLC = describe(ROOT / "samples" / "rclc-in-executor.yaml").system
 
 @pytest.fixture(autouse=True)
 def interpreted(monkeypatch):
-    monkeypatch.setattr(simulated, "_is_worth_compiling", lambda program, end: False)
+    monkeypatch.setattr(simulated, "_is_worth_compiling", lambda program, end: False, raising=False)
 
 
 def simulate(*changes, system=THESIS, duration=200 * MS, sinks=(), **options):
