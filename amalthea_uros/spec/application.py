@@ -66,6 +66,8 @@ class Subscription(MessageCallback):
     """Topic that it subscribes to."""
     message_size: Size
     """Size of a message, without headers."""
+    jitter: Duration | None = None
+    """Maximum delay of a message against its nominal time, shorter than `interval`; default: messages arrive regularly."""
     reliability: Reliability = "reliable"
     """Quality of service."""
 

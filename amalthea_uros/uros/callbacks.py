@@ -52,7 +52,7 @@ class Callback:
 
     Attributes
     ----------
-    interval : minimum time between two executions
+    interval : nominal time between two executions, at least
     incoming : the message that makes it ready; None for timers
     outgoing : messages that each execution sends
     buffer : the label in which the executor leaves the message; None for timers
@@ -71,6 +71,16 @@ class Callback:
     def name(self) -> str:
         """The name of the callback, and of its task."""
         return self.section.name
+
+    @property
+    def jitter(self) -> Time:
+        """Maximum delay of its message against the nominal time; 0 without one."""
+        return (self.section.jitter or 0) if isinstance(self.section, Subscription) else 0
+
+    @property
+    def min_interval(self) -> Time:
+        """Minimum time between two messages, or two expirations of its timer."""
+        return self.interval - self.jitter
 
     @property
     def runs_when_due(self) -> bool:
@@ -139,6 +149,11 @@ def _interval(section: Section, notes: Notes) -> Time | None:
         message = f"{key!r} and 'rate' of {section.name!r} contradict each other"
         notes.error("APP003", message, section.location("rate"), "Remove one of them.")
     interval = given if given is not None else by_rate
+    jitter = section.jitter if isinstance(section, Subscription) else None
+    if interval and jitter is not None and jitter >= interval:
+        message = f"the jitter of {section.name!r} is not shorter than its message interval"
+        notes.error("APP003", message, section.location("jitter"), "Reduce the jitter, or increase the interval.")
+        return None
     if not interval:
         message = f"'rate' of {section.name!r} is above the maximum of 1 THz"
         notes.error("APP003", message, section.location("rate"), "Set a lower rate.")
@@ -149,6 +164,7 @@ def _interval(section: Section, notes: Notes) -> Time | None:
 def _incoming(section: Section, interval: Time) -> Message | None:
     match section:
         case Subscription():
+            interval -= section.jitter or 0
             topic, size, reliable = section.topic, section.message_size, section.reliability == "reliable"
             channel = _topic_channel(topic)
         case Service():

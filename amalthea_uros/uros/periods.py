@@ -44,7 +44,7 @@ class PeriodCandidates:
 
     def for_callback(self, callback: Callback) -> Sequence[Time]:
         """The periods to try for a callback, longest first."""
-        return self.periods or (callback.interval,)
+        return self.periods or (callback.min_interval,)
 
 
 def period_candidates(middleware: Middleware) -> PeriodCandidates:
@@ -55,8 +55,9 @@ def period_candidates(middleware: Middleware) -> PeriodCandidates:
 def violated_rule(callback: Callback, period: Time, wcet: Time, candidates: PeriodCandidates) -> str | None:
     """What is wrong with a task period, to be read after "it is"; None if it satisfies all rules."""
     is_timer = callback.kind is CallbackKind.TIMER
-    due = f"{'timer period' if is_timer else 'message interval'} of {time_text(callback.interval)}"
-    if period > callback.interval:
+    what = "timer period" if is_timer else "minimum message interval" if callback.jitter else "message interval"
+    due = f"{what} of {time_text(callback.min_interval)}"
+    if period > callback.min_interval:
         return f"longer than the {due}"
     if period <= wcet:
         return f"not longer than the execution time of {time_text(wcet)}"

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.perf.stimuli import Arrivals, Counter
 from amalthea_uros.spec.middleware import Executor
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.callbacks import Callback
@@ -23,17 +23,20 @@ class ExecutorPhases:
     Attributes
     ----------
     stated : the phases that the description states, by callback
+    jitters : the jitters of messages, by callback; 0 for timers
     """
 
     executor: Executor
     period: Time
     stated: Mapping[str, Time]
+    jitters: Mapping[str, Time]
 
     @classmethod
     def of(cls, executor: Executor, period: Time, callbacks: Iterable[Callback]) -> ExecutorPhases:
         """The phases that callbacks state."""
-        stated = {c.name: c.section.phase for c in callbacks if c.section.phase is not None}
-        return cls(executor, period, stated)
+        of_all = tuple(callbacks)
+        stated = {c.name: c.section.phase for c in of_all if c.section.phase is not None}
+        return cls(executor, period, stated, {c.name: c.jitter for c in of_all})
 
     def counter(self, callback: Callback, interval: Time, waits_for: str | None = None) -> Counter | None:
         """The counter of the calls of the executor for a callback; None if it is due in every activation.
@@ -46,7 +49,9 @@ class ExecutorPhases:
         source = waits_for or callback.name
         phase = self.stated.get(source)
         first = None if phase is None else (phase - self.executor.offset) // self.period + 1
-        return call_counter(interval, self.period, source, first)
+        # Who waits for all waits for the latest one.
+        jitter = self.jitters.get(source, max(self.jitters.values(), default=0))
+        return call_counter(interval, self.period, source, first, jitter)
 
     def check(self, callback: Callback, counted: bool, notes: Notes) -> None:
         """Report a phase that is not an activation of the executor, or that has no effect.
@@ -73,7 +78,7 @@ class ExecutorPhases:
             )
 
 
-def call_counter(interval: Time, period: Time, source: str, first: int | None) -> Counter | None:
+def call_counter(interval: Time, period: Time, source: str, first: int | None, jitter: Time) -> Counter | None:
     """The counter of a call that is due once per interval in a task of a period; None if it is due in every activation.
 
     If the interval is no multiple of the period, the number of activations in between varies by one. The smaller one is the prescaler,
@@ -84,6 +89,11 @@ def call_counter(interval: Time, period: Time, source: str, first: int | None) -
     first : number of the first activation in which it is due; None if unknown
     """
     prescaler = max(1, interval // period)
+    if jitter:
+        arrivals = Arrivals(period=interval if interval % period else None, jitter=jitter)
+        return Counter(
+            prescaler=prescaler, offset=first or 0, source=source, is_phase_known=first is not None, arrivals=arrivals
+        )
     if interval > period and interval % period:
         return Counter(prescaler=prescaler, is_phase_known=False)
     if prescaler == 1:
@@ -95,4 +105,4 @@ def own_task_counter(callback: Callback, period: Time) -> Counter | None:
     """The counter of a callback in its own task: a phase that is stated is followed by the next activation of the task."""
     phase = callback.section.phase
     first = None if phase is None else max(0, -(-(phase - callback.section.offset) // period)) + 1
-    return call_counter(callback.interval, period, callback.name, first)
+    return call_counter(callback.interval, period, callback.name, first, callback.jitter)

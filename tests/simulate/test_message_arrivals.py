@@ -14,7 +14,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.changes.apply import apply
 from amalthea_uros.services.changes.apply import describe as describe_changes
 from amalthea_uros.services.changes.change import parse_change
-from amalthea_uros.simulate import system as simulated
+from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.program.messages import QUEUE_LENGTH
 from amalthea_uros.simulate.results import ChainQuantity
@@ -32,7 +32,7 @@ RCLC = describe(ROOT / "samples" / "rclc-in-executor.yaml").system
 
 @pytest.fixture(autouse=True)
 def interpreted(monkeypatch):
-    monkeypatch.setattr(simulated, "_is_worth_compiling", lambda program, end: False)
+    monkeypatch.setattr(machine_code, "is_worth_it", lambda _seconds, _left: False)
 
 
 def simulate(*changes, system=THESIS, duration=200 * MS, sinks=(), **options):

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from support import ROOT
 
 from amalthea_uros import analyze_system, describe
-from amalthea_uros.simulate import system as simulated
+from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.results import ChainQuantity
 from amalthea_uros.simulate.system import simulate_system
@@ -22,7 +22,7 @@ SAMPLE = ROOT / "samples" / "rclc-in-executor.yaml"
 
 @pytest.fixture(autouse=True)
 def interpreted(monkeypatch):
-    monkeypatch.setattr(simulated, "_is_worth_compiling", lambda program, end: False)
+    monkeypatch.setattr(machine_code, "is_worth_it", lambda _seconds, _left: False)
 
 
 @pytest.fixture

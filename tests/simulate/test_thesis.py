@@ -5,6 +5,7 @@ S. R. Bappanadu, "Modeling and Timing Analysis of Micro-ROS Application on an Of
 """
 
 from fractions import Fraction
+from importlib.util import find_spec
 from math import sqrt
 
 import pytest
@@ -14,7 +15,6 @@ from amalthea_uros import describe
 from amalthea_uros.services.changes.sweep import parse_sweep
 from amalthea_uros.services.simulate import simulate, simulate_campaign
 from amalthea_uros.simulate import machine_code
-from amalthea_uros.simulate import system as simulated
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
@@ -53,7 +53,7 @@ JOBS = 299_999
 
 @pytest.fixture
 def interpreted(monkeypatch):
-    monkeypatch.setattr(simulated, "_is_worth_compiling", lambda program, end: False)
+    monkeypatch.setattr(machine_code, "is_worth_it", lambda _seconds, _left: False)
 
 
 def mean(metric, task, jobs):
@@ -103,7 +103,7 @@ def test_figure_6_6_in_a_short_run(interpreted):
     check_figure(simulation, jobs)
 
 
-@pytest.mark.skipif(not machine_code.is_available(), reason="five minutes take long without numba")
+@pytest.mark.skipif(find_spec("numba") is None, reason="five minutes take long without numba")
 def test_figure_6_6():
     simulation = simulate(ADVANCED, JOBS * MS, changes=["Message_Factor.phase=0ms"])
     check_figure(simulation, JOBS)

@@ -5,7 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from amalthea_uros.bridge.codecs import DIVISOR, FREQUENCY, TIME, TIMES, all_references, marked, reference, same_names
+from amalthea_uros.bridge.codecs import (
+    DIVISOR,
+    FREQUENCY,
+    TIME,
+    TIMES,
+    all_references,
+    build_time,
+    marked,
+    reference,
+    same_names,
+)
 from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.entries import Entry, Field, Table, all_parts, part, parts
 from amalthea_uros.bridge.kinds import Kind
@@ -13,27 +23,50 @@ from amalthea_uros.bridge.tables.conditions import ASSIGNMENTS, CONDITION
 from amalthea_uros.bridge.tables.distributions import NUMBER, TIME_SPAN
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.magnitudes import picoseconds
 from amalthea_uros.perf import stimuli as perf
 
 #: AMALTHEA has no attribute for the source of a counter; the key also says whether the phase is known.
 _SOURCE, _SOURCE_WITHOUT_PHASE = "source", "sourceWithoutPhase"
+#: Nor for irregular arrivals of the source, and for times that are late.
+_PERIOD_OF_ARRIVALS, _JITTER_OF_ARRIVALS, _JITTER = "arrivalPeriod", "arrivalJitter", "jitter"
 
 
 class _Counters(Table):
-    """Counters, with a custom property for the message or timer that they represent, and whether its phase is known."""
+    """Counters, with custom properties for the message or timer that they represent: its name, whether its phase is known, arrivals."""
 
     def build(self, item: Any, context: Building) -> Any:
         element = super().build(item, context)
         if item.source or not item.is_phase_known:
             key = _SOURCE if item.is_phase_known else _SOURCE_WITHOUT_PHASE
             element.custom_properties.append(am.CustomProperty(key=key, value=am.StringObject(value=item.source)))
+        if item.arrivals is not None:
+            times = {_PERIOD_OF_ARRIVALS: item.arrivals.period, _JITTER_OF_ARRIVALS: item.arrivals.jitter}
+            element.custom_properties += [
+                am.CustomProperty(key=key, value=build_time(time)) for key, time in times.items() if time is not None
+            ]
+        if item.jitter:
+            element.custom_properties.append(am.CustomProperty(key=_JITTER, value=am.LongObject(value=item.jitter)))
         return element
 
     def extract(self, element: Any, context: Extracting) -> Any:
+        numbers = {item.key: item.value.value for item in element.custom_properties if isinstance(item.value, am.LongObject)}
         stated = {item.key: item.value.value for item in element.custom_properties if isinstance(item.value, am.StringObject)}
         is_phase_known = _SOURCE_WITHOUT_PHASE not in stated
         source = stated.get(_SOURCE if is_phase_known else _SOURCE_WITHOUT_PHASE)
-        return replace(super().extract(element, context), source=source or "", is_phase_known=is_phase_known)
+        return replace(
+            super().extract(element, context),
+            source=source or "",
+            is_phase_known=is_phase_known,
+            arrivals=_extract_arrivals(element),
+            jitter=numbers.get(_JITTER) or 0,
+        )
+
+
+def _extract_arrivals(element: Any) -> perf.Arrivals | None:
+    times = {item.key: picoseconds(item.value) for item in element.custom_properties if isinstance(item.value, am.Time)}
+    jitter = times.get(_JITTER_OF_ARRIVALS)
+    return None if jitter is None else perf.Arrivals(period=times.get(_PERIOD_OF_ARRIVALS), jitter=jitter)
 
 
 #: Numbers that are not given have these values in every version: prescaler 1, offset 0.
