@@ -14,6 +14,8 @@ from amalthea_uros.simulate.layout import (
     CORES_END,
     DOMAINS,
     DOMAINS_END,
+    EVENTS,
+    EVENTS_END,
     IS_DUE,
     ITS_CORES,
     ITS_CORES_END,
@@ -28,7 +30,7 @@ from amalthea_uros.simulate.layout import (
     UNTIL,
 )
 from amalthea_uros.simulate.memory import Memory
-from amalthea_uros.simulate.operations import WINDOW
+from amalthea_uros.simulate.operations import ROWS_FULL, WINDOW
 
 
 def play(m: Memory) -> int:
@@ -82,6 +84,9 @@ def _arrive(m: Memory) -> int:
         publish_all(m, m[place + 1])
         place += ARRIVAL_SIZE
     while m[ARRIVAL] < place:
+        # While a job executes for long, others can be activated any number of times.
+        if m[EVENTS] >= m[EVENTS_END]:
+            return ROWS_FULL
         code = fire(m, m[m[ARRIVAL] + 1], 0)
         if code:
             return code

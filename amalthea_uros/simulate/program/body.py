@@ -158,6 +158,8 @@ class BodyCompiler:
             body.activities(scheduler.overhead, ())
         except UnknownDemandError as error:
             raise NotSimulatedError(str(error)) from None
+        if self.is_noted:
+            body.code.add(NOTE, int(EventKind.SCHEDULE), self.resources.entities.number(EntityKind.SCHEDULER, scheduler.name))
         body.code.add(END)
         return body.code
 
@@ -332,7 +334,8 @@ class _Body:
             self.code.mark(label)
 
     def _note_access(self, label: str, kind: AccessKind) -> None:
-        if self.owner.is_noted and label in self.resources.context.system.labels:
+        # In traces, schedulers do not access labels.
+        if self.owner.is_noted and self.process is not None and label in self.resources.context.system.labels:
             event = EventKind.READ if kind is AccessKind.READ else EventKind.WRITE
             self.code.add(NOTE, int(event), self.resources.entities.number(EntityKind.LABEL, label))
 
