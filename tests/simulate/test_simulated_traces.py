@@ -8,9 +8,11 @@ from support import ROOT, SHARED
 from traces import said
 
 from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.simulate import run_simulation
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.trace.readers import open_trace
+from amalthea_uros.trace.recorder import Recorder
 from amalthea_uros.trace.sinks import open_sink
 from amalthea_uros.trace.state_charts import StateCharts, check_trace
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
@@ -22,29 +24,10 @@ DURATION = 600 * US
 WINDOWS = [(0, DURATION), *((start * US, 400 * US) for start in (1, 27, 33, 48, 61, 102, 203))]
 
 
-class Kept:
-    """A sink that keeps all events."""
-
-    def __init__(self):
-        self.tables = []
-
-    def __call__(self, _entities):
-        return self
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_error):
-        pass
-
-    def write(self, table):
-        self.tables.append(table)
-
-
 def play(system, duration=DURATION, traced=None, sinks=()):
-    kept = Kept()
-    simulation = simulate_system(system, Options(duration=duration, traced=traced or (0, duration)), [kept, *sinks])
-    return simulation, kept.tables
+    recorder = Recorder()
+    simulation = simulate_system(system, Options(duration=duration, traced=traced or (0, duration)), [recorder, *sinks])
+    return simulation, [recorder.table]
 
 
 def problems(tables):
@@ -152,3 +135,9 @@ def test_a_part_of_a_run_has_the_same_events_as_the_whole(name):
     unseen = (EventKind.RUNNABLE_SUSPEND, EventKind.RUNNABLE_RESUME)  # of runnables that began before
     begun = {row[2:6] for row in part if row[1] == EventKind.RUNNABLE_START}
     assert part == [row for row in whole if row[1] not in unseen or row[2:6] in begun]
+
+
+def test_the_library_gives_the_events():
+    simulation = run_simulation(SYSTEMS["a spinlock"], "600 us", trace=True)
+    assert said(simulation.trace) == said(play(SYSTEMS["a spinlock"])[1])
+    assert run_simulation(SYSTEMS["a spinlock"], "600 us").trace is None
