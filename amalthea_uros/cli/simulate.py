@@ -86,6 +86,12 @@ def _window(text: str) -> tuple[Time, Time]:
     "--trace-window", type=Parsed("FROM..TO", _window), help="Write only the events of this part of the run, e.g. 10ms..20ms."
 )
 @click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what all processes do in a part of the run, as SVG.")
+@click.option("--gantt-of", metavar="PROCESS", help="Show the longest response time of this process in --gantt.")
+@click.option(
+    "--chain",
+    metavar="NAME",
+    help="Show the longest reduced reaction time of this chain in --gantt, with its way through the jobs.",
+)
 @click.option(
     "--timeline",
     "timelines",
@@ -137,6 +143,8 @@ def command(
     traces: tuple[Path, ...],
     trace_window: tuple[Time, Time] | None,
     gantt: Path | None,
+    gantt_of: str | None,
+    chain: str | None,
     timelines: tuple[tuple[str, Path], ...],
     histograms: tuple[tuple[str, Path], ...],
     window: tuple[Time, Time] | None,
@@ -154,7 +162,7 @@ def command(
     fails; with Ctrl-C, the runs that are finished are shown and the exit code is 130.
     """
     is_campaign = bool(sweeps) or runs > 1
-    pictures = Pictures(gantt, timelines, histograms, window)
+    pictures = Pictures(gantt, timelines, histograms, window, gantt_of, chain)
     _check_targets(table, traces, pictures)
     if is_campaign and (traces or pictures.paths):
         raise click.UsageError("traces and pictures are made of a single run, without --sweep and --runs")
