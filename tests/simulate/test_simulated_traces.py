@@ -3,14 +3,18 @@
 from functools import partial
 
 import pytest
-from hand_made_systems import SYSTEMS, Proc, system, ticks
+from hand_made_systems import READ, SYSTEMS, Proc, access, system, ticks
 from support import ROOT, SHARED
 from traces import said
 
+from amalthea_uros.perf.activities import Call, Demand, Execute
+from amalthea_uros.perf.distributions import Uniform
+from amalthea_uros.perf.software import Label, Runnable
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.simulate import run_simulation
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.trace.readers import open_trace
 from amalthea_uros.trace.recorder import Recorder
 from amalthea_uros.trace.sinks import open_sink
@@ -141,3 +145,13 @@ def test_the_library_gives_the_events():
     simulation = run_simulation(SYSTEMS["a spinlock"], "600 us", trace=True)
     assert said(simulation.trace) == said(play(SYSTEMS["a spinlock"])[1])
     assert run_simulation(SYSTEMS["a spinlock"], "600 us").trace is None
+
+
+def test_a_trace_changes_nothing():
+    varying = Execute(demand=Demand(Uniform(lower=1, upper=9)))
+    runnables = (Runnable(name="inner", activities=(access("data", READ), varying, varying)),)
+    calls = (Call(runnable="inner"), Call(runnable="inner"), varying)
+    built = system(Proc("task", calls, 60, priority=1), runnables=runnables, labels=(Label(name="data"),))
+    untraced, traced = (run_simulation(built, "60 ms", trace=trace)["task"].metrics for trace in (False, True))
+    assert untraced == traced
+    assert untraced[JobMetric.RESPONSE_TIME].min < untraced[JobMetric.RESPONSE_TIME].max

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -176,17 +177,18 @@ class _Body:
     code: Code = field(default_factory=Code)
     end: Label = field(default_factory=Label)
     number: int = 0
+    places: collections.Counter[int] = field(default_factory=collections.Counter)
     masks: int = 0
 
     @property
     def resources(self) -> Resources:
         return self.owner.resources
 
-    @property
-    def place(self) -> str:
-        """What draws values here: the random numbers of one place do not depend on others."""
+    def _place(self) -> str:
+        """What draws values here, and nowhere else: the random numbers of a place depend neither on others nor on a trace."""
         name = self.process.name if self.process is not None else f"decision on {self.core}"
-        return f"{name} activity {self.number} {len(self.code.operations)}"
+        self.places[self.number] += 1
+        return f"{name} activity {self.number} {self.places[self.number]}"
 
     def compile(self, scheduler: Scheduler | None) -> Code:
         process, model = self.process, self.resources.context.demand_model
@@ -229,10 +231,10 @@ class _Body:
     def _demand(self, demand: Demand | None) -> None:
         if demand is not None:
             ticks = self.resources.context.demand_model.ticks(demand, self.core)
-            self._execute(self.resources.ticks(ticks, self.core, Fraction(1), self.place))
+            self._execute(self.resources.ticks(ticks, self.core, Fraction(1), self._place()))
 
     def _frame(self, frame: Frame) -> None:
-        self._execute(self.resources.frame(frame, self.core, self.place))
+        self._execute(self.resources.frame(frame, self.core, self._place()))
 
     def _access(self, name: str, kind: AccessKind, times: Count | float | None) -> None:
         model = self.resources.context.demand_model
@@ -269,7 +271,7 @@ class _Body:
             case ExecutionNeed(needs=needs):
                 for name, need in needs:
                     factor = self.resources.context.demand_model.ticks_per_unit(name, self.core)
-                    self._execute(self.resources.ticks(need, self.core, factor, f"{self.place} {name}"))
+                    self._execute(self.resources.ticks(need, self.core, factor, f"{self._place()} {name}"))
             case LabelAccess(label=label, kind=kind, times=times):
                 self._access(label, kind, times)
                 self._note_access(label, kind)
@@ -381,7 +383,7 @@ class _Body:
         least, mean, most = count_of(call.times)
         loop, done = self.resources.image.record(LOOP_SIZE), Label()
         passes = Statistics(lower=least, average=float(mean), upper=most)
-        self.code.add(REPEAT, loop, self.resources.count(passes, f"{self.place} passes"))
+        self.code.add(REPEAT, loop, self.resources.count(passes, f"{self._place()} passes"))
         again = self.code.here()
         self.code.add(AGAIN, loop, done)
         return again, done
@@ -411,7 +413,7 @@ class _Body:
         ordered, _ = image.items([0] * total)
         parts, _ = image.items([0] * total)
         group = image.record(GROUP_SIZE, {ORDERED_PARTS: ordered, PARTS: parts, PARTS_TOTAL: total})
-        self.code.add(SHUFFLE, group, self.resources.order(f"{self.place} order"))
+        self.code.add(SHUFFLE, group, self.resources.order(f"{self._place()} order"))
         following = self.code.here()
         self.code.add(NEXT, group, done)
         labels = []
@@ -434,7 +436,7 @@ class _Body:
         else:
             only, jump = -1, Label()
             weights = [branch.weight for branch in switch.branches]
-            self.code.add(CHOOSE, self.resources.choice(weights, f"{self.place} branch"), table)
+            self.code.add(CHOOSE, self.resources.choice(weights, f"{self._place()} branch"), table)
         for index, branch in enumerate(switch.branches):
             labels.append(self.code.here())
             if index == only:
