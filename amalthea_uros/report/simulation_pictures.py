@@ -25,7 +25,7 @@ from amalthea_uros.services.recording import record_events
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate import results
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.results import ChainObservation, ChainQuantity, MetricObservation, ProcessObservation
+from amalthea_uros.simulate.results import ChainObservation, ChainQuantity, MetricObservation, Occurrence, ProcessObservation
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import Time, time_text
@@ -38,11 +38,11 @@ Window: TypeAlias = tuple[Time, Time]
 
 @dataclass(frozen=True, slots=True)
 class _View:
-    """A part of a run; `way` is what the chart shows beside the jobs: chain, start, end of its latency."""
+    """A part of a run; `way` is what it shows beside the jobs: a chain, its stimulus, and from when to when the latency is."""
 
     title: str
     window: Window
-    way: tuple[str, Time, Time] | None = None
+    way: tuple[str, Occurrence, Time, Time] | None = None
 
 
 def gantt_picture(
@@ -105,7 +105,8 @@ def _longest_latency(chain: ChainObservation) -> _View:
         reason = chain.reason or "simulate for longer with --duration TIME"
         raise InvalidArgumentError(f"no response of the chain {chain.name!r} was observed in the run: {reason}")
     start, end = _whole(latency)
-    return _View(f"longest reduced reaction time of {chain.name}", default_window(start, end), (chain.name, start, end))
+    title = f"longest reduced reaction time of {chain.name}"
+    return _View(title, default_window(start, end), (chain.name, latency.at_max, start, end))
 
 
 def _whole(observed: MetricObservation) -> Window:
@@ -113,16 +114,14 @@ def _whole(observed: MetricObservation) -> Window:
     return floor(observed.at_max.time), ceil(observed.at_max.time + observed.max)
 
 
-def _way(events: EventTable, chain: str, start: Time, end: Time) -> ChainWay:
-    """The way of what reaches the end of a chain then: the stimulus that occurs at the start, or a newer one."""
-    is_step = (events.kind == EventKind.CHAIN_STEP) & (events.time >= start) & (events.time <= end)
+def _way(events: EventTable, chain: str, stimulus: Occurrence, start: Time, end: Time) -> ChainWay:
+    """The way of what is the response to a stimulus of a chain: of this stimulus, or of a newer one that overtakes it."""
+    is_step = (events.kind == EventKind.CHAIN_STEP) & (events.target_instance >= stimulus.instance)
     is_step &= np.array([entity == Entity(EntityKind.CHAIN, chain) for entity in events.entities])[events.target]
     steps = events.where(is_step)
-    # Under LET, the response comes later than the last step.
     last = steps.where(steps.note == steps.note.max(initial=0))
-    return replace(
-        chain_way(steps, chain, int(last.target_instance[-1])) if len(last) else ChainWay(chain, ()), start=start, end=end
-    )
+    way = chain_way(steps, chain, int(last.target_instance[0])) if len(last) else ChainWay(chain, ())
+    return replace(way, start=start, end=end)
 
 
 def check_window_of(options: Options, window: Window) -> None:
