@@ -28,7 +28,7 @@ from amalthea_uros.services.changes.change import Change
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult, plan_simulation, simulate_campaign, simulate_plan
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
-from amalthea_uros.units import Time, parse_time
+from amalthea_uros.units import Time, parse_time, time_text
 
 #: As a shell reports a process that Ctrl-C ended: 128 and the number of the signal.
 _INTERRUPTED = 130
@@ -174,6 +174,9 @@ def command(
         campaign = _campaign(paths, options, changes, sweeps, runs, jobs, cluster)
         _show_campaign(campaign, table, outputs)
         sys.exit(_campaign_code(campaign))
+    if trace_window is not None and trace_window[0] >= duration:
+        start, end = time_text(trace_window[0]), time_text(duration)
+        raise click.UsageError(f"the window of the trace starts at {start}, but the run ends at {end}")
     plan = plan_simulation(paths, options, changes)
     pictures.check(plan)
     result = simulate_plan(plan, traces, with_metrics=with_metrics)

@@ -281,6 +281,14 @@ WRONG = {
     "a process that does not exist": (["--timeline", "X=x.svg"], "unknown process 'X'"),
     "a histogram of nothing": (["--histogram", "X=x.svg"], "unknown process or chain 'X'"),
     "a quantity that does not exist": (["--histogram", "Control_Function.load=x.svg"], "unknown quantity 'load'; known: net"),
+    "a chain that does not exist": (["--gantt", "g.svg", "--chain", "X"], "unknown chain 'X'; known: factor-to-output"),
+    "a process of the chart that does not exist": (["--gantt", "g.svg", "--gantt-of", "X"], "unknown process 'X'"),
+    "a chain without a chart": (["--chain", "factor-to-output"], "add --gantt FILE"),
+    "two choices of a window": (
+        ["--gantt", "g.svg", "--gantt-of", "Control_Function", "--window", "1ms..2ms"],
+        "--gantt-of and --window each choose what --gantt shows",
+    ),
+    "a trace window after the end": (["--trace", "t.btf", "--trace-window", "3s..4s"], "the run ends at 1 s"),
     "a window after the end": (["--window", "3s..4s", "--gantt", "g.svg"], "the run ends at 1 s"),
     "no runs": (["--runs", "0"], "x>=1"),
 }
