@@ -159,7 +159,7 @@ def command(
 
     MODEL_OR_YAML is an app.yaml, one or more .amxmi files, or a folder of .amxmi files. Runs with the same seed are equal. What was
     observed is no bound: see `amuros analyze` for those. The exit code is 1 if a limit is missed, an activation is lost, or a run
-    fails; with Ctrl-C, the runs that are finished are shown and the exit code is 130.
+    fails; with Ctrl-C, the runs of a campaign that are finished are shown, and the exit code is 130.
     """
     is_campaign = bool(sweeps) or runs > 1
     pictures = Pictures(gantt, timelines, histograms, window, gantt_of, chain)
@@ -179,9 +179,13 @@ def command(
         raise click.UsageError(f"the window of the trace starts at {start}, but the run ends at {end}")
     plan = plan_simulation(paths, options, changes)
     pictures.check(plan)
-    result = simulate_plan(plan, traces, with_metrics=with_metrics)
-    _show(result, table, outputs)
-    pictures.write(result)
+    try:
+        result = simulate_plan(plan, traces, with_metrics=with_metrics)
+        _show(result, table, outputs)
+        pictures.write(result)
+    except KeyboardInterrupt:
+        click.echo("interrupted: the run is not finished; traces of unfinished runs are not kept", err=True)
+        sys.exit(_INTERRUPTED)
     sys.exit(1 if result.is_failed else 0)
 
 

@@ -1,9 +1,11 @@
 """`amuros simulate` as its user sees it, with a simulation of which the observations are known beforehand."""
 
 import json
+import signal
 import subprocess
 import sys
 import textwrap
+import time
 from fractions import Fraction
 from types import ModuleType
 
@@ -232,6 +234,19 @@ def test_a_trace_of_a_part_of_the_run(run, tmp_path):
     }
     assert set(times["all"]) == {job * MS + at for job in range(6) for at in (0, US) if job * MS + at <= 5 * MS}
     assert set(times["part"]) == {2 * MS, 2 * MS + US, 3 * MS}
+
+
+def test_an_interrupted_run_leaves_no_trace(tmp_path):
+    trace = tmp_path / "long.btf"
+    command = [sys.executable, "-m", "amalthea_uros", "simulate", ADVANCED, "--duration", "10h", "--trace", trace]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while not any(tmp_path.iterdir()):  # what has been written so far
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        output, errors = process.communicate()
+    assert (process.returncode, output) == (130, "")
+    assert errors == "interrupted: the run is not finished; traces of unfinished runs are not kept\n"
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_pictures(run, tmp_path):
