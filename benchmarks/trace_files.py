@@ -1,4 +1,4 @@
-"""Measure how fast traces are written, and with how much memory: python benchmarks/traces.py [seconds of model time]
+"""Measure how fast traces are written, and with how much memory: python benchmarks/trace_files.py [seconds of model time]
 
 The events are those of the sample drive-and-lift, about 10,000 in each second of model time; 1000 s are ten million. Each format is
 written in a process of its own.
