@@ -9,7 +9,8 @@ This module is the public interface:
 
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
-- simulations of files, models and systems: `run_simulation`; changes of their values: `parse_change`, `parse_sweep`
+- simulations of files, models and systems: `run_simulation`; their events: `EventTable`; changes of values: `parse_change`,
+  `parse_sweep`
 - AMALTHEA models: `Model`, `check`, `extract`; all AMALTHEA classes are in `amuros.am`
 - systems of the generic performance model: `analyze_system`, `sensitivity`, `propose_priorities`, `paths`, `build_model`; their classes
   are in `amuros.perf`
@@ -95,6 +96,10 @@ if TYPE_CHECKING:
     from amalthea_uros.timing.dataflow.paths import paths as paths
     from amalthea_uros.timing.settings import Memory as Memory
     from amalthea_uros.timing.settings import Settings as Settings
+    from amalthea_uros.trace.table import Entity as Entity
+    from amalthea_uros.trace.table import EntityKind as EntityKind
+    from amalthea_uros.trace.table import EventKind as EventKind
+    from amalthea_uros.trace.table import EventTable as EventTable
     from amalthea_uros.units import parse_time as parse_time
     from amalthea_uros.uros.assemble import Assembly as Assembly
     from amalthea_uros.xmi.load import load as load
@@ -143,6 +148,7 @@ _NAMES = {
     "simulate.results": ("Simulation",),
     "timing.dataflow.paths": ("paths",),
     "timing.settings": ("Memory", "Settings"),
+    "trace.table": ("Entity", "EntityKind", "EventKind", "EventTable"),
     "units": ("parse_time",),
     "uros.assemble": ("Assembly",),
     "xmi.load": ("load",),

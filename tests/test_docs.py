@@ -79,3 +79,9 @@ def test_the_sample_is_what_its_script_builds(tmp_path):
 def test_the_picture_shows_what_is_printed(picture, command, tmp_path):
     subprocess.run([sys.executable, ROOT / "tools" / "draw_terminal.py", tmp_path / picture, *command], check=True)
     assert (tmp_path / picture).read_text() == (ROOT / "docs" / "images" / picture).read_text()
+
+
+def test_the_gantt_chart_is_what_the_command_draws(tmp_path):
+    command = ["simulate", "samples/bodas-test-advanced.yaml", "--gantt", tmp_path / "gantt.svg", "--chain", "factor-to-output"]
+    subprocess.run([sys.executable, "-m", "amalthea_uros", *command], check=True, cwd=ROOT, stdout=subprocess.DEVNULL)
+    assert (tmp_path / "gantt.svg").read_text() == (ROOT / "docs" / "images" / "simulation-gantt.svg").read_text()

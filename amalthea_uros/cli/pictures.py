@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -23,12 +24,15 @@ class Pictures:
     timelines : of processes
     histograms : of processes, chains, or one of their quantities
     window : the part of the run that is drawn; None: around a job that is chosen for each picture
+    gantt_of, chain : the process or the chain that decides about the part for the Gantt chart
     """
 
     gantt: Path | None
     timelines: tuple[tuple[str, Path], ...]
     histograms: tuple[tuple[str, Path], ...]
     window: tuple[Time, Time] | None
+    gantt_of: str | None = None
+    chain: str | None = None
 
     @property
     def paths(self) -> tuple[Path, ...]:
@@ -41,18 +45,31 @@ class Pictures:
 
         Raises
         ------
-        InvalidArgumentError : a process, chain or quantity does not exist, or the window is after the end of the run.
+        InvalidArgumentError : a process, chain or quantity does not exist, the window is after the end of the run, or two
+            options contradict each other.
         """
+        self._check_choice()
         if not self.paths:
             return
         from amalthea_uros.report.simulation_pictures import check_window_of, quantity_of
         from amalthea_uros.services.names import require
 
         require("process", (process for process, _ in self.timelines), plan.system.processes)
+        require("process", [self.gantt_of] if self.gantt_of is not None else [], plan.system.processes)
+        require("chain", [self.chain] if self.chain is not None else [], plan.system.chains)
         for name, _ in self.histograms:
             quantity_of(name, plan.system)
         if self.window is not None:
             check_window_of(plan.options, self.window)
+
+    def _check_choice(self) -> None:
+        choices = {"--gantt-of": self.gantt_of, "--chain": self.chain}
+        chosen = [option for option, value in choices.items() if value is not None]
+        if chosen and self.gantt is None:
+            raise InvalidArgumentError(f"{chosen[0]} chooses what --gantt FILE shows; add --gantt FILE")
+        if len(chosen) > 1 or (chosen and self.window is not None):
+            others = [*chosen, *(["--window"] if self.window is not None else [])]
+            raise InvalidArgumentError(f"{' and '.join(others)} each choose what --gantt shows; use only one of them")
 
     def write(self, result: SimulationResult) -> None:
         """Draw and write all of them.
@@ -73,7 +90,7 @@ class Pictures:
         from amalthea_uros.report import simulation_pictures as draw
 
         if self.gantt is not None:
-            yield self.gantt, partial(draw.gantt_picture, window=self.window)
+            yield self.gantt, partial(draw.gantt_picture, window=self.window, process=self.gantt_of, chain=self.chain)
         for process, path in self.timelines:
             yield path, partial(draw.timeline_picture, process=process, window=self.window)
         for name, path in self.histograms:

@@ -28,7 +28,7 @@ from amalthea_uros.services.changes.change import Change
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult, plan_simulation, simulate_campaign, simulate_plan
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
-from amalthea_uros.units import Time, parse_time
+from amalthea_uros.units import Time, parse_time, time_text
 
 #: As a shell reports a process that Ctrl-C ended: 128 and the number of the signal.
 _INTERRUPTED = 130
@@ -97,6 +97,12 @@ def _labels(text: str) -> tuple[str, ...]:
     "--trace-window", type=Parsed("FROM..TO", _window), help="Write only the events of this part of the run, e.g. 10ms..20ms."
 )
 @click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what all processes do in a part of the run, as SVG.")
+@click.option("--gantt-of", metavar="PROCESS", help="Show the longest response time of this process in --gantt.")
+@click.option(
+    "--chain",
+    metavar="NAME",
+    help="Show the longest reduced reaction time of this chain in --gantt, with its way through the jobs.",
+)
 @click.option(
     "--timeline",
     "timelines",
@@ -150,6 +156,8 @@ def command(
     traces: tuple[Path, ...],
     trace_window: tuple[Time, Time] | None,
     gantt: Path | None,
+    gantt_of: str | None,
+    chain: str | None,
     timelines: tuple[tuple[str, Path], ...],
     histograms: tuple[tuple[str, Path], ...],
     window: tuple[Time, Time] | None,
@@ -164,10 +172,10 @@ def command(
 
     MODEL_OR_YAML is an app.yaml, one or more .amxmi files, or a folder of .amxmi files. Runs with the same seed are equal. What was
     observed is no bound: see `amuros analyze` for those. The exit code is 1 if a limit is missed, an activation is lost, or a run
-    fails; with Ctrl-C, the runs that are finished are shown and the exit code is 130.
+    fails; with Ctrl-C, the runs of a campaign that are finished are shown, and the exit code is 130.
     """
     is_campaign = bool(sweeps) or runs > 1
-    pictures = Pictures(gantt, timelines, histograms, window)
+    pictures = Pictures(gantt, timelines, histograms, window, gantt_of, chain)
     _check_targets(table, traces, pictures)
     if is_campaign and (traces or pictures.paths):
         raise click.UsageError("traces and pictures are made of a single run, without --sweep and --runs")
@@ -179,11 +187,18 @@ def command(
         campaign = _campaign(paths, options, changes, sweeps, runs, with_bus, jobs, cluster)
         _show_campaign(campaign, table, outputs)
         sys.exit(_campaign_code(campaign))
+    if trace_window is not None and trace_window[0] >= duration:
+        start, end = time_text(trace_window[0]), time_text(duration)
+        raise click.UsageError(f"the window of the trace starts at {start}, but the run ends at {end}")
     plan = plan_simulation(paths, options, changes, with_bus=with_bus)
     pictures.check(plan)
-    result = simulate_plan(plan, traces, with_metrics=with_metrics)
-    _show(result, table, outputs)
-    pictures.write(result)
+    try:
+        result = simulate_plan(plan, traces, with_metrics=with_metrics)
+        _show(result, table, outputs)
+        pictures.write(result)
+    except KeyboardInterrupt:
+        click.echo("interrupted: the run is not finished; traces of unfinished runs are not kept", err=True)
+        sys.exit(_INTERRUPTED)
     sys.exit(1 if result.is_failed else 0)
 
 

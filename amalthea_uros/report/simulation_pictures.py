@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
-from amalthea_uros.report.pictures.from_events import jobs_of
+from amalthea_uros.report.pictures.chain_ways import ChainWay
+from amalthea_uros.report.pictures.from_events import chain_way, jobs_of
 from amalthea_uros.report.pictures.gantt import GanttChart, gantt
 from amalthea_uros.report.pictures.histogram import Histogram, Series, histogram
 from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind
@@ -21,26 +25,103 @@ from amalthea_uros.services.recording import record_events
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate import results
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.results import ChainQuantity, MetricObservation, ProcessObservation
+from amalthea_uros.simulate.results import ChainObservation, ChainQuantity, MetricObservation, Occurrence, ProcessObservation
 from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import Time, time_text
+
+if TYPE_CHECKING:
+    from amalthea_uros.trace.table import EventTable
 
 Window: TypeAlias = tuple[Time, Time]
 
 
-def gantt_picture(result: SimulationResult, window: Window | None) -> str:
-    """All processes in a window; None: around the job that comes closest to its deadline, or responds last."""
-    start, end = window or _window_around(min(_with_jobs(result), key=_distance))
-    rows = jobs_of(record_events(result, start, end), start, end, _deadlines(result))
-    return gantt(GanttChart("Simulation", start, end, rows))
+@dataclass(frozen=True, slots=True)
+class _View:
+    """A part of a run; `way` is what it shows beside the jobs: a chain, its stimulus, and from when to when the latency is."""
+
+    title: str
+    window: Window
+    way: tuple[str, Occurrence, Time, Time] | None = None
+
+
+def gantt_picture(
+    result: SimulationResult, *, window: Window | None = None, process: str | None = None, chain: str | None = None
+) -> str:
+    """All processes in a part of the run.
+
+    Parameters
+    ----------
+    window : the part; None: around the job that comes closest to its deadline, or responds last
+    process : the part around its longest response time
+    chain : the part around its longest reduced reaction time, with the way of the effect through the jobs
+
+    Raises
+    ------
+    InvalidArgumentError : nothing was observed, or nothing happens there.
+    """
+    view = _view(result, window, process, chain)
+    start, end = view.window
+    events = record_events(result, start, end)
+    ways = () if view.way is None else (_way(events, *view.way),)
+    rows = jobs_of(events, start, end, _deadlines(result))
+    return gantt(GanttChart(f"{_model(result)}: {view.title}", start, end, rows, ways))
 
 
 def timeline_picture(result: SimulationResult, process: str, window: Window | None) -> str:
     """The states of a process in a window; None: around its job with the longest response time."""
-    start, end = window or _window_around(result.simulation.processes[process])
+    start, end = window or _longest_response(result.simulation.processes[process]).window
     cores = jobs_of(record_events(result, start, end), start, end, _deadlines(result))
     rows = {row.name: row for core in cores for row in core.rows}
-    return state_timeline(StateTimeline(f"States of {process}", start, end, rows.get(process, ProcessRow(process, ()))))
+    title = f"{_model(result)}: states of {process}"
+    return state_timeline(StateTimeline(title, start, end, rows.get(process, ProcessRow(process, ()))))
+
+
+def _model(result: SimulationResult) -> str:
+    return ", ".join(path.name for path in result.paths)
+
+
+def _view(result: SimulationResult, window: Window | None, process: str | None, chain: str | None) -> _View:
+    if chain is not None:
+        return _longest_latency(result.simulation.chains[chain])
+    if process is not None:
+        return _longest_response(result.simulation.processes[process])
+    if window is not None:
+        return _View("part of a run", window)
+    return _longest_response(min(_with_jobs(result), key=_distance))
+
+
+def _longest_response(process: ProcessObservation) -> _View:
+    response = process.response_time
+    if response is None:
+        raise InvalidArgumentError(f"no job of {process.name!r} ended in the run; say with --window FROM..TO what to show")
+    start, end = _whole(response)
+    return _View(f"longest response time of {process.name}", default_window(start, end))
+
+
+def _longest_latency(chain: ChainObservation) -> _View:
+    latency = chain.quantities.get(ChainQuantity.REDUCED_REACTION_TIME)
+    if latency is None:
+        reason = chain.reason or "simulate for longer with --duration TIME"
+        raise InvalidArgumentError(f"no response of the chain {chain.name!r} was observed in the run: {reason}")
+    start, end = _whole(latency)
+    title = f"longest reduced reaction time of {chain.name}"
+    return _View(title, default_window(start, end), (chain.name, latency.at_max, start, end))
+
+
+def _whole(observed: MetricObservation) -> Window:
+    """From when to when the greatest value is, in whole picoseconds."""
+    return floor(observed.at_max.time), ceil(observed.at_max.time + observed.max)
+
+
+def _way(events: EventTable, chain: str, stimulus: Occurrence, start: Time, end: Time) -> ChainWay:
+    """The way of what is the response to a stimulus of a chain: of this stimulus, or of a newer one that overtakes it."""
+    is_step = (events.kind == EventKind.CHAIN_STEP) & (events.target_instance >= stimulus.instance)
+    is_step &= np.array([entity == Entity(EntityKind.CHAIN, chain) for entity in events.entities])[events.target]
+    steps = events.where(is_step)
+    last = steps.where(steps.note == steps.note.max(initial=0))
+    way = chain_way(steps, chain, int(last.target_instance[0])) if len(last) else ChainWay(chain, ())
+    return replace(way, start=start, end=end)
 
 
 def check_window_of(options: Options, window: Window) -> None:
@@ -101,7 +182,8 @@ def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: 
     if deadline is not None:
         marks.append(Mark("deadline", deadline, MarkKind.LIMIT))
     things = "jobs" if quantity in tuple(JobMetric) else "observations"
-    chart = Histogram(f"{words.capitalize()} of {name}", edges, (Series("simulated", counts),), tuple(marks), words, things)
+    title = f"{_model(result)}: {words} of {name}"
+    chart = Histogram(title, edges, (Series("simulated", counts),), tuple(marks), words, things)
     return histogram(chart)
 
 
@@ -128,11 +210,3 @@ def _distance(process: ProcessObservation) -> tuple[bool, Fraction]:
     if process.margin is not None:
         return False, process.margin
     return True, -process.response_time.max if process.response_time is not None else Fraction(0)
-
-
-def _window_around(process: ProcessObservation) -> Window:
-    response = process.response_time
-    if response is None:
-        raise InvalidArgumentError(f"no job of {process.name!r} ended in the run; say with --window FROM..TO what to show")
-    activation = response.at_max.time
-    return default_window(floor(activation), ceil(activation + response.max))

@@ -237,16 +237,21 @@ def run_simulation(
     mode: Mode | str = Mode.SAMPLED,
     settings: Settings | None = None,
     changes: Iterable[str | Change] = (),
+    trace: bool = False,
     trace_paths: Iterable[StrPath] = (),
     labels: Iterable[str] = (),
 ) -> Simulation:
     """Simulate files, an AMALTHEA model, or a system.
+
+    >>> simulation = run_simulation("app.yaml", "100 ms", trace=True)  # doctest: +SKIP
+    >>> simulation.trace.to_dataframe()                                # doctest: +SKIP
 
     Parameters
     ----------
     duration : model time, such as "5 min", or picoseconds
     mode : how values that vary are chosen: "sampled", "worst", "best" or "average"
     changes : such as "Executor_Task.period=2ms"
+    trace : keep the events of the whole run in memory, about 50 bytes for each
     trace_paths : files for the events of the whole run; the suffix says which format
     labels : of which accesses and ages of values are observed; "all": of all
 
@@ -258,12 +263,16 @@ def run_simulation(
     parsed = [change if isinstance(change, Change) else parse_change(change) for change in changes]
     system, settings = apply(system, settings or Settings(), parsed)
     require_settings(settings, system)
-    time, openers = _duration(duration), [*map(_trace_opener, trace_paths)]
-    traced = (0, time) if openers else None
+    from amalthea_uros.trace.recorder import Recorder
+
     observed = tuple(labels)
     require_labels(observed, system)
+    time, recorder = _duration(duration), Recorder()
+    sinks: list[OpenSink] = [*map(_trace_opener, trace_paths), *([recorder] if trace else [])]
+    traced = (0, time) if sinks else None
     options = Options(duration=time, seed=seed, mode=_mode(mode), settings=settings, traced=traced, labels=observed)
-    return _simulated(system, options, openers)
+    simulation = _simulated(system, options, sinks)
+    return replace(simulation, trace=recorder.table) if trace else simulation
 
 
 def simulate_campaign(

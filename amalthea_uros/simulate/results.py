@@ -21,6 +21,8 @@ from amalthea_uros.units import Time, time_text
 if TYPE_CHECKING:
     import pandas as pd
 
+    from amalthea_uros.trace.table import EventTable
+
 #: A cell of a table of runs.
 Cell: TypeAlias = int | float | str | None
 
@@ -351,6 +353,7 @@ class Simulation:
     labels : those that were asked for
     assumptions : on which the run is based
     findings : what the simulation does not take into account
+    trace : the events, if they were wanted
     """
 
     duration: Time
@@ -364,6 +367,7 @@ class Simulation:
     requirements: Results[RequirementObservation] = field(default_factory=Results)
     assumptions: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
+    trace: EventTable | None = field(default=None, compare=False)
 
     def __getitem__(self, process: str) -> ProcessObservation:
         """The observations of a process by its name.

@@ -133,7 +133,7 @@ class _Run:
 
     def _write(self, rows: NDArray[np.int64]) -> None:
         """Hand events on to all sinks."""
-        table = self.suspensions.insert(self.semaphores.insert(_event_table(rows, self.program)))
+        table = self.suspensions.insert(self.semaphores.complete(_event_table(rows, self.program)))
         for sink in self.sinks:
             sink.write(table)
 

@@ -58,6 +58,8 @@ class TraceEncoder:
         self._entities = entities
         self._timeline = Timeline()
         self._tracks: dict[int, _Track] = {}
+        #: The fields that do not depend on the time, by track, state and entity.
+        self._places: dict[tuple[int, str, int], str] = {}
 
     def begin(self) -> bytes:
         """The names of the groups of tracks."""
@@ -83,8 +85,12 @@ class TraceEncoder:
                 yield f",\n{self._slice(begin, end)}"
 
     def _slice(self, mark: Mark, end: int) -> str:
-        name = json.dumps(mark.state or self._entities[mark.entity].name, ensure_ascii=False)
-        place = f'"ph":"X","pid":{self._group(mark.track)},"tid":{_FIRST + mark.track},"name":{name}'
+        key = mark.track, mark.state, mark.entity
+        place = self._places.get(key)
+        if place is None:
+            name = json.dumps(mark.state or self._entities[mark.entity].name, ensure_ascii=False)
+            place = f'"ph":"X","pid":{self._group(mark.track)},"tid":{_FIRST + mark.track},"name":{name}'
+            self._places[key] = place
         times = f'"ts":{_microseconds(mark.time)},"dur":{_microseconds(end - mark.time)}'
         return f"{{{place},{times}{_flow(mark)}}}"
 

@@ -26,6 +26,10 @@ _CLEARED, _NEEDS_STATE = 1, 2  # SequenceFlags
 _SEQUENCE = integer(_SEQUENCE_ID, 1)
 _FLAGS = integer(_SEQUENCE_FLAGS, _NEEDS_STATE)
 
+#: What comes before the fields of an event, and before those of the packet around it, by their lengths, which are small.
+_TRACK_EVENT_HEADS = [message(_TRACK_EVENT, bytes(length)).removesuffix(bytes(length)) for length in range(64)]
+_PACKET_HEADS = [message(_TRACE_PACKET, bytes(length)).removesuffix(bytes(length)) for length in range(128)]
+
 _CORES, _PROCESSES = 1, 2
 _GROUPS = {_CORES: "Cores", _PROCESSES: "Tasks and ISRs"}
 #: The tracks and the names of entities have numbers from here on; before them are the groups and the states.
@@ -41,7 +45,7 @@ class TraceEncoder:
         self._timeline = Timeline()
         self._tracks: set[int] = set()
         self._names: set[int] = set()
-        self._events: dict[tuple[int, Change, str, int, int], bytes] = {}
+        self._events: dict[tuple[object, ...], bytes] = {}
 
     def begin(self) -> bytes:
         """The groups of tracks, and the names of the states."""
@@ -63,23 +67,27 @@ class TraceEncoder:
 
     def _encoded(self, marks: Iterable[Mark]) -> bytes:
         packets: list[bytes] = []
+        time, stamp = -1, b""
         for mark in marks:
-            key = mark.track, mark.change, mark.state, mark.entity, mark.flow
+            key = mark[1:5]  # what comes again, other than flows
             fields = self._events.get(key)
             if fields is None:
                 packets += self._new_packets(mark)
-                fields = message(_TRACK_EVENT, self._event(mark)) + _FLAGS
-                if not mark.flow:  # others do not come again
-                    self._events[key] = fields
-            packets.append(_packet(integer(_TIMESTAMP, mark.time // 1000), fields))
+                fields = self._events[key] = self._event(mark)
+            if mark.flow:
+                fields = fields + fixed64(_FLOW_IDS, mark.flow)
+            if mark.time != time:
+                time = mark.time
+                stamp = _SEQUENCE + _FLAGS + integer(_TIMESTAMP, time // 1000)
+            inner = _TRACK_EVENT_HEADS[len(fields)]
+            packets += (_PACKET_HEADS[len(stamp) + len(inner) + len(fields)], stamp, inner, fields)
         return b"".join(packets)
 
     def _event(self, mark: Mark) -> bytes:
         event = integer(_TYPE, mark.change) + integer(_TRACK_UUID, _FIRST + mark.track)
         if mark.change is Change.END:
             return event
-        event += integer(_NAME_IID, _STATES[mark.state] if mark.state else _FIRST + mark.entity)
-        return event + fixed64(_FLOW_IDS, mark.flow) if mark.flow else event
+        return event + integer(_NAME_IID, _STATES[mark.state] if mark.state else _FIRST + mark.entity)
 
     def _new_packets(self, mark: Mark) -> list[bytes]:
         """The packets that say what the track and the name of a mark are, unless earlier ones do."""

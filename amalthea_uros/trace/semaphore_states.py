@@ -1,103 +1,82 @@
-"""States of semaphores: a simulation records what processes request, get and release; the states of BTF follow from it."""
+"""States of semaphores: a simulation records how much of them is in use; the events of BTF follow from it."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from amalthea_uros.trace.insertion import Inserted, insert
 from amalthea_uros.trace.table import EventKind, EventTable
 
-#: The event of a semaphore that is assigned once more, by: was it free, is it full now (BTF 2.3.0, section 2.3.7).
-_ASSIGNED = {
-    (True, True): EventKind.LOCK,
-    (True, False): EventKind.USED,
-    (False, True): EventKind.LOCK_USED,
-    (False, False): EventKind.USED,
+#: In a recorded table, the kind of a row about a change of a semaphore, which is both source and target. The instances are how much of
+#: it was in use before and is now; the note is 2 if somebody waited for it before, plus 1 if somebody does now. A change comes before
+#: somebody gets the semaphore or has to wait, and after somebody has released it.
+CHANGE = -1
+
+_FREE, _USED, _FULL, _OVERFULL = range(4)
+#: The events from one state to the next (BTF 2.3.0, section 2.3.7). A spinlock has no state OVERFULL (section 2.3.8): two events
+#: say that the next process gets it.
+_EVENTS: Mapping[tuple[int, int], tuple[EventKind, ...]] = {
+    (_FREE, _USED): (EventKind.USED,),
+    (_FREE, _FULL): (EventKind.LOCK,),
+    (_USED, _FREE): (EventKind.FREE,),
+    (_USED, _USED): (EventKind.USED,),
+    (_USED, _FULL): (EventKind.LOCK_USED,),
+    (_USED, _OVERFULL): (EventKind.LOCK_USED, EventKind.OVERFULL),
+    (_FULL, _FREE): (EventKind.UNLOCK,),
+    (_FULL, _USED): (EventKind.UNLOCK_FULL,),
+    (_FULL, _FULL): (EventKind.UNLOCK, EventKind.LOCK),
+    (_FULL, _OVERFULL): (EventKind.OVERFULL,),
+    (_OVERFULL, _USED): (EventKind.FULL, EventKind.UNLOCK_FULL),
+    (_OVERFULL, _FULL): (EventKind.FULL,),
+    (_OVERFULL, _OVERFULL): (EventKind.OVERFULL,),
 }
-#: The event of a semaphore that is assigned once less, by: was it full, is it free now.
-_RELEASED = {
-    (True, True): EventKind.UNLOCK,
-    (True, False): EventKind.UNLOCK_FULL,
-    (False, True): EventKind.FREE,
-    (False, False): EventKind.USED,
-}
-_RECORDED_STATES = np.array([EventKind.LOCK, EventKind.UNLOCK])
-_ACCESSES = np.array([EventKind.REQUEST_SEMAPHORE, EventKind.ASSIGNED, EventKind.WAITING, EventKind.RELEASED])
 
 
-@dataclass(slots=True)
-class _Semaphore:
-    """How often a semaphore is assigned, and who waits for it.
+@dataclass(frozen=True, slots=True)
+class SemaphoreStates:
+    """Gives tables of a trace the events that BTF wants of semaphores.
 
     Attributes
     ----------
-    assigned : processes that have it; one that is released while somebody waits goes to the next one
-    handed_over : so many of those who wait are about to get it
+    users : for the index of each semaphore: how many may have it at the same time
+    spinlocks : the indices of those of which BTF knows fewer events: nobody is said to be queued or waiting
     """
 
-    users: int
-    assigned: int = 0
-    handed_over: int = 0
-    waiting: set[tuple[int, int]] = field(default_factory=set)
+    users: Mapping[int, int]
+    spinlocks: Collection[int] = ()
 
-    def assign(self, job: tuple[int, int]) -> EventKind | None:
-        """The event before it is assigned; None if the release before was it."""
-        if job in self.waiting:
-            self.waiting.remove(job)
-            self.handed_over -= 1
-            return None
-        self.assigned += 1
-        return _ASSIGNED[self.assigned == 1, self.assigned >= self.users]
+    def complete(self, table: EventTable) -> EventTable:
+        """A recorded table with these events instead of the changes."""
+        missing = [*self._queued(table), *self._states(table)]
+        completed = insert(table, sorted(missing, key=lambda event: event.before))
+        is_left_out = (completed.kind == EventKind.WAITING) & np.isin(completed.target, list(self.spinlocks))
+        return completed.where((completed.kind != CHANGE) & ~is_left_out)
 
-    def wait(self, job: tuple[int, int]) -> EventKind | None:
-        """The event before somebody waits."""
-        self.waiting.add(job)
-        return EventKind.OVERFULL
+    def _states(self, table: EventTable) -> Iterator[Inserted]:
+        has_queue = ~np.isin(table.target, list(self.spinlocks))
+        is_wait = np.append(table.kind[1:] == EventKind.WAITING, False)
+        rows = np.flatnonzero((table.kind == CHANGE) & (has_queue | ~is_wait))
+        columns = (table.target, table.source_instance, table.target_instance, table.note, has_queue)
+        for row, semaphore, before, after, waiting, is_queue in zip(
+            rows.tolist(), *(column[rows].tolist() for column in columns), strict=True
+        ):
+            users = self.users[semaphore]
+            states = _state(before, users, is_queue and waiting >= 2), _state(after, users, is_queue and waiting % 2 > 0)
+            for kind in _EVENTS[states]:
+                yield Inserted(row, row, kind, semaphore, 0, semaphore, 0)
 
-    def release(self) -> EventKind:
-        """The event after it is released."""
-        waiting = len(self.waiting) - self.handed_over
-        if waiting > 0:
-            self.handed_over += 1
-            return EventKind.FULL if waiting == 1 else EventKind.OVERFULL
-        self.assigned -= 1
-        return _RELEASED[self.assigned + 1 >= self.users, self.assigned <= 0]
+    def _queued(self, table: EventTable) -> Iterator[Inserted]:
+        rows = np.flatnonzero((table.kind == EventKind.REQUEST_SEMAPHORE) & ~np.isin(table.target, list(self.spinlocks)))
+        columns = (rows, *(column[rows] for column in (table.source, table.source_instance, table.target)))
+        for row, process, job, semaphore in zip(*(column.tolist() for column in columns), strict=True):
+            yield Inserted(row + 1, row, EventKind.QUEUED, process, job, semaphore, 0)
 
 
-class SemaphoreStates:
-    """Gives consecutive tables of a trace the events that BTF wants of semaphores; at the begin they are all free.
-
-    Parameters
-    ----------
-    users : for the index of each semaphore that is no spinlock: how many may have it at the same time
-    spinlocks : the indices of others, of which BTF knows fewer events: nobody is said to be waiting
-    """
-
-    def __init__(self, users: Mapping[int, int], spinlocks: Collection[int] = ()) -> None:
-        self._semaphores = {semaphore: _Semaphore(number) for semaphore, number in users.items()}
-        self._spinlocks = np.array(list(spinlocks), np.int32)
-
-    def insert(self, table: EventTable) -> EventTable:
-        """A table with the events that belong between its own, without the states that they replace."""
-        is_replaced = np.isin(table.kind, _RECORDED_STATES) & np.isin(table.target, list(self._semaphores))
-        is_left_out = (table.kind == EventKind.WAITING) & np.isin(table.target, self._spinlocks)
-        rest = table.where(~(is_replaced | is_left_out))
-        return insert(rest, list(self._missing(rest)))
-
-    def _missing(self, table: EventTable) -> Iterator[Inserted]:
-        rows = np.flatnonzero(np.isin(table.kind, _ACCESSES) & np.isin(table.target, list(self._semaphores)))
-        columns = (rows, *(column[rows] for column in (table.kind, table.source, table.source_instance, table.target)))
-        for row, kind, process, job, target in zip(*(column.tolist() for column in columns), strict=True):
-            semaphore = self._semaphores[target]
-            if kind == EventKind.REQUEST_SEMAPHORE:
-                yield Inserted(row + 1, row, EventKind.QUEUED, process, job, target, 0)
-            elif kind == EventKind.RELEASED:
-                yield Inserted(row + 1, row, semaphore.release(), target, 0, target, 0)
-            else:
-                decide = semaphore.wait if kind == EventKind.WAITING else semaphore.assign
-                event = decide((process, job))
-                if event is not None:
-                    yield Inserted(row, row, event, target, 0, target, 0)
+def _state(used: int, users: int, is_wanted: bool) -> int:
+    """The state of a semaphore; nobody is said to be waiting as long as it is not full, as for a writer among readers."""
+    if used < users:
+        return _USED if used else _FREE
+    return _OVERFULL if is_wanted else _FULL

@@ -93,7 +93,9 @@ class StateCharts:
         self._last_instances: dict[int, int] = {}
         self._triggers: dict[int, int] = {}
         self._jobs: dict[tuple[int, int], _Job] = {}
+        #: Of each process: from which job on activations are in the trace, and the job that has ended last.
         self._first_jobs: dict[int, int] = {}
+        self._last_ended: dict[int, int] = {}
         self._cores: dict[int, int] = {}
         self._semaphores: dict[int, str] = {}
         self._accesses: dict[tuple[int, int, int], str] = {}
@@ -155,7 +157,7 @@ class StateCharts:
         job = self._jobs.get((process, instance))
         if job is None:
             first = self._first_jobs.get(process)
-            is_complete = first is not None and instance >= first
+            is_complete = (first is not None and instance >= first) or self._last_ended.get(process) == instance
             job = self._jobs[process, instance] = _Job(is_complete, "terminated" if is_complete else None)
         return job
 
@@ -173,7 +175,10 @@ class StateCharts:
         job.state = after
         if after == "terminated":
             del self._jobs[event.target, event.target_instance]
-            self._first_jobs.setdefault(event.target, event.target_instance)
+            if event.kind is EventKind.TERMINATE:
+                self._last_ended[event.target] = event.target_instance
+            else:
+                self._first_jobs.setdefault(event.target, event.target_instance)
 
     def _check_left(self, event: _Event, job: _Job) -> None:
         executing = [

@@ -16,6 +16,7 @@ import numpy as np
 from amalthea_uros.errors import InvalidArgumentError
 
 if TYPE_CHECKING:
+    import pandas as pd
     from numpy.typing import NDArray
 
 
@@ -122,12 +123,53 @@ class EventTable:
     target_instance: NDArray[np.int64]
     note: NDArray[np.int64] = field(repr=False)
 
+    @classmethod
+    def empty(cls, entities: Sequence[Entity]) -> EventTable:
+        """A table without events."""
+        columns: list[NDArray[Any]] = [np.empty(0, dtype) for dtype in _DTYPES]
+        return cls(entities, *columns)
+
     def __len__(self) -> int:
         return len(self.time)
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """The columns by their names, as data frames take them."""
         return {name: getattr(self, name) for name in COLUMNS}
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The events with words and names instead of numbers, in the columns of our CSV files (`csv_format`); needs the package pandas.
+
+        Raises
+        ------
+        ImportError : pandas is not installed; the text says how to install it.
+        """
+        try:
+            import pandas as pd
+        except ImportError as error:
+            raise ImportError("a data frame needs pandas; install it with: pip install pandas") from error
+        words = {int(kind): kind.name.lower() for kind in EventKind}
+        sources, targets = ([self.entities[number] for number in column.tolist()] for column in (self.source, self.target))
+        return pd.DataFrame(
+            {
+                "time_ps": self.time,
+                "event": pd.Categorical([words[kind] for kind in self.kind.tolist()]),
+                "source_kind": pd.Categorical([entity.kind.value for entity in sources]),
+                "source": pd.Categorical([entity.name for entity in sources]),
+                "source_instance": self.source_instance,
+                "target_kind": pd.Categorical([entity.kind.value for entity in targets]),
+                "target": pd.Categorical([entity.name for entity in targets]),
+                "target_instance": self.target_instance,
+                "note": pd.Series(self._notes(), dtype=object),
+            }
+        )
+
+    def _notes(self) -> list[int | str | None]:
+        """The notes with the names of the owners of OS events; None where there is none."""
+        is_owner = np.isin(self.kind, (EventKind.SET_EVENT, EventKind.CLEAR_EVENT, EventKind.WAIT_EVENT))
+        return [
+            None if note == NO_NOTE else self.entities[note].name if is_name else note
+            for note, is_name in zip(self.note.tolist(), is_owner.tolist(), strict=True)
+        ]
 
     def between(self, start: int, end: int) -> EventTable:
         """The events from `start` on and before `end`, in picoseconds; its columns share the memory of this table."""
@@ -147,8 +189,9 @@ class EventTable:
         return EventTable(self.entities, *map(change, self.to_dict().values()))
 
 
-#: The names of the columns of an `EventTable`, in the order of its fields.
+#: The names of the columns of an `EventTable`, in the order of its fields, and the types of their values.
 COLUMNS = tuple(column.name for column in fields(EventTable))[1:]
+_DTYPES = (np.int64, np.int16, np.int32, np.int64, np.int32, np.int64, np.int64)
 
 
 def concatenate(tables: Sequence[EventTable]) -> EventTable:

@@ -50,7 +50,7 @@ class Mark(NamedTuple):
 
 
 #: The states after the transitions of processes; what a terminated one does is not shown.
-_STATES = {kind: after for kind, (_, after) in PROCESS.items() if after != "terminated"}
+_STATES = {int(kind): after for kind, (_, after) in PROCESS.items() if after != "terminated"}
 #: The names of all states that are shown.
 SHOWN_STATES = tuple(dict.fromkeys(_STATES.values()))
 
@@ -128,7 +128,7 @@ class Timeline:
         if kind == EventKind.TERMINATE:
             del jobs[instance]
         else:
-            job.state = _STATES[EventKind(kind)]
+            job.state = _STATES[kind]
         if is_shown and jobs:
             self._show(time, process, next(iter(jobs.values())))
 

@@ -1,9 +1,11 @@
 """`amuros simulate` as its user sees it, with a simulation of which the observations are known beforehand."""
 
 import json
+import signal
 import subprocess
 import sys
 import textwrap
+import time
 from fractions import Fraction
 from types import ModuleType
 
@@ -234,6 +236,19 @@ def test_a_trace_of_a_part_of_the_run(run, tmp_path):
     assert set(times["part"]) == {2 * MS, 2 * MS + US, 3 * MS}
 
 
+def test_an_interrupted_run_leaves_no_trace(tmp_path):
+    trace = tmp_path / "long.btf"
+    command = [sys.executable, "-m", "amalthea_uros", "simulate", ADVANCED, "--duration", "10h", "--trace", trace]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while not any(tmp_path.iterdir()):  # what has been written so far
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        output, errors = process.communicate()
+    assert (process.returncode, output) == (130, "")
+    assert errors == "interrupted: the run is not finished; traces of unfinished runs are not kept\n"
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_pictures(run, tmp_path):
     paths = {name: tmp_path / f"{name}.svg" for name in ("gantt", "timeline", "histogram")}
     code, _, errors = run(
@@ -283,6 +298,14 @@ WRONG = {
     "a process that does not exist": (["--timeline", "X=x.svg"], "unknown process 'X'"),
     "a histogram of nothing": (["--histogram", "X=x.svg"], "unknown process or chain 'X'"),
     "a quantity that does not exist": (["--histogram", "Control_Function.load=x.svg"], "unknown quantity 'load'; known: net"),
+    "a chain that does not exist": (["--gantt", "g.svg", "--chain", "X"], "unknown chain 'X'; known: factor-to-output"),
+    "a process of the chart that does not exist": (["--gantt", "g.svg", "--gantt-of", "X"], "unknown process 'X'"),
+    "a chain without a chart": (["--chain", "factor-to-output"], "add --gantt FILE"),
+    "two choices of a window": (
+        ["--gantt", "g.svg", "--gantt-of", "Control_Function", "--window", "1ms..2ms"],
+        "--gantt-of and --window each choose what --gantt shows",
+    ),
+    "a trace window after the end": (["--trace", "t.btf", "--trace-window", "3s..4s"], "the run ends at 1 s"),
     "a window after the end": (["--window", "3s..4s", "--gantt", "g.svg"], "the run ends at 1 s"),
     "no runs": (["--runs", "0"], "x>=1"),
 }

@@ -1,5 +1,7 @@
 """Tables of events: parts of them, and one of several."""
 
+import sys
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,7 +9,8 @@ from hypothesis import strategies as st
 from traces import chunks, random_trace, said, table
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.trace.table import COLUMNS, Entity, EntityKind, EventKind, concatenate
+from amalthea_uros.trace.csv_format import HEADER
+from amalthea_uros.trace.table import COLUMNS, Entity, EntityKind, EventKind, EventTable, concatenate
 
 STIMULUS = [Entity(EntityKind.STIMULUS, "S")]
 
@@ -44,3 +47,23 @@ def test_columns_by_name_are_those_of_the_table():
     assert list(columns) == ["time", "kind", "source", "source_instance", "target", "target_instance", "note"] == list(COLUMNS)
     assert columns["time"].dtype == np.int64
     assert columns["kind"].tolist() == [30, 30]
+
+
+def test_a_data_frame_has_words_and_names():
+    pytest.importorskip("pandas")
+    entities = [*STIMULUS, Entity(EntityKind.TASK, "T"), Entity(EntityKind.OS_EVENT, "E")]
+    rows = [(5, EventKind.ACTIVATE, 0, 1, 1, 2), (7, EventKind.SET_EVENT, 1, 2, 2, 0, 1), (9, EventKind.WRITE, 1, 2, 2, 0, -4)]
+    frame = table(entities, rows).to_dataframe()
+    assert list(frame.columns) == HEADER
+    assert frame.to_numpy().tolist() == [
+        [5, "activate", "STI", "S", 1, "T", "T", 2, None],
+        [7, "set_event", "T", "T", 2, "EVENT", "E", 0, "T"],
+        [9, "write", "T", "T", 2, "EVENT", "E", 0, -4],
+    ]
+    assert len(EventTable.empty(entities).to_dataframe()) == 0
+
+
+def test_without_pandas_the_message_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ImportError, match="pip install pandas"):
+        triggers(0).to_dataframe()

@@ -3,11 +3,13 @@
 import io
 
 import pytest
+from hand_made_systems import SYSTEMS
 from hypothesis import given
 from hypothesis import strategies as st
 from test_btf_writer import ENTITIES, PREEMPTION, TASK_A, TASK_B, in_nanoseconds
 from traces import chunks, random_trace, table
 
+from amalthea_uros.services.simulate import run_simulation
 from amalthea_uros.trace.protobuf import varint
 from amalthea_uros.trace.sinks import open_sink
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
@@ -121,3 +123,24 @@ def test_numbers_are_encoded_as_perfetto_decodes_them(number):
     packet = messages.TracePacket()
     packet.ParseFromString(b"\x40" + varint(number))  # field 8: the time stamp
     assert packet.timestamp == number
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_simulated_systems_are_shown_without_errors(name):
+    trace = run_simulation(SYSTEMS[name], "600 us", trace=True).trace
+    shown = picture(*chunks(trace, 500))
+    assert len(shown.slices) == sum(mark.change is Change.BEGIN for mark in complete(trace))
+
+
+def test_arrows_of_a_simulation_lead_from_job_to_job_of_the_chain():
+    shown = picture(run_simulation(SYSTEMS["triggers to another core"], "600 us", trace=True).trace)
+    running = {(track, begin, end) for track, begin, end, name in shown.slices if name == "running"}
+    ways = {}
+    for track, time, _, [flow] in shown.instants:
+        assert any(task == track and begin <= time <= end for task, begin, end in running)
+        ways.setdefault(flow, []).append((time, track))
+    # Each job of the first task, every 20 us, leads to one of the second and one of the third.
+    assert len(ways) == 30
+    assert [track for _, track in ways.popitem()[1]][:1] == ["first"]
+    assert all([track for _, track in way] == ["first", "then", "last"] for way in ways.values())
+    assert all(way == sorted(way) for way in ways.values())

@@ -89,6 +89,9 @@ def _arrive(m: Memory) -> int:
         publish_all(m, m[place + 1])
         place += ARRIVAL_SIZE
     while m[ARRIVAL] < place:
+        # While a job executes for long, others can be activated any number of times.
+        if m[EVENTS] >= m[EVENTS_END]:
+            return ROWS_FULL
         code = fire(m, m[m[ARRIVAL] + 1], 0)
         if code:
             return code

@@ -14,6 +14,7 @@ from amalthea_uros.simulate.layout import (
     ENTITY,
     EVENT_LIST,
     EVENT_LIST_END,
+    EVENTS,
     EVENTS_SET,
     HELD,
     HELD_SINCE,
@@ -61,8 +62,10 @@ from amalthea_uros.simulate.operations import (
 
 #: The kinds of events, as in `trace.table.EventKind`.
 _POLL, _RUN, _RELEASE_PARKING, _WAIT, _RELEASE = 5, 6, 9, 10, 11
-_REQUEST, _LOCK, _UNLOCK, _ASSIGNED, _WAITING, _RELEASED = 40, 41, 42, 43, 44, 45
+_REQUEST, _ASSIGNED, _WAITING, _RELEASED = 40, 43, 44, 45
 _SET, _CLEAR, _WAIT_EVENT = 50, 51, 52
+#: A semaphore changes, as in `trace.semaphore_states`.
+_CHANGE = -1
 
 
 def wait(m: Memory, core: int, process: int, is_active: bool) -> None:
@@ -115,7 +118,12 @@ def request(m: Memory, core: int, process: int, semaphore: int, flags: int) -> b
     tell_of(m, _REQUEST, process, m[semaphore + SEMAPHORE_ENTITY])
     if m[semaphore + USED] + amount <= m[semaphore + USERS]:
         _grant(m, process, semaphore, amount)
+        is_wanted = _is_wanted(m, semaphore)
+        _tell_change(m, semaphore, m[semaphore + USED] - amount, is_wanted, is_wanted)
+        tell_of(m, _ASSIGNED, process, m[semaphore + SEMAPHORE_ENTITY])
         return True
+    if m[semaphore + USED] == m[semaphore + USERS]:
+        _tell_change(m, semaphore, m[semaphore + USED], _is_wanted(m, semaphore), 1)
     m[process + WAITS_FOR] = semaphore
     m[process + WANTED] = amount
     tell_of(m, _WAITING, process, m[semaphore + SEMAPHORE_ENTITY])
@@ -130,13 +138,10 @@ def _hold(m: Memory, process: int, semaphore: int) -> int:
 
 def _grant(m: Memory, process: int, semaphore: int, amount: int) -> None:
     """A process gets a semaphore."""
-    hold, entity = _hold(m, process, semaphore), m[semaphore + SEMAPHORE_ENTITY]
+    hold = _hold(m, process, semaphore)
     m[semaphore + USED] += amount
     m[hold + HELD] += amount
     m[hold + HELD_SINCE] = m[NOW]
-    if m[IS_TRACED]:
-        emit(m, _LOCK, entity, 0, entity, 0, NO_NOTE)
-        tell_of(m, _ASSIGNED, process, entity)
     if m[semaphore + CEILING] >= 0:
         change_level(m, process)
 
@@ -150,17 +155,22 @@ def unlock(m: Memory, process: int, semaphore: int) -> None:
     amount = m[hold + HELD] if m[hold + HELD] == m[semaphore + USERS] else 1
     m[semaphore + USED] -= amount
     m[hold + HELD] -= amount
-    if m[IS_TRACED]:
-        tell_of(m, _RELEASED, process, entity)
-        emit(m, _UNLOCK, entity, 0, entity, 0, NO_NOTE)
+    tell_of(m, _RELEASED, process, entity)
+    change, was_wanted = m[EVENTS], _is_wanted(m, semaphore)
+    _tell_change(m, semaphore, m[semaphore + USED] + amount, was_wanted, was_wanted)
     if m[semaphore + CEILING] >= 0:
         change_level(m, process)
     best = _first_waiting(m, semaphore)
     while best:
         m[best + WAITS_FOR] = 0
         _grant(m, best, semaphore, m[best + WANTED])
+        tell_of(m, _ASSIGNED, best, entity)
         release(m, best)
         best = _first_waiting(m, semaphore)
+    if m[IS_TRACED]:
+        # The change comes before those who get it now, and is complete only after them.
+        m[change + 5] = m[semaphore + USED]
+        m[change + 6] = 2 * was_wanted + _is_wanted(m, semaphore)
 
 
 def _first_waiting(m: Memory, semaphore: int) -> int:
@@ -172,6 +182,22 @@ def _first_waiting(m: Memory, semaphore: int) -> int:
             if best == 0 or is_before(m, process, best):
                 best = process
     return best
+
+
+def _is_wanted(m: Memory, semaphore: int) -> int:
+    """1 if a process waits for a semaphore, otherwise 0; also 0 if there is no trace, for which alone it is needed."""
+    if m[IS_TRACED]:
+        for place in range(m[PROCESSES], m[PROCESSES_END]):
+            if m[m[place] + WAITS_FOR] == semaphore:
+                return 1
+    return 0
+
+
+def _tell_change(m: Memory, semaphore: int, used_before: int, was_wanted: int, is_wanted: int) -> None:
+    """Record how much of a semaphore was and is in use, and whether somebody waited and waits for it, if there is a trace."""
+    if m[IS_TRACED]:
+        entity = m[semaphore + SEMAPHORE_ENTITY]
+        emit(m, _CHANGE, entity, used_before, entity, m[semaphore + USED], 2 * was_wanted + is_wanted)
 
 
 # Events of the operating system.

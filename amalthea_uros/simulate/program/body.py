@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -191,6 +192,8 @@ class BodyCompiler:
             body.activities(scheduler.overhead, ())
         except UnknownDemandError as error:
             raise NotSimulatedError(str(error)) from None
+        if self.is_noted:
+            body.code.add(NOTE, int(EventKind.SCHEDULE), self.resources.entities.number(EntityKind.SCHEDULER, scheduler.name))
         body.code.add(END)
         return body.code
 
@@ -207,7 +210,7 @@ class _Body:
     code: Code = field(default_factory=Code)
     end: Label = field(default_factory=Label)
     number: int = 0
-    places: int = 0
+    places: collections.Counter[int] = field(default_factory=collections.Counter)
     masks: int = 0
     executions: dict[str, int] = field(default_factory=dict)
 
@@ -216,10 +219,10 @@ class _Body:
         return self.owner.resources
 
     def _place(self) -> str:
-        """What draws values here: its random numbers depend neither on other places nor on what is recorded."""
+        """What draws values here, and nowhere else: the random numbers of a place depend neither on others nor on a trace."""
         name = self.process.name if self.process is not None else f"decision on {self.core}"
-        self.places += 1
-        return f"{name} activity {self.number} place {self.places}"
+        self.places[self.number] += 1
+        return f"{name} activity {self.number} {self.places[self.number]}"
 
     def compile(self, scheduler: Scheduler | None) -> Code:
         process, model = self.process, self.resources.context.demand_model
@@ -392,7 +395,8 @@ class _Body:
     def _label_accessed(
         self, label: str, kind: AccessKind, communication: Communication | None, above: tuple[str, ...]
     ) -> None:
-        if self.owner.is_noted and label in self.resources.context.system.labels:
+        # In traces, schedulers do not access labels.
+        if self.owner.is_noted and self.process is not None and label in self.resources.context.system.labels:
             event = EventKind.READ if kind is AccessKind.READ else EventKind.WRITE
             self.code.add(NOTE, int(event), self.resources.entities.number(EntityKind.LABEL, label))
         self._observe(LabelEvent, label, LabelChange(kind), above, communication)

@@ -400,6 +400,7 @@ class _Builder:
                 QUEUE: queue,
                 FIRST_PLACE: queue,
                 ENTRY: bodies.decision(scheduler, core).write(self.image),
+                ENTITY: self.entities.number(EntityKind.SCHEDULER, scheduler.name),
                 DOMAIN: self.domains[core],
                 ALLOWED: allowed,
                 HOLDS: self.image.items([0] * (len(self.resources.semaphores) * HOLD_SIZE))[0],

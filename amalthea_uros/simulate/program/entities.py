@@ -37,6 +37,7 @@ def _entities(system: System) -> Iterator[Entity]:
     for name, process in system.processes.items():
         yield Entity(EntityKind.ISR if isinstance(process, Isr) else EntityKind.TASK, name)
     yield from (Entity(EntityKind.CORE, name) for name in system.cores)
+    yield from (Entity(EntityKind.SCHEDULER, name) for name in system.schedulers)
     yield from (Entity(EntityKind.STIMULUS, name) for name in (*system.stimuli_by_name, *arriving(system)))
     yield from (Entity(EntityKind.RUNNABLE, name) for name in system.runnables)
     yield from (Entity(EntityKind.LABEL, name) for name in system.labels)
