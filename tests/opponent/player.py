@@ -56,6 +56,10 @@ class Job:
             self.pending = next(self.operations, None)
         return self.pending is not None
 
+    def is_before_mask(self) -> bool:
+        """Whether a non-interruptible group comes next."""
+        return self.has_more() and self.pending == ("mask", 1)
+
 
 class Player:
     """Plays a system once."""
@@ -256,10 +260,12 @@ class Player:
         for core, job in self.running.items():
             if job is None or job.remaining:
                 continue
+            if self.readings.instant is Instant.BEFORE_END_WAITS:
+                self._access_now(job)
             if not job.has_more():
                 self._end(job)
-            elif self.readings.instant is Instant.BEFORE:
-                while self._pick(core) is job and not job.remaining and job.end is None and job.pending != ("mask", 1):
+            elif self.readings.instant in (Instant.BEFORE, Instant.BEFORE_END_WAITS):
+                while self._pick(core) is job and not job.remaining and job.end is None and not job.is_before_mask():
                     self._act(job)
 
     def _activate_due(self) -> None:
@@ -346,14 +352,28 @@ class Player:
                 self._activate(index, Release(self.now, self.now))
         else:
             job.accesses.setdefault((kind, argument), self.now)
-        if kind in ("called", "mask") or (
-            kind in ("release", "trigger", "point") and self.readings.instant is not Instant.END_WAITS
+        if (
+            kind == "called"
+            or (kind == "mask" and argument < 0)
+            or (
+                kind in ("release", "trigger", "point")
+                and self.readings.instant not in (Instant.BEFORE_END_WAITS, Instant.END_WAITS)
+            )
         ):
             self._end_if_done(job)
 
     def _end_if_done(self, job: Job) -> None:
+        if self.readings.instant is Instant.BEFORE_END_WAITS:
+            self._access_now(job, "called")
         if not job.has_more():
             self._end(job)
+
+    def _access_now(self, job: Job, *also: str) -> None:
+        """Do the accesses that follow: they take no time, and nobody comes between."""
+        while job.has_more() and job.pending is not None and job.pending[0] in ("read", "write", *also):
+            if job.pending[0] not in also:
+                job.accesses.setdefault(job.pending, self.now)
+            job.pending = None
 
     def _grant(self, semaphore: str, job: Job) -> None:
         self.holders[semaphore] = job

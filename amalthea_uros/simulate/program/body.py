@@ -244,6 +244,7 @@ class _Body:
             number = self.number
             if len(self.code.operations) > MAX_OPERATIONS:
                 raise NotSimulatedError(f"it executes more than {MAX_OPERATIONS:,} activities")
+            skip = self._counted(activity, activity.counter) if isinstance(activity, Call) else None
             self._add_all(self.hooks.before.get(number, ()))
             for demand in self.resources.context.demand_model.overheads.of_activity(activity, self.core):
                 self._demand(demand)
@@ -251,6 +252,7 @@ class _Body:
             self._add_all(self.hooks.after.get(number, ()))
             if isinstance(activity, Call):
                 self._return()
+            self._mark(skip)
 
     def _return(self) -> None:
         """After a call, other cooperative tasks can go first."""
@@ -305,7 +307,7 @@ class _Body:
             case Terminate():
                 skip = self._counted(activity, activity.counter)
                 for _ in range(self.masks):
-                    self.code.add(UNMASK)
+                    self._unmask()
                 self.code.add(JUMP, self.end)
                 self._mark(skip)
             case RaiseEvent():
@@ -349,7 +351,6 @@ class _Body:
             raise NotSimulatedError(f"the runnable {runnable.name!r} calls itself")
         if len(above) > MAX_CALL_DEPTH:
             raise NotSimulatedError(f"calls are nested deeper than {MAX_CALL_DEPTH} levels")
-        skip = self._counted(call, call.counter)
         again, done = self._repeated(call)
         skip_inner = self._tested(runnable.condition)
         service = self.resources.services.get(runnable.name, 0)
@@ -364,7 +365,6 @@ class _Body:
         if again is not None:
             self.code.add(JUMP, again)
         self._mark(done)
-        self._mark(skip)
 
     def _note(self, event: EventKind, runnable: str) -> None:
         if self.owner.is_noted:
@@ -399,8 +399,12 @@ class _Body:
         else:
             self._in_any_order(group.activities, above)
         if not group.interruptible:
-            self.code.add(UNMASK)
+            self._unmask()
             self.masks -= 1
+
+    def _unmask(self) -> None:
+        self.code.returns.append(len(self.code.operations))
+        self.code.add(UNMASK)
 
     def _in_any_order(self, activities: Sequence[Activity], above: tuple[str, ...]) -> None:
         image, total, done = self.resources.image, len(activities), Label()

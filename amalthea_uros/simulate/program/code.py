@@ -34,7 +34,7 @@ class Code:
 
     Attributes
     ----------
-    returns : the numbers of the operations that let others go first because a call has returned
+    returns : the numbers of the operations that let others go first because a call or a non-interruptible group has ended
     """
 
     operations: list[tuple[int, Argument, Argument]] = field(default_factory=list)
@@ -54,7 +54,7 @@ class Code:
         return Label(len(self.operations))
 
     def drop_last_returns(self) -> None:
-        """A job ends at once after its last call: then there is nothing that others could go first of."""
+        """A job ends at once after its last call or group: then there is nothing that others could go first of."""
         for number in self.returns:
             if self._leads_to_end(number + 1):
                 self.operations[number] = (JUMP, Label(number + 1), 0)
