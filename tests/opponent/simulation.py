@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -18,7 +18,7 @@ from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observatio
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.player import Player
 from amalthea_uros.simulate.program.build import Program, build_program
-from amalthea_uros.simulate.results import ChainQuantity
+from amalthea_uros.simulate.results import MetricObservation
 from amalthea_uros.simulate.rows import STIMULUS, Observation
 from amalthea_uros.simulate.rows import Job as Column
 from amalthea_uros.timing.context import TimingContext
@@ -75,7 +75,7 @@ def record(system: System, options: Options, *, is_compiled: bool = False) -> Re
 def contradictions(plain: PlainSystem, seeds: Iterable[int] = (1,), modes: Iterable[Mode] = tuple(Mode)) -> list[str]:
     """Where simulations show what the analysis says cannot be."""
     system, horizon = to_perf(plain), Horizon.of(plain)
-    return list(_beyond(analyze_system(system), _runs(system, horizon, seeds, modes), horizon.begin * MICROSECOND))
+    return list(beyond(analyze_system(system), _runs(system, horizon, seeds, modes), horizon.begin * MICROSECOND))
 
 
 def _runs(system: System, horizon: Horizon, seeds: Iterable[int], modes: Iterable[Mode]) -> Iterator[Recording]:
@@ -84,8 +84,8 @@ def _runs(system: System, horizon: Horizon, seeds: Iterable[int], modes: Iterabl
             yield record(system, Options(duration=horizon.end * MICROSECOND, seed=seed, mode=mode))
 
 
-def _beyond(analysis: Analysis, runs: Iterable[Recording], steady: int) -> Iterator[str]:
-    """The best case is one of the steady state, the worst one is from the start on."""
+def beyond(analysis: Analysis, runs: Iterable[Recording], steady: int) -> Iterator[str]:
+    """What runs show beyond the claims of an analysis; best cases and latencies are claimed for the steady state."""
     for run in runs:
         for process in analysis.processes:
             response, jobs = process.response, run.jobs_of(process.name)
@@ -101,21 +101,28 @@ def _beyond(analysis: Analysis, runs: Iterable[Recording], steady: int) -> Itera
 
 
 def _beyond_latencies(analysis: Analysis, run: Recording, steady: int) -> Iterator[str]:
-    latencies = [RouteMetrics(run.program.units) for _ in run.program.routes]
-    rows = np.array(run.observations, np.int64).reshape(-1, len(Observation))
-    late = rows[rows[:, Observation.TIME] >= steady * run.program.units]
-    for number, metrics in enumerate(latencies):
-        metrics.add(_renumbered(late[late[:, Observation.ROUTE] == number]))
     for chain in analysis.chains:
-        routes = {str(n): m for n, m in enumerate(latencies) if run.program.routes[n].chain == chain.name}
-        observed = chain_observation(chain.name, routes, steady, "").quantities
+        observed = latencies(run, chain.name, steady)
         for value in chain.all_values:
-            side, quantity = value.quantity.value.split("_", 1)
-            found = observed.get(ChainQuantity(quantity)) if quantity in set(ChainQuantity) else None
+            side, _, quantity = value.quantity.value.partition("_")
+            found = observed.get(quantity)
             if value.value is None or found is None or side not in ("max", "min"):
                 continue
             if found.max > value.value if side == "max" else found.min < value.value:
                 yield f"{chain.name}: {value.quantity} {found} beyond {value.value} by {value.method}"
+
+
+def latencies(run: Recording, chain: str, steady: int) -> Mapping[str, MetricObservation]:
+    """The latencies of a chain by their names, of what occurs from a time on."""
+    rows = np.array(run.observations, np.int64).reshape(-1, len(Observation))
+    late = rows[rows[:, Observation.TIME] >= steady * run.program.units]
+    routes = {}
+    for number, route in enumerate(run.program.routes):
+        if route.chain == chain:
+            routes[str(number)] = RouteMetrics(run.program.units)
+            routes[str(number)].add(_renumbered(late[late[:, Observation.ROUTE] == number]))
+    found = chain_observation(chain, routes, steady, "").quantities
+    return {quantity.value: observation for quantity, observation in found.items()}
 
 
 def _renumbered(rows: Numbers) -> Numbers:
