@@ -77,3 +77,9 @@ def test_only_a_call_that_takes_place_lets_others_go_first():
 def test_who_has_used_up_its_slice_ends_if_nothing_is_left():
     a, b = task("a", [execute(2)], 100, slice=2), task("b", [execute(2)], 100, slice=2)
     assert jobs(a, b, duration=20, policy="RR") == {"a": [(0, 0, 2)], "b": [(0, 2, 4)]}
+
+
+def test_a_job_ends_with_its_last_release_although_somebody_more_urgent_has_waited_for_it():
+    low = task("low", [{"request": "s"}, execute(3), {"release": "s"}], 100)
+    high = task("high", [{"request": "s"}, execute(2), {"release": "s"}], 100, priority=2, offset=1)
+    assert jobs(low, high, duration=20, semaphores={"s": False}) == {"low": [(0, 0, 3)], "high": [(1, 1, 5)]}

@@ -118,7 +118,7 @@ def go_on(m: Memory, core: int) -> int:
         code = _carry_out(m, core, process, at)
         if code:
             return code - 1
-        if REQUEST <= operation <= SERVED and m[due] and not stays(m, core, process):
+        if REQUEST <= operation <= SERVED and m[due] and not stays(m, core, process) and not _is_done(m, m[process + AT]):
             return GO_ON
 
 
@@ -130,6 +130,19 @@ def _lets_others_in(m: Memory, core: int, process: int) -> bool:
         m[due] = 1
         return True
     return m[due] != 0 and not stays(m, core, process)
+
+
+def _is_done(m: Memory, at: int) -> bool:
+    """Whether a job has nothing left to do: it ends at once, as it needs the core no more."""
+    while m[at] != END:
+        operation = m[at]
+        if operation == JUMP:
+            at = m[at + 1]
+        elif operation == NOTE or operation == POINT or operation == UNMASK or operation >= ENTER:
+            at += OPERATION_SIZE
+        else:
+            return False
+    return True
 
 
 def _execute(m: Memory, core: int, process: int, duration: int) -> None:

@@ -206,7 +206,6 @@ class _Body:
                 self._activity(activity, ())
         self._add_all(self.hooks.end)
         self.code.add(END)
-        self.code.drop_last_returns()
         return self.code
 
     def _add_all(self, operations: Iterable[Operation]) -> None:
@@ -257,7 +256,6 @@ class _Body:
     def _return(self) -> None:
         """After a call, other cooperative tasks can go first."""
         if getattr(self.process, "preemption", None) is Preemption.COOPERATIVE and not self.in_group:
-            self.code.returns.append(len(self.code.operations))
             self.code.add(POINT)
 
     def _activity(self, activity: Activity, above: tuple[str, ...]) -> None:
@@ -307,7 +305,7 @@ class _Body:
             case Terminate():
                 skip = self._counted(activity, activity.counter)
                 for _ in range(self.masks):
-                    self._unmask()
+                    self.code.add(UNMASK)
                 self.code.add(JUMP, self.end)
                 self._mark(skip)
             case RaiseEvent():
@@ -399,12 +397,8 @@ class _Body:
         else:
             self._in_any_order(group.activities, above)
         if not group.interruptible:
-            self._unmask()
+            self.code.add(UNMASK)
             self.masks -= 1
-
-    def _unmask(self) -> None:
-        self.code.returns.append(len(self.code.operations))
-        self.code.add(UNMASK)
 
     def _in_any_order(self, activities: Sequence[Activity], above: tuple[str, ...]) -> None:
         image, total, done = self.resources.image, len(activities), Label()

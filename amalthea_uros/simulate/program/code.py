@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from amalthea_uros.simulate.layout import OPERATION_SIZE
-from amalthea_uros.simulate.operations import END, ENTER, JUMP, NOTE, POINT, UNMASK
 from amalthea_uros.simulate.program.image import Image
 
 
@@ -30,15 +29,9 @@ class Table:
 
 @dataclass(slots=True)
 class Code:
-    """The program of a process.
-
-    Attributes
-    ----------
-    returns : the numbers of the operations that let others go first because a call or a non-interruptible group has ended
-    """
+    """The program of a process."""
 
     operations: list[tuple[int, Argument, Argument]] = field(default_factory=list)
-    returns: list[int] = field(default_factory=list)
     tables: list[Table] = field(default_factory=list)
 
     def add(self, operation: int, first: Argument = 0, second: Argument = 0) -> None:
@@ -52,22 +45,6 @@ class Code:
     def here(self) -> Label:
         """A label of the next operation."""
         return Label(len(self.operations))
-
-    def drop_last_returns(self) -> None:
-        """A job ends at once after its last call or group: then there is nothing that others could go first of."""
-        for number in self.returns:
-            if self._leads_to_end(number + 1):
-                self.operations[number] = (JUMP, Label(number + 1), 0)
-
-    def _leads_to_end(self, number: int) -> bool:
-        while True:
-            operation, first, _ = self.operations[number]
-            if operation == JUMP and isinstance(first, Label):
-                number = first.number
-            elif operation in (NOTE, UNMASK) or operation >= ENTER or (operation == POINT and number in self.returns):
-                number += 1
-            else:
-                return operation == END
 
     def write(self, image: Image) -> int:
         """Put the program into memory; the place of its first operation."""
