@@ -13,6 +13,7 @@ import pytest
 from opponent.constructs import constructs_of
 from opponent.describe import described
 from opponent.generator import random_system
+from opponent.invariants import disobeyed_priorities, violations
 from opponent.observation import Horizon
 from opponent.player import play
 from opponent.readings import Ceilings, Handover, Instant, Intruders, Points, Readings
@@ -64,3 +65,21 @@ def test_jobs_of_determined_systems_are_those_of_the_player(first):
 def test_nothing_is_beyond_a_claim(first):
     found = {seed: texts for seed in range(first, first + 50) if (texts := contradictions(random_system(seed)))}
     assert found == {}, [constructs_of(random_system(seed)) for seed in found]
+
+
+@pytest.mark.parametrize("first", range(0, 400, 100))
+def test_schedules_keep_to_the_rules(first):
+    found = {seed: texts for seed in range(first, first + 100) if (texts := violations(random_system(seed)))}
+    assert found == {}
+
+
+def test_broken_rules_are_found():
+    def task(name, priority):
+        process = {"name": name, "kind": "task", "core": "core0", "priority": priority, "preemption": "preemptive"}
+        return {**process, "arrival": {"periodic": {"period": 10}}, "body": [{"execute": [2, 2]}]}
+
+    plain = {"cores": {"core0": "FPP"}, "semaphores": {}, "runnables": {}, "processes": [task("low", 1), task("high", 2)]}
+    reversed_priorities = [p | {"priority": -p["priority"]} for p in plain["processes"]]
+    run = record(to_perf(plain), Options(duration=Horizon.of(plain).end * MICROSECOND, traced=(0, 10**9)))
+    assert list(disobeyed_priorities(plain, run)) == []
+    assert list(disobeyed_priorities(plain | {"processes": reversed_priorities}, run))
