@@ -106,8 +106,8 @@ ARRIVAL_SIZE, JOB_SIZE, OBSERVATION_SIZE, EVENT_SIZE = 2, 11, 4, 7
     PROCESS_SIZE,
 ) = range(59)
 
-#: A place in the queue of activations of a process: time, number, and then a value for each capture.
-QUEUE_TIME, QUEUE_INSTANCE, QUEUE_CAPTURES = range(3)
+#: A place in the queue of activations of a process: time, number, place in the order of all activations, and a value for each capture.
+QUEUE_TIME, QUEUE_INSTANCE, QUEUE_SEQUENCE, QUEUE_CAPTURES = range(4)
 
 # A core.
 (STOP, BEGIN, RUNS, NEEDS_STEP, BUSY, CHOSEN, CORE_NUMBER, CORE_ENTITY, CORE_DOMAIN, CORE_SIZE) = range(10)

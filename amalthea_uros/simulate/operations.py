@@ -16,6 +16,7 @@ SHUFFLE = 7  # begins (a group) in an order by a word from (a stream)
 NEXT = 8  # goes to the next part of (a group); if there is none, to (an operation)
 REPEAT = 9  # begins (a loop) with a number of passes from (a stream)
 AGAIN = 10  # begins a pass of (a loop); if there is none left, goes to (an operation)
+# From here on to SERVED: what can make others more urgent, or wait.
 REQUEST = 11  # requests (a semaphore) with (EXCLUSIVE + ACTIVE)
 UNLOCK = 12  # releases (a semaphore)
 MASK = 13  # keeps everything else off its core from here on

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 from random import Random
 from typing import Any
 
@@ -19,6 +20,8 @@ from opponent.systems import Item, PlainSystem, items_of
 Operation = tuple[str, Any]
 
 NEVER = 10**9
+_ENDS = (("called", None), ("point", None), ("mask", -1))
+_ACCESSES = ("read", "write")
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +58,10 @@ class Job:
         if self.pending is None:
             self.pending = next(self.operations, None)
         return self.pending is not None
+
+    def is_before_mask(self) -> bool:
+        """Whether a non-interruptible group comes next."""
+        return self.has_more() and self.pending == ("mask", 1)
 
 
 class Player:
@@ -256,10 +263,12 @@ class Player:
         for core, job in self.running.items():
             if job is None or job.remaining:
                 continue
+            if self.readings.instant is Instant.BEFORE_WITH_ACCESSES:
+                self._access_now(job)
             if not job.has_more():
                 self._end(job)
-            elif self.readings.instant is Instant.BEFORE:
-                while self._pick(core) is job and not job.remaining and job.end is None and job.pending != ("mask", 1):
+            elif self.readings.instant in (Instant.BEFORE, Instant.BEFORE_WITH_ACCESSES):
+                while self._pick(core) is job and not job.remaining and job.end is None and not job.is_before_mask():
                     self._act(job)
 
     def _activate_due(self) -> None:
@@ -346,14 +355,36 @@ class Player:
                 self._activate(index, Release(self.now, self.now))
         else:
             job.accesses.setdefault((kind, argument), self.now)
-        if kind in ("called", "mask") or (
-            kind in ("release", "trigger", "point") and self.readings.instant is not Instant.END_WAITS
+        if (
+            kind == "called"
+            or (kind == "mask" and argument < 0)
+            or (kind in ("release", "trigger", "point") and self.readings.instant is not Instant.END_WAITS)
         ):
             self._end_if_done(job)
 
     def _end_if_done(self, job: Job) -> None:
+        if self.readings.instant is Instant.BEFORE_WITH_ACCESSES:
+            self._pass_over(job)
         if not job.has_more():
             self._end(job)
+
+    def _pass_over(self, job: Job) -> None:
+        """Do what is left of a job, if that is nothing but accesses, and the ends of calls and groups."""
+        left = [job.pending] if job.pending is not None else []
+        for operation in job.operations:
+            left.append(operation)
+            if operation not in _ENDS and operation[0] not in _ACCESSES:
+                break
+        if all(operation in _ENDS or operation[0] in _ACCESSES for operation in left):
+            job.accesses = {operation: self.now for operation in left if operation[0] in _ACCESSES} | job.accesses
+            left = []
+        job.pending, job.operations = None, chain(left, job.operations)
+
+    def _access_now(self, job: Job) -> None:
+        """Do the accesses that follow."""
+        while job.has_more() and job.pending is not None and job.pending[0] in _ACCESSES:
+            job.accesses.setdefault(job.pending, self.now)
+            job.pending = None
 
     def _grant(self, semaphore: str, job: Job) -> None:
         self.holders[semaphore] = job

@@ -15,6 +15,7 @@ class Instant(StrEnum):
 
     BEFORE = "what follows is done before"
     AFTER = "what follows is done when the core is had again"
+    BEFORE_WITH_ACCESSES = "what follows is done before, and nobody comes between an access and what it follows"
     END_WAITS = "also the end of the job waits for the core after a trigger, release or schedule point"
 
 

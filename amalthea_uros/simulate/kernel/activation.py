@@ -38,6 +38,7 @@ from amalthea_uros.simulate.layout import (
     LIMIT,
     LOST,
     LOST_MESSAGES,
+    MASKS,
     MESSAGE_LIMIT,
     MESSAGES,
     MIGRATIONS,
@@ -53,6 +54,7 @@ from amalthea_uros.simulate.layout import (
     QUEUE,
     QUEUE_CAPTURES,
     QUEUE_INSTANCE,
+    QUEUE_SEQUENCE,
     QUEUE_TIME,
     RELATIVE_DEADLINE,
     RUNS,
@@ -150,6 +152,8 @@ def _enqueue(m: Memory, process: int, instance: int) -> None:
         place -= m[PLACES] * size
     m[place + QUEUE_TIME] = m[NOW]
     m[place + QUEUE_INSTANCE] = instance
+    m[ORDER] += 1
+    m[place + QUEUE_SEQUENCE] = m[ORDER]
     for capture in range(captures, end):
         m[place + QUEUE_CAPTURES + capture - captures] = m[m[capture]]
     m[process + PENDING] += 1
@@ -165,8 +169,7 @@ def _begin_job(m: Memory, process: int) -> None:
     m[process + AT] = m[process + ENTRY]
     m[process + STATE] = ACTIVATED
     m[process + SINCE] = m[NOW]
-    m[ORDER] += 1
-    m[process + SEQUENCE] = m[ORDER]
+    m[process + SEQUENCE] = m[place + QUEUE_SEQUENCE]
     if m[process + IS_BY_DEADLINE]:
         m[process + OWN_DEADLINE] = m[process + ACTIVATION] + m[process + RELATIVE_DEADLINE]
         m[process + DEADLINE] = m[process + OWN_DEADLINE]
@@ -189,6 +192,7 @@ def end_job(m: Memory, core: int) -> None:
     m[process + PREEMPTIONS] = 0
     m[process + MIGRATIONS] = 0
     m[process + IS_STARTED] = 0
+    m[process + MASKS] = 0
     restore_level(m, process)
     size = QUEUE_CAPTURES + m[process + CAPTURES_END] - m[process + CAPTURES]
     m[process + FIRST_PLACE] += size

@@ -144,6 +144,9 @@ def replenish(m: Memory, server: int) -> None:
 
 
 def _replenish_as_planned(m: Memory, server: int) -> None:
+    if m[server + BUDGET] <= 0:
+        # It cannot have become active before it had a budget.
+        m[server + ACTIVE_SINCE] = m[NOW]
     m[server + SERVER_AT] = NEVER
     for place in range(m[server + PLANS], m[server + PLANS_END], PLAN_SIZE):
         if m[place + PLAN_AMOUNT] == 0:

@@ -101,11 +101,6 @@ def stop(m: Memory, core: int) -> None:
     """An execution, a time slice or a budget of the process on a core ends now."""
     process = m[core + RUNS]
     pause(m, core, process)
-    if m[process + SLICE] and m[process + SLICE_LEFT] <= 0:
-        m[process + SLICE_LEFT] = m[process + SLICE]
-        m[ORDER] += 1
-        m[process + SEQUENCE] = m[ORDER]
-        m[m[process + DOMAIN] + IS_DUE] = 1
     server = m[process + SERVER]
     while server:
         if m[server + BUDGET] <= 0:
@@ -115,7 +110,17 @@ def stop(m: Memory, core: int) -> None:
         m[core + NEEDS_STEP] = 1
         m[core + STOP] = NEVER
     else:
+        queue_again(m, process)
         run(m, core, process)
+
+
+def queue_again(m: Memory, process: int) -> None:
+    """Who has used up its time slice, and executes more, lets its equals go first."""
+    if m[process + SLICE] and m[process + SLICE_LEFT] <= 0:
+        m[process + SLICE_LEFT] = m[process + SLICE]
+        m[ORDER] += 1
+        m[process + SEQUENCE] = m[ORDER]
+        m[m[process + DOMAIN] + IS_DUE] = 1
 
 
 def is_before(m: Memory, first: int, then: int) -> bool:
@@ -137,14 +142,24 @@ def _is_kept_off(m: Memory, process: int) -> bool:
     for place in range(m[domain + MEMBERS], m[domain + MEMBERS_END]):
         other = m[place]
         if other != process and m[other + IS_COOPERATIVE] and m[other + IS_STARTED] and not m[other + YIELDS]:
-            if m[other + STATE] != WAITING:
-                return True
+            return True
     return False
 
 
 def dispatch(m: Memory, domain: int) -> None:
-    """Give a core to the most urgent process."""
-    core, best = m[m[domain + ITS_CORES]], 0
+    """Give the core of a domain that has only one to the most urgent process."""
+    give(m, m[m[domain + ITS_CORES]], _most_urgent(m, domain))
+
+
+def stays(m: Memory, core: int, process: int) -> bool:
+    """Whether the process of a core is still the most urgent one; where cores share processes, that is not decided here."""
+    domain = m[core + CORE_DOMAIN]
+    return m[domain + ITS_CORES_END] - m[domain + ITS_CORES] == 1 and _most_urgent(m, domain) == process
+
+
+def _most_urgent(m: Memory, domain: int) -> int:
+    """The most urgent process that can execute; 0 if there is none."""
+    best = 0
     is_static = m[domain + IS_STATIC] and m[domain + RAISED] == 0
     for place in range(m[domain + MEMBERS], m[domain + MEMBERS_END]):
         process = m[place]
@@ -158,7 +173,7 @@ def dispatch(m: Memory, domain: int) -> None:
             continue
         if best == 0 or is_before(m, process, best):
             best = process
-    give(m, core, best)
+    return best
 
 
 def dispatch_all(m: Memory, domain: int) -> None:
@@ -232,6 +247,7 @@ def _take_off(m: Memory, core: int) -> None:
     """Preempt the process of a core."""
     process = m[core + RUNS]
     pause(m, core, process)
+    queue_again(m, process)
     if m[core + NEEDS_STEP]:
         m[process + LEFT] = 0
         m[core + NEEDS_STEP] = 0
@@ -290,12 +306,14 @@ def leave_core(m: Memory, core: int) -> None:
 def set_level(m: Memory, process: int) -> None:
     """Find the level and the deadline of a process: by what it holds, and whether it runs and keeps others off by that."""
     level, deadline, semaphore = m[process + OWN_LEVEL], m[process + OWN_DEADLINE], m[SEMAPHORES]
-    if m[process + IS_STARTED] and not m[process + YIELDS] and m[process + STATE] != WAITING:
+    if m[process + IS_STARTED] and not m[process + YIELDS]:
         level = max(level, m[process + RUNNING_LEVEL])
     for place in range(m[process + HOLDS], m[process + HOLDS] + (m[SEMAPHORES_END] - semaphore) * HOLD_SIZE, HOLD_SIZE):
         ceiling = m[m[semaphore] + CEILING]
         if m[place + HELD] and ceiling >= 0:
-            level = max(level, ceiling)
+            # Among those that are in the order of their deadlines, a ceiling is a deadline.
+            if not m[process + IS_BY_DEADLINE] or ceiling > m[process + OWN_LEVEL] + 1:
+                level = max(level, ceiling)
             if m[process + IS_BY_DEADLINE]:
                 deadline = min(deadline, m[place + HELD_SINCE] + m[m[semaphore] + DEADLINE_CEILING])
         semaphore += 1

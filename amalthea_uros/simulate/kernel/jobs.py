@@ -5,11 +5,13 @@ from __future__ import annotations
 from amalthea_uros.simulate.kernel.accounts import tell_execution, tell_of
 from amalthea_uros.simulate.kernel.activation import end_job, fire
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode, step_mode
-from amalthea_uros.simulate.kernel.cores import change_level, run
+from amalthea_uros.simulate.kernel.cores import change_level, queue_again, run, stays
 from amalthea_uros.simulate.kernel.following import follow
 from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
 from amalthea_uros.simulate.kernel.watching import begin_execution, end_execution, observe
 from amalthea_uros.simulate.layout import (
+    ARRIVAL,
+    ARRIVALS_END,
     AT,
     CAPACITY,
     CAUSE,
@@ -26,6 +28,7 @@ from amalthea_uros.simulate.layout import (
     MASKS,
     MESSAGE_CAPTURE,
     NEEDS_STEP,
+    NOW,
     OBSERVATIONS,
     OBSERVATIONS_END,
     OPERATION_SIZE,
@@ -72,6 +75,7 @@ from amalthea_uros.simulate.operations import (
     REQUEST,
     ROWS_FULL,
     SEND,
+    SERVED,
     SET_EVENT,
     SET_MODE,
     SHUFFLE,
@@ -120,16 +124,42 @@ def go_on(m: Memory, core: int) -> int:
                 _execute(m, core, process, duration)
                 return GO_ON
             continue
+        if operation == MASK and _lets_others_in(m, core, process):
+            return GO_ON
         code = _carry_out(m, core, process, at)
         if code:
             return code - 1
-        if m[due]:
+        if REQUEST <= operation <= SERVED and m[due] and not stays(m, core, process) and not _is_done(m, m[process + AT]):
             return GO_ON
+
+
+def _lets_others_in(m: Memory, core: int, process: int) -> bool:
+    """Whether somebody comes first at the instant at which a non-interruptible group would begin, which would keep it off."""
+    due = m[core + CORE_DOMAIN] + IS_DUE
+    queue_again(m, process)
+    if m[ARRIVAL] < m[ARRIVALS_END] and m[m[ARRIVAL]] == m[NOW]:
+        m[due] = 1
+        return True
+    return m[due] != 0 and not stays(m, core, process)
+
+
+def _is_done(m: Memory, at: int) -> bool:
+    """Whether a job has nothing left to do: it ends at once, as it needs the core no more."""
+    while m[at] != END:
+        operation = m[at]
+        if operation == JUMP:
+            at = m[at + 1]
+        elif NOTE <= operation <= END_EXECUTION or operation == POINT or operation == UNMASK or operation >= ENTER:
+            at += OPERATION_SIZE
+        else:
+            return False
+    return True
 
 
 def _execute(m: Memory, core: int, process: int, duration: int) -> None:
     m[process + LEFT] = duration
     m[core + NEEDS_STEP] = 0
+    queue_again(m, process)
     run(m, core, process)
 
 

@@ -56,14 +56,11 @@ def play(m: Memory) -> int:
             if has_servers:
                 _replenish(m)
             for place in range(first_domain, last_domain):
-                domain = m[place]
-                if m[domain + IS_DUE]:
-                    m[domain + IS_DUE] = 0
+                while m[m[place] + IS_DUE]:
                     needs_step = True
-                    if m[domain + ITS_CORES_END] - m[domain + ITS_CORES] == 1:
-                        dispatch(m, domain)
-                    else:
-                        dispatch_all(m, domain)
+                    code = _settle(m, m[place])
+                    if code:
+                        return code
         now = m[m[ARRIVAL]] if m[ARRIVAL] < m[ARRIVALS_END] else m[UNTIL]
         for place in range(first_core, last_core):
             now = min(now, m[m[place] + STOP])
@@ -80,6 +77,22 @@ def play(m: Memory) -> int:
         for place in range(first_core, last_core):
             if m[m[place] + STOP] == now:
                 stop(m, m[place])
+
+
+def _settle(m: Memory, domain: int) -> int:
+    """The cores of a domain are given anew, and the jobs there go on."""
+    first, last = m[domain + ITS_CORES], m[domain + ITS_CORES_END]
+    m[domain + IS_DUE] = 0
+    if last - first == 1:
+        dispatch(m, domain)
+    else:
+        dispatch_all(m, domain)
+    for place in range(first, last):
+        if m[m[place] + NEEDS_STEP]:
+            code = go_on(m, m[place])
+            if code:
+                return code
+    return 0
 
 
 def _arrive(m: Memory) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros.simulate.kernel.accounts import NO_NOTE, emit, enter_state, tell, tell_of
 from amalthea_uros.simulate.kernel.budgets import rest, wake
-from amalthea_uros.simulate.kernel.cores import change_level, is_before, leave_core, pause, run
+from amalthea_uros.simulate.kernel.cores import change_level, is_before, leave_core, pause, queue_again, run
 from amalthea_uros.simulate.layout import (
     ANSWERED,
     ASKED,
@@ -45,6 +45,7 @@ from amalthea_uros.simulate.layout import (
     WAITS_EVENTS,
     WAITS_FOR,
     WANTED,
+    YIELDS,
 )
 from amalthea_uros.simulate.memory import Memory
 from amalthea_uros.simulate.operations import (
@@ -70,6 +71,7 @@ _CHANGE = -1
 
 def wait(m: Memory, core: int, process: int, is_active: bool) -> None:
     """Have the process of a core wait."""
+    queue_again(m, process)
     if is_active:
         enter_state(m, process, POLLING)
         tell(m, _POLL, core, process)
@@ -77,6 +79,8 @@ def wait(m: Memory, core: int, process: int, is_active: bool) -> None:
         m[core + NEEDS_STEP] = 0
         run(m, core, process)
         return
+    # Back from waiting, it keeps off nobody until it has its core again.
+    m[process + YIELDS] = 1
     enter_state(m, process, WAITING)
     tell(m, _WAIT, core, process)
     m[process + LEFT] = 0

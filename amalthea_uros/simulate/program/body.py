@@ -246,7 +246,6 @@ class _Body:
                 self._activity(activity, ())
         self._add_all(self.hooks.end)
         self.code.add(END)
-        self.code.drop_last_returns()
         return self.code
 
     def _add_all(self, operations: Iterable[Operation]) -> None:
@@ -291,6 +290,7 @@ class _Body:
             skips = self._skips(activity)
             if isinstance(activity, Call):
                 self._call(activity, above)
+                self._return()
             else:
                 self._add_all(self.hooks.before.get(number, ()))
                 if not is_counted:
@@ -299,8 +299,6 @@ class _Body:
                 self._add_all(self.hooks.after.get(number, ()))
             for label in skips:
                 self._mark(label)
-            if isinstance(activity, Call):
-                self._return()
 
     def _services(self, activity: Activity) -> None:
         """The time of the services of the operating system that an activity calls."""
@@ -310,7 +308,6 @@ class _Body:
     def _return(self) -> None:
         """After a call, other cooperative tasks can go first."""
         if getattr(self.process, "preemption", None) is Preemption.COOPERATIVE and not self.in_group:
-            self.code.returns.append(len(self.code.operations))
             self.code.add(POINT)
 
     def _activity(self, activity: Activity, above: tuple[str, ...]) -> None:

@@ -6,11 +6,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from amalthea_uros.simulate.layout import OPERATION_SIZE
-from amalthea_uros.simulate.operations import END, END_EXECUTION, END_RUNNABLE, ENTER, JUMP, NOTE, OBSERVE, POINT, UNMASK
 from amalthea_uros.simulate.program.image import Image
-
-#: What a job can do before its end that nobody else is affected by.
-_TIMELESS = (NOTE, OBSERVE, END_EXECUTION, END_RUNNABLE, UNMASK)
 
 
 @dataclass(slots=True, eq=False)
@@ -33,15 +29,9 @@ class Table:
 
 @dataclass(slots=True)
 class Code:
-    """The program of a process.
-
-    Attributes
-    ----------
-    returns : the numbers of the operations that let others go first because a call has returned
-    """
+    """The program of a process."""
 
     operations: list[tuple[int, Argument, Argument]] = field(default_factory=list)
-    returns: list[int] = field(default_factory=list)
     tables: list[Table] = field(default_factory=list)
 
     def add(self, operation: int, first: Argument = 0, second: Argument = 0) -> None:
@@ -55,22 +45,6 @@ class Code:
     def here(self) -> Label:
         """A label of the next operation."""
         return Label(len(self.operations))
-
-    def drop_last_returns(self) -> None:
-        """A job ends at once after its last call: then there is nothing that others could go first of."""
-        for number in self.returns:
-            if self._leads_to_end(number + 1):
-                self.operations[number] = (JUMP, Label(number + 1), 0)
-
-    def _leads_to_end(self, number: int) -> bool:
-        while True:
-            operation, first, _ = self.operations[number]
-            if operation == JUMP and isinstance(first, Label):
-                number = first.number
-            elif operation in _TIMELESS or operation >= ENTER or (operation == POINT and number in self.returns):
-                number += 1
-            else:
-                return operation == END
 
     def write(self, image: Image) -> int:
         """Put the program into memory; the place of its first operation."""
