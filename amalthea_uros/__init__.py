@@ -9,7 +9,7 @@ This module is the public interface:
 
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
-- simulations of files, models and systems: `run_simulation`; their events: `EventTable`; changes of values: `parse_change`,
+- simulations of files, models and systems: `simulate`; their events: `EventTable`; changes of values: `parse_change`,
   `parse_sweep`
 - AMALTHEA models: `Model`, `check`, `extract`; all AMALTHEA classes are in `amuros.am`
 - systems of the generic performance model: `analyze_system`, `sensitivity`, `propose_priorities`, `paths`, `build_model`; their classes
@@ -19,7 +19,9 @@ This module is the public interface:
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from amalthea_uros._version import __version__ as __version__
@@ -87,7 +89,7 @@ if TYPE_CHECKING:
     from amalthea_uros.services.settings import CheckSettings as CheckSettings
     from amalthea_uros.services.simulate import CampaignResult as CampaignResult
     from amalthea_uros.services.simulate import SimulationResult as SimulationResult
-    from amalthea_uros.services.simulate import run_simulation as run_simulation
+    from amalthea_uros.services.simulate import simulate as simulate
     from amalthea_uros.services.simulate import simulate_campaign as simulate_campaign
     from amalthea_uros.services.simulate import simulate_files as simulate_files
     from amalthea_uros.simulate.options import Mode as Mode
@@ -143,7 +145,7 @@ _NAMES = {
     "services.diff": ("DiffResult", "diff"),
     "services.migrate": ("MigrationResult", "migrate"),
     "services.settings": ("CheckSettings",),
-    "services.simulate": ("CampaignResult", "SimulationResult", "run_simulation", "simulate_campaign", "simulate_files"),
+    "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),
     "timing.dataflow.paths": ("paths",),
@@ -158,6 +160,17 @@ _HOMES = {name: home for home, names in _NAMES.items() for name in names}
 _NAMESPACES = ("am", "errors", "perf", "units")
 
 __all__ = sorted([*_HOMES, *_NAMESPACES])
+
+
+class _Package(ModuleType):
+    """Keeps its functions when a room of the same name is imported, which Python would put in their place."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (name in _HOMES and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package
 
 
 def __getattr__(name: str) -> Any:

@@ -229,7 +229,7 @@ def simulate_files(
     return simulate_plan(plan, trace_paths, with_metrics=with_metrics)
 
 
-def run_simulation(
+def simulate(
     subject: StrPath | Iterable[StrPath] | System | Model,
     duration: str | Time,
     *,
@@ -243,7 +243,7 @@ def run_simulation(
 ) -> Simulation:
     """Simulate files, an AMALTHEA model, or a system.
 
-    >>> simulation = run_simulation("app.yaml", "100 ms", trace=True)  # doctest: +SKIP
+    >>> simulation = simulate("app.yaml", "100 ms", trace=True)  # doctest: +SKIP
     >>> simulation.trace.to_dataframe()                                # doctest: +SKIP
 
     Parameters

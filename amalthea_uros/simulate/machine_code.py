@@ -37,6 +37,11 @@ _MODULES = (accounts, activation, budgets, conditions, cores, following, jobs, l
 _KNOWN, _LOADING, _WORTH_MAKING = 0.2, 1.0, 5.0
 
 
+def is_available() -> bool:
+    """Whether numba is installed."""
+    return find_spec("numba") is not None
+
+
 def is_worth_it(seconds: float, seconds_left: float) -> bool:
     """Whether to go on with machine code, after some seconds interpreted and with an estimated rest.
 
@@ -44,7 +49,7 @@ def is_worth_it(seconds: float, seconds_left: float) -> bool:
     """
     if compiled.cache_info().currsize:
         return True
-    if seconds < _KNOWN or seconds_left < _LOADING or find_spec("numba") is None:
+    if seconds < _KNOWN or seconds_left < _LOADING or not is_available():
         return False
     return seconds_left > _WORTH_MAKING or _is_kept()
 

@@ -17,7 +17,7 @@ from test_cli import amuros
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.cli.main import main
-from amalthea_uros.services.simulate import run_simulation
+from amalthea_uros.services.simulate import simulate
 from amalthea_uros.simulate.results import (
     CoreObservation,
     CountObservation,
@@ -324,17 +324,15 @@ def test_wrong_use_writes_nothing(case, run, tmp_path, monkeypatch):
 def test_the_library_takes_texts_and_systems(run):
     from amalthea_uros.services.inputs import open_system
 
-    found = run_simulation(
-        open_system([ADVANCED]).system, "10 ms", seed=7, mode="worst", changes=["Control_Function.period=2ms"]
-    )
+    found = simulate(open_system([ADVANCED]).system, "10 ms", seed=7, mode="worst", changes=["Control_Function.period=2ms"])
     assert (found.duration, found.seed, found.mode) == (10 * MS, 7, "worst")
     assert found["Control_Function"].jobs == 5
-    assert run_simulation(ADVANCED, 10 * MS)["Control_Function"].jobs == 10
-    assert run_simulation([ADVANCED.with_suffix(".amxmi")], 10 * MS)["Control_Function"].jobs == 10
+    assert simulate(ADVANCED, 10 * MS)["Control_Function"].jobs == 10
+    assert simulate([ADVANCED.with_suffix(".amxmi")], 10 * MS)["Control_Function"].jobs == 10
     with pytest.raises(ValueError, match="'5' has no unit"):
-        run_simulation(ADVANCED, "5")
+        simulate(ADVANCED, "5")
     with pytest.raises(ValueError, match="unknown mode 'fast'; expected one of sampled, worst, best, average"):
-        run_simulation(ADVANCED, "5s", mode="fast")
+        simulate(ADVANCED, "5s", mode="fast")
 
 
 def test_processes_give_the_same_table(tmp_path):

@@ -11,7 +11,7 @@ from amalthea_uros.perf.activities import Call, Demand, Execute
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.software import Label, Runnable
 from amalthea_uros.services.inputs import open_system
-from amalthea_uros.services.simulate import run_simulation
+from amalthea_uros.services.simulate import simulate
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.timing.job_metric import JobMetric
@@ -142,9 +142,9 @@ def test_a_part_of_a_run_has_the_same_events_as_the_whole(name):
 
 
 def test_the_library_gives_the_events():
-    simulation = run_simulation(SYSTEMS["a spinlock"], "600 us", trace=True)
+    simulation = simulate(SYSTEMS["a spinlock"], "600 us", trace=True)
     assert said(simulation.trace) == said(play(SYSTEMS["a spinlock"])[1])
-    assert run_simulation(SYSTEMS["a spinlock"], "600 us").trace is None
+    assert simulate(SYSTEMS["a spinlock"], "600 us").trace is None
 
 
 def test_a_trace_changes_nothing():
@@ -152,6 +152,6 @@ def test_a_trace_changes_nothing():
     runnables = (Runnable(name="inner", activities=(access("data", READ), varying, varying)),)
     calls = (Call(runnable="inner"), Call(runnable="inner"), varying)
     built = system(Proc("task", calls, 60, priority=1), runnables=runnables, labels=(Label(name="data"),))
-    untraced, traced = (run_simulation(built, "60 ms", trace=trace)["task"].metrics for trace in (False, True))
+    untraced, traced = (simulate(built, "60 ms", trace=trace)["task"].metrics for trace in (False, True))
     assert untraced == traced
     assert untraced[JobMetric.RESPONSE_TIME].min < untraced[JobMetric.RESPONSE_TIME].max

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from test_btf_writer import ENTITIES, PREEMPTION, TASK_A, TASK_B, in_nanoseconds
 from traces import chunks, random_trace, table
 
-from amalthea_uros.services.simulate import run_simulation
+from amalthea_uros.services.simulate import simulate
 from amalthea_uros.trace.protobuf import varint
 from amalthea_uros.trace.sinks import open_sink
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
@@ -127,13 +127,13 @@ def test_numbers_are_encoded_as_perfetto_decodes_them(number):
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_simulated_systems_are_shown_without_errors(name):
-    trace = run_simulation(SYSTEMS[name], "600 us", trace=True).trace
+    trace = simulate(SYSTEMS[name], "600 us", trace=True).trace
     shown = picture(*chunks(trace, 500))
     assert len(shown.slices) == sum(mark.change is Change.BEGIN for mark in complete(trace))
 
 
 def test_arrows_of_a_simulation_lead_from_job_to_job_of_the_chain():
-    shown = picture(run_simulation(SYSTEMS["triggers to another core"], "600 us", trace=True).trace)
+    shown = picture(simulate(SYSTEMS["triggers to another core"], "600 us", trace=True).trace)
     running = {(track, begin, end) for track, begin, end, name in shown.slices if name == "running"}
     ways = {}
     for track, time, _, [flow] in shown.instants:
