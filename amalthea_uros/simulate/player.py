@@ -82,7 +82,7 @@ class Player:
     events: Taker
     traced: tuple[int, int] = (0, 0)
     memory: Memory = field(init=False)
-    is_compiled: bool = False
+    is_compiled: bool = field(init=False, default=False)
     _regions: dict[int, int] = field(default_factory=dict)
     _values: int = 0
     _pools: dict[int, int] = field(default_factory=dict)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+from unittest.mock import patch
 
 import numpy as np
 from opponent.observation import Horizon
@@ -14,6 +15,7 @@ from opponent.to_perf import MICROSECOND, to_perf
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
+from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.player import Player
@@ -62,13 +64,13 @@ def record(system: System, options: Options, *, is_compiled: bool = False) -> Re
     player = Player(
         program,
         until=options.duration * program.units,
-        is_compiled=is_compiled,
         jobs=lambda rows: found.jobs.extend(rows.tolist()),
         observations=lambda rows: found.observations.extend(rows.tolist()),
         events=lambda rows: found.events.extend(rows.tolist()),
         traced=(traced[0] * program.units, traced[1] * program.units),
     )
-    player.run()
+    with patch.object(machine_code, "is_worth_it", lambda _seconds, _left: is_compiled):
+        player.run()
     return found
 
 

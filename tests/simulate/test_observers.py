@@ -54,6 +54,7 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Scheduler, Semaphore
 from amalthea_uros.perf.software import Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
+from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import ALL_LABELS, Options
 from amalthea_uros.simulate.results import ObservedVerdict
 from amalthea_uros.simulate.system import simulate_system
@@ -271,7 +272,7 @@ def test_events_are_observed_alike_by_machine_code(monkeypatch):
         requirements=(Requirement(name="Q", runnable="Step", limit=limit),),
     )
     interpreted = simulated(model, labels=(ALL_LABELS,))
-    monkeypatch.setattr("amalthea_uros.simulate.machine_code.is_worth_it", lambda _seconds, _left: True)
+    monkeypatch.setattr(machine_code, "is_worth_it", lambda _seconds, _left: True)
     assert simulated(model, labels=(ALL_LABELS,)) == interpreted
 
 

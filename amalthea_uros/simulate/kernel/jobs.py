@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.simulate.kernel.accounts import tell_execution, tell_of
 from amalthea_uros.simulate.kernel.activation import end_job, fire
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode, step_mode
-from amalthea_uros.simulate.kernel.cores import change_level, queue_again, run, set_level, stays
+from amalthea_uros.simulate.kernel.cores import change_level, queue_again, run, stays
 from amalthea_uros.simulate.kernel.following import follow
 from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
 from amalthea_uros.simulate.kernel.watching import begin_execution, end_execution, observe
@@ -129,13 +129,8 @@ def go_on(m: Memory, core: int) -> int:
         code = _carry_out(m, core, process, at)
         if code:
             return code - 1
-        if REQUEST <= operation <= SERVED and m[due]:
-            if not stays(m, core, process) and not _is_done(m, m[process + AT]):
-                return GO_ON
-            if m[process + YIELDS]:
-                # The point has passed: nobody has come first.
-                m[process + YIELDS] = 0
-                set_level(m, process)
+        if REQUEST <= operation <= SERVED and m[due] and not stays(m, core, process) and not _is_done(m, m[process + AT]):
+            return GO_ON
 
 
 def _lets_others_in(m: Memory, core: int, process: int) -> bool:
