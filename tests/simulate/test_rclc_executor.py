@@ -114,12 +114,18 @@ def test_a_callback_that_is_not_due_takes_no_part_in_a_chain(described):
     assert (latency.count, latency.min, latency.max) == (100, own, 10 * MS + own + 4 * US)
 
 
-@given(st.integers(1, 10_000), st.sampled_from(list(Mode)))
-@settings(max_examples=15, deadline=None)
-def test_no_bound_is_exceeded(seed, mode):
-    """Phases of messages and timers are independent of each other, and random."""
+@pytest.fixture(scope="module")
+def sample():
     system = describe(SAMPLE).system
-    bounds, found = analyze_system(system), simulate_system(system, Options(duration=600 * MS, seed=seed, mode=mode))
+    return system, analyze_system(system)
+
+
+@given(seed=st.integers(1, 10_000), mode=st.sampled_from(list(Mode)))
+@settings(max_examples=15, deadline=None)
+def test_no_bound_is_exceeded(sample, seed, mode):
+    """Phases of messages and timers are independent of each other, and random."""
+    system, bounds = sample
+    found = simulate_system(system, Options(duration=600 * MS, seed=seed, mode=mode))
     for process in bounds.processes:
         response = found[process.name].metrics.get(JobMetric.RESPONSE_TIME)
         assert response is None or process.response.best <= response.min <= response.max <= process.response.worst
