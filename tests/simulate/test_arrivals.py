@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from amalthea_uros.perf.distributions import Boundaries, Bucket, Constant, Gauss, Histogram, Sampling, Statistics, Uniform
