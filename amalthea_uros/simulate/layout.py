@@ -37,8 +37,9 @@ NEVER = 2**62
     PROCESSES_END,
     SEMAPHORES,
     SEMAPHORES_END,
+    HAS_WRITES,
     HEAD,
-) = range(27)
+) = range(28)
 
 #: Rows: an arrival is (time, stimulus); a job and an observation are as in `simulate.rows`; an event is as in `trace.table`.
 ARRIVAL_SIZE, JOB_SIZE, OBSERVATION_SIZE, EVENT_SIZE = 2, 11, 4, 7

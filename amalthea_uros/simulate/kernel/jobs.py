@@ -70,6 +70,8 @@ from amalthea_uros.simulate.operations import (
     NOTE,
     OBSERVE,
     POINT,
+    PUT,
+    REACH,
     RECEIVE,
     REPEAT,
     REQUEST,
@@ -131,6 +133,21 @@ def go_on(m: Memory, core: int) -> int:
             return code - 1
         if REQUEST <= operation <= SERVED and m[due] and not stays(m, core, process) and not _is_done(m, m[process + AT]):
             return GO_ON
+
+
+def write_first(m: Memory, core: int) -> int:
+    """Carry out the writes that directly follow an execution: a read on another core at the same instant sees them."""
+    process = m[core + RUNS]
+    while True:
+        if m[OBSERVATIONS] >= m[OBSERVATIONS_END] or m[EVENTS] >= m[EVENTS_END]:
+            return ROWS_FULL
+        at = m[process + AT]
+        operation = m[at]
+        if not (NOTE <= operation <= END_EXECUTION or operation == REACH or operation == PUT):
+            return GO_ON
+        code = _carry_out(m, core, process, at)
+        if code:
+            return code - 1
 
 
 def _lets_others_in(m: Memory, core: int, process: int) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.simulate.kernel.activation import fire, publish_all
 from amalthea_uros.simulate.kernel.budgets import replenish
 from amalthea_uros.simulate.kernel.cores import dispatch, dispatch_all, pause, stop
-from amalthea_uros.simulate.kernel.jobs import go_on
+from amalthea_uros.simulate.kernel.jobs import go_on, write_first
 from amalthea_uros.simulate.layout import (
     ARRIVAL,
     ARRIVAL_SIZE,
@@ -16,6 +16,7 @@ from amalthea_uros.simulate.layout import (
     DOMAINS_END,
     EVENTS,
     EVENTS_END,
+    HAS_WRITES,
     IS_DUE,
     ITS_CORES,
     ITS_CORES_END,
@@ -43,6 +44,12 @@ def play(m: Memory) -> int:
         needs_step = True
         while needs_step:
             needs_step = False
+            if m[HAS_WRITES]:
+                for place in range(first_core, last_core):
+                    if m[m[place] + NEEDS_STEP]:
+                        code = write_first(m, m[place])
+                        if code:
+                            return code
             for place in range(first_core, last_core):
                 core = m[place]
                 if m[core + NEEDS_STEP]:

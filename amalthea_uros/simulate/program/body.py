@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import collections
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
@@ -146,6 +146,11 @@ class Hooks:
     end: list[Operation] = field(default_factory=list)
     before: dict[int, list[Operation]] = field(default_factory=dict)
     after: dict[int, list[Operation]] = field(default_factory=dict)
+
+    def all(self) -> Iterator[Operation]:
+        """All of them."""
+        for operations in (self.start, *self.before.values(), *self.after.values(), self.end):
+            yield from operations
 
 
 @dataclass(slots=True)

@@ -44,6 +44,7 @@ from amalthea_uros.simulate.layout import (
     FULL_BUDGET,
     HAS_COOPERATIVE,
     HAS_SERVER_DEADLINE,
+    HAS_WRITES,
     HOLD_SIZE,
     HOLDS,
     INNER,
@@ -98,7 +99,7 @@ from amalthea_uros.simulate.layout import (
     TARGETS_END,
     WATCHED,
 )
-from amalthea_uros.simulate.operations import FIRE
+from amalthea_uros.simulate.operations import FIRE, PUT
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.body import BodyCompiler, Hooks
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
@@ -248,7 +249,7 @@ class _Builder:
             return None
         self._place_domains(here)
         self._place_ceilings(here)
-        self._head(here)
+        self._head(chains)
         return Program(
             memory=self.image.words,
             units=self.resources.units,
@@ -503,7 +504,7 @@ class _Builder:
         }
         self._set(record, fields)
 
-    def _head(self, here: dict[str, Dispatched]) -> None:
+    def _head(self, chains: ChainCompiler) -> None:
         lists = {
             (CORES, CORES_END): self.cores.values(),
             (DOMAINS, DOMAINS_END): dict.fromkeys(self.domains.values()),
@@ -514,4 +515,7 @@ class _Builder:
         for (first, end), records in lists.items():
             places = self.image.items(records)
             self._set(0, dict(zip((first, end), places, strict=True)))
-        self._set(0, {PLACES: _PLACES})
+        has_writes = len(self.cores) > 1 and any(
+            operation == PUT for hooks in chains.hooks.values() for operation, *_ in hooks.all()
+        )
+        self._set(0, {PLACES: _PLACES, HAS_WRITES: int(has_writes)})
