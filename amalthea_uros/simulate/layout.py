@@ -113,8 +113,8 @@ QUEUE_TIME, QUEUE_INSTANCE, QUEUE_SEQUENCE, QUEUE_CAPTURES = range(4)
 # A core.
 (STOP, BEGIN, RUNS, NEEDS_STEP, BUSY, CHOSEN, CORE_NUMBER, CORE_ENTITY, CORE_DOMAIN, CORE_SIZE) = range(10)
 
-# A domain: cores that share processes.
-(IS_DUE, RAISED, IS_STATIC, HAS_COOPERATIVE, MEMBERS, MEMBERS_END, ITS_CORES, ITS_CORES_END, DOMAIN_SIZE) = range(9)
+# A domain: cores that share processes; RAISED of them have another level than their own, PRESENT have a job.
+(IS_DUE, RAISED, PRESENT, HAS_COOPERATIVE, MEMBERS, MEMBERS_END, ITS_CORES, ITS_CORES_END, DOMAIN_SIZE) = range(9)
 
 # A stimulus; an assignment is (mode label, value). What is watched is the number of a source of events plus 1, or 0.
 (

@@ -51,11 +51,13 @@ from amalthea_uros.simulate.layout import (
     PENDING,
     PLACES,
     PREEMPTIONS,
+    PRESENT,
     QUEUE,
     QUEUE_CAPTURES,
     QUEUE_INSTANCE,
     QUEUE_SEQUENCE,
     QUEUE_TIME,
+    RAISED,
     RELATIVE_DEADLINE,
     RUNS,
     SEQUENCE,
@@ -146,10 +148,11 @@ def activate(m: Memory, process: int, stimulus: int, number: int) -> None:
 def _enqueue(m: Memory, process: int, instance: int) -> None:
     captures, end = m[process + CAPTURES], m[process + CAPTURES_END]
     size = QUEUE_CAPTURES + end - captures
-    place = m[process + FIRST_PLACE] + (m[process + PENDING] % m[PLACES]) * size
-    past = m[process + QUEUE] + m[PLACES] * size
-    if place >= past:
-        place -= m[PLACES] * size
+    place = m[process + FIRST_PLACE]
+    if m[process + PENDING]:
+        place += (m[process + PENDING] % m[PLACES]) * size
+        if place >= m[process + QUEUE] + m[PLACES] * size:
+            place -= m[PLACES] * size
     m[place + QUEUE_TIME] = m[NOW]
     m[place + QUEUE_INSTANCE] = instance
     m[ORDER] += 1
@@ -175,6 +178,7 @@ def _begin_job(m: Memory, process: int) -> None:
         m[process + DEADLINE] = m[process + OWN_DEADLINE]
     if m[process + SERVER]:
         wake(m, m[process + SERVER])
+    m[m[process + DOMAIN] + PRESENT] += 1
     m[m[process + DOMAIN] + IS_DUE] = 1
 
 
@@ -193,12 +197,14 @@ def end_job(m: Memory, core: int) -> None:
     m[process + MIGRATIONS] = 0
     m[process + IS_STARTED] = 0
     m[process + MASKS] = 0
-    restore_level(m, process)
+    if m[m[process + DOMAIN] + RAISED]:
+        restore_level(m, process)
     size = QUEUE_CAPTURES + m[process + CAPTURES_END] - m[process + CAPTURES]
     m[process + FIRST_PLACE] += size
     if m[process + FIRST_PLACE] == m[process + QUEUE] + m[PLACES] * size:
         m[process + FIRST_PLACE] = m[process + QUEUE]
     m[process + PENDING] -= 1
+    m[m[process + DOMAIN] + PRESENT] -= 1
     leave_core(m, core)
     if m[process + PENDING]:
         _begin_job(m, process)

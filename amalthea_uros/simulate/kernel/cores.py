@@ -28,7 +28,6 @@ from amalthea_uros.simulate.layout import (
     IS_COOPERATIVE,
     IS_DUE,
     IS_STARTED,
-    IS_STATIC,
     ITS_CORES,
     ITS_CORES_END,
     LEFT,
@@ -45,6 +44,7 @@ from amalthea_uros.simulate.layout import (
     OWN_LEVEL,
     PARENT,
     PREEMPTIONS,
+    PRESENT,
     RAISED,
     RUNNING_LEVEL,
     RUNS,
@@ -159,12 +159,15 @@ def stays(m: Memory, core: int, process: int) -> bool:
 
 def _most_urgent(m: Memory, domain: int) -> int:
     """The most urgent process that can execute; 0 if there is none."""
-    best = 0
-    is_static = m[domain + IS_STATIC] and m[domain + RAISED] == 0
-    for place in range(m[domain + MEMBERS], m[domain + MEMBERS_END]):
+    best, place, left, is_static = 0, m[domain + MEMBERS], m[domain + PRESENT], m[domain + RAISED] == 0
+    while left:
         process = m[place]
+        place += 1
         state = m[process + STATE]
-        if state == TERMINATED or state == WAITING:
+        if state == TERMINATED:
+            continue
+        left -= 1
+        if state == WAITING:
             continue
         if best and is_static and m[process + LEVEL] < m[best + LEVEL]:
             # Members are in the order of their levels.

@@ -51,7 +51,6 @@ from amalthea_uros.simulate.layout import (
     IS_BY_DEADLINE,
     IS_COOPERATIVE,
     IS_REPORTED,
-    IS_STATIC,
     ITS_CORES,
     ITS_CORES_END,
     LET_STAGES,
@@ -420,7 +419,6 @@ class _Builder:
             fields = {
                 MEMBERS: first,
                 MEMBERS_END: end,
-                IS_STATIC: 1,
                 HAS_COOPERATIVE: int(any(words[record + IS_COOPERATIVE] for record in members)),
             }
             self._set(domain, fields)
