@@ -36,9 +36,10 @@ from amalthea_uros.simulate.layout import (
     SEMAPHORE_NUMBER,
     SEQUENCE,
     SERVER,
+    SERVICE_NUMBER,
     STATE,
     STOP,
-    TICKET,
+    TICKETS,
     USED,
     USERS,
     WAITS_ANSWER,
@@ -254,18 +255,23 @@ def serve(m: Memory, core: int, process: int, operation: int, service: int, flag
     """
     if operation == ASK:
         m[service + ASKED] += 1
-        m[process + TICKET] = m[service + ASKED]
+        m[m[process + TICKETS] + m[service + SERVICE_NUMBER]] = m[service + ASKED]
     elif operation == SERVE:
         m[service + BEGUN] = m[service + ASKED]
     elif operation == SERVED:
         m[service + ANSWERED] = max(m[service + ANSWERED], m[service + BEGUN])
         for place in range(m[PROCESSES], m[PROCESSES_END]):
             other = m[place]
-            if m[other + WAITS_ANSWER] == service and m[other + TICKET] <= m[service + ANSWERED]:
+            if m[other + WAITS_ANSWER] == service and _is_answered(m, other, service):
                 m[other + WAITS_ANSWER] = 0
                 release(m, other)
-    elif m[process + TICKET] > m[service + ANSWERED]:
+    elif not _is_answered(m, process, service):
         m[process + WAITS_ANSWER] = service
         wait(m, core, process, flags & ACTIVE != 0)
         return False
     return True
+
+
+def _is_answered(m: Memory, process: int, service: int) -> bool:
+    """Whether a runnable has answered what a process has asked for last."""
+    return m[m[process + TICKETS] + m[service + SERVICE_NUMBER]] <= m[service + ANSWERED]

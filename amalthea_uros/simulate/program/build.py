@@ -96,6 +96,7 @@ from amalthea_uros.simulate.layout import (
     STOP,
     TARGETS,
     TARGETS_END,
+    TICKETS,
     WATCHED,
 )
 from amalthea_uros.simulate.operations import FIRE
@@ -377,6 +378,7 @@ class _Builder:
             LET_STAGES_END: lets_end,
             HOLDS: self.image.items([0] * (semaphores * HOLD_SIZE))[0],
             EVENTS_SET: self.image.items([0] * events)[0],
+            TICKETS: self.image.items([0] * len(self.resources.services))[0],
             WATCHED: self.image.items(transitions)[0] if transitions else 0,
         }
         self._set(record, fields)

@@ -28,6 +28,7 @@ from amalthea_uros.simulate.layout import (
     SEMAPHORE_ENTITY,
     SEMAPHORE_NUMBER,
     SEMAPHORE_SIZE,
+    SERVICE_NUMBER,
     SERVICE_SIZE,
     SITE_SIZE,
     STREAM_NUMBER,
@@ -92,7 +93,8 @@ class Resources:
         everything = (activity for body in system.software.bodies for activity in walk(body))
         asked = {activity.runnable: None for activity in everything if isinstance(activity, ServerCall) and activity.waits}
         self.executing = servers(system)
-        self.services = {name: self.image.record(SERVICE_SIZE) for name in asked}
+        for number, name in enumerate(asked):
+            self.services[name] = self.image.record(SERVICE_SIZE, {SERVICE_NUMBER: number})
 
     # Times.
 
