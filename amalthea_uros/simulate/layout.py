@@ -151,7 +151,7 @@ QUEUE_TIME, QUEUE_INSTANCE, QUEUE_SEQUENCE, QUEUE_CAPTURES = range(4)
 (LEFT_VALUE, RIGHT_VALUE, RIGHT_CONSTANT, RELATION, COMPARISON_SIZE) = range(5)
 
 # A semaphore, and what a process holds of it.
-(USED, USERS, CEILING, DEADLINE_CEILING, SEMAPHORE_NUMBER, SEMAPHORE_ENTITY, SEMAPHORE_SIZE) = range(7)
+(USED, USERS, CEILING, DEADLINE_CEILING, HAS_OWNER, SEMAPHORE_NUMBER, SEMAPHORE_ENTITY, SEMAPHORE_SIZE) = range(8)
 (HELD, HELD_SINCE, HOLD_SIZE) = range(3)
 
 # Some events of the operating system, as one operation names them; an entry of the list is (number, entity).

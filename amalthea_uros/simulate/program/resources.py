@@ -19,6 +19,7 @@ from amalthea_uros.simulate.layout import (
     EVERY,
     EXECUTED,
     FIRST_EFFECT,
+    HAS_OWNER,
     IS_ACTIVE_WAIT,
     NEEDS_ALL,
     NEVER,
@@ -85,6 +86,7 @@ class Resources:
                 USERS: semaphore.users,
                 CEILING: -1,
                 DEADLINE_CEILING: NEVER,
+                HAS_OWNER: int(semaphore.ownership),
                 SEMAPHORE_NUMBER: number,
                 SEMAPHORE_ENTITY: self.entities.number(EntityKind.SEMAPHORE, semaphore.name),
             }
