@@ -310,7 +310,8 @@ class _Builder:
             first, end = self.image.items(served)
             plans, plans_end = self.image.items([0] * (_PLANS * PLAN_SIZE if kind == SPORADIC else 0))
             fields = {
-                SERVER_AT: period if kind in (DEFERRABLE, POLLING_SERVER) else NEVER,
+                # The first period begins at 0: then a polling server loses its budget if it has nothing to serve.
+                SERVER_AT: 0 if kind in (DEFERRABLE, POLLING_SERVER) else NEVER,
                 BUDGET: budget,
                 FULL_BUDGET: budget,
                 SERVER_PERIOD: period,
