@@ -61,3 +61,9 @@ def play(model, until, traced=False):
     found = record(model, Options(duration=until * US, traced=(0, until * US) if traced else None))
     assert found.program.left_out == {}
     return Played(found)
+
+
+def allocated(model, **changes):
+    """A system in which some tasks are allocated differently: fields of the allocation by the name of the task."""
+    tasks = (replace(each, **changes.get(each.task, {})) for each in model.mapping.tasks)
+    return replace(model, mapping=replace(model.mapping, tasks=tuple(tasks)))

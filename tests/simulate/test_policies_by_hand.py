@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from by_hand import built, play
+from by_hand import allocated, built, play
 from hand_made_systems import CORES, Proc, ticks
 
 from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler
@@ -50,9 +50,8 @@ def test_time_slices_of_different_lengths():
         Proc("b", (ticks(5),), 1000, priority=1),
         schedulers=[on(Policy.PRIORITY_BASED_ROUND_ROBIN)],
     )
-    lengths = {"a": 3, "b": 2}
-    allocations = (replace(each, parameters=(time("timeSliceLength", lengths[each.task]),)) for each in model.mapping.tasks)
-    found = play(replace(model, mapping=replace(model.mapping, tasks=tuple(allocations))), 100)
+    slices = {name: {"parameters": (time("timeSliceLength", length),)} for name, length in (("a", 3), ("b", 2))}
+    found = play(allocated(model, **slices), 100)
     assert (found["a"], found["b"]) == ([(0, 0, 11)], [(0, 3, 12)])
     assert (found.column("a", Job.PREEMPTIONS), found.column("b", Job.PREEMPTIONS)) == ([2], [2])
 
@@ -172,7 +171,6 @@ def test_a_task_with_an_affinity_does_not_migrate():
     # `low` may use c1 only: it waits there until 11, although c0 is idle from 4 on.
     mid, low = Proc("mid", (ticks(4),), 1000, priority=2), Proc("low", (ticks(6),), 1000, priority=1)
     high = Proc("high", (ticks(9),), 1000, 2, priority=3)
-    model = built(mid, low, high, schedulers=GLOBAL)
-    allocations = (replace(each, cores=("c1",) if each.task in ("low", "high") else ()) for each in model.mapping.tasks)
-    found = play(replace(model, mapping=replace(model.mapping, tasks=tuple(allocations))), 100)
+    only = {"cores": ("c1",)}
+    found = play(allocated(built(mid, low, high, schedulers=GLOBAL), low=only, high=only), 100)
     assert (found["mid"], found["high"], found["low"]) == ([(0, 0, 4)], [(2, 2, 11)], [(0, 0, 15)])
