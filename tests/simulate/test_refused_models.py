@@ -24,9 +24,10 @@ from amalthea_uros.perf.activities import (
     WaitEvent,
 )
 from amalthea_uros.perf.conditions import ChannelFillIs, ModeAssignment, ModeLabelsAre, ModeValueIs, Relation, Undecided
+from amalthea_uros.perf.events import CustomEvent, LabelEvent, ModeLabelEvent, RunnableChange, RunnableEvent
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.software import Mode, ModeLabel, OsEvent, Runnable
-from amalthea_uros.perf.stimuli import Counter, Custom, Periodic
+from amalthea_uros.perf.stimuli import Counter, Custom, EventTriggered, Periodic
 from amalthea_uros.simulate.kernel import jobs
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.system import simulate_system
@@ -138,6 +139,25 @@ def test_an_activity_that_cannot_be_simulated(activity, reason):
 def test_a_stimulus_that_cannot_be_simulated(stimulus, reason):
     model = built(Proc("T", (ticks(1),), stimuli=("timer",), priority=1), OTHER, stimuli=(stimulus,), **MODES)
     assert refused(model) == [("SIM001", f"'T' is not simulated: {reason}")]
+
+
+@pytest.mark.parametrize(
+    ("event", "reason"),
+    [
+        (RunnableEvent(name="e", runnable="r", change=RunnableChange.SUSPEND), "the rate of the event 'e' is unbounded"),
+        (ModeLabelEvent(name="e", label="state"), "stimuli also raise the event 'e'"),
+        (CustomEvent(name="e"), "no activity in the model raises the event 'e'"),
+        (CustomEvent(name="another"), "the event 'e' is not defined in the model"),
+        (LabelEvent(name="e", label="nowhere"), "no activity in the model raises an event of the stimulus 'reacts'"),
+    ],
+)
+def test_events_of_a_stimulus_that_also_occur_elsewhere_or_nowhere(event, reason):
+    assigning = Periodic(name="assigning", period=10 * US, assignments=(ModeAssignment(label="state", value="on"),))
+    stimuli = (EventTriggered(name="reacts", events=("e",)), assigning)
+    task = Proc("T", (ticks(1),), stimuli=("reacts",), priority=1)
+    calls = Proc("other", (Call(runnable="r"),), 10, priority=1, scheduler="s1")
+    parts = {"runnables": (Runnable(name="r", activities=(ticks(2),)),), "events": (event,), **MODES}
+    assert refused(built(task, calls, stimuli=stimuli, **parts)) == [("SIM001", f"'T' is not simulated: {reason}")]
 
 
 def test_a_policy_that_is_not_known():

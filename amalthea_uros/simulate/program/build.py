@@ -113,6 +113,7 @@ from amalthea_uros.simulate.program.scheduling import Dispatched, Dispatching
 from amalthea_uros.simulate.program.watches import Source, Watches, watched
 from amalthea_uros.simulate.sampling.random_source import RandomSource
 from amalthea_uros.simulate.sampling.streams import Stream
+from amalthea_uros.timing.activation import UnknownActivationError
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.critical_sections import protection_of
 from amalthea_uros.timing.preemption import preemption
@@ -467,12 +468,14 @@ class _Builder:
             stimulus, targets = system.stimuli_by_name[name], activated.get(name, [])
             try:
                 self._stimulus(stimulus, record, targets)
+                if isinstance(stimulus, EventTriggered) and not self.context.activations.causes(stimulus):
+                    raise NotSimulatedError(f"no activity in the model raises an event of the stimulus {name!r}")
                 is_internal = isinstance(stimulus, InterProcess | EventTriggered)
                 is_watched = self.image.words[record + STIMULUS_SOURCE] > 0
                 if not is_internal and (targets or stimulus.assignments or is_watched):
                     first = min((order[target] for target in targets), default=len(order))
                     external.append((first, record, self._occurrences(stimulus)))
-            except (NotSimulatedError, UnknownArrivalError) as error:
+            except (NotSimulatedError, UnknownArrivalError, UnknownActivationError) as error:
                 for target in targets:
                     self.left_out[target] = str(error)
         # Of simultaneous activations, that of the process comes first that is the first one of the model.
