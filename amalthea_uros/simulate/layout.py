@@ -101,7 +101,7 @@ ARRIVAL_SIZE, JOB_SIZE, OBSERVATION_SIZE, EVENT_SIZE = 2, 11, 4, 7
     WAITS_EVENTS,
     EVENTS_SET,
     WAITS_ANSWER,
-    TICKET,
+    TICKETS,
     IS_CHOSEN,
     WATCHED,
     PROCESS_SIZE,
@@ -152,14 +152,14 @@ QUEUE_TIME, QUEUE_INSTANCE, QUEUE_SEQUENCE, QUEUE_CAPTURES = range(4)
 (LEFT_VALUE, RIGHT_VALUE, RIGHT_CONSTANT, RELATION, COMPARISON_SIZE) = range(5)
 
 # A semaphore, and what a process holds of it.
-(USED, USERS, CEILING, DEADLINE_CEILING, SEMAPHORE_NUMBER, SEMAPHORE_ENTITY, SEMAPHORE_SIZE) = range(7)
+(USED, USERS, CEILING, DEADLINE_CEILING, HAS_OWNER, SEMAPHORE_NUMBER, SEMAPHORE_ENTITY, SEMAPHORE_SIZE) = range(8)
 (HELD, HELD_SINCE, HOLD_SIZE) = range(3)
 
 # Some events of the operating system, as one operation names them; an entry of the list is (number, entity).
 (EVENT_LIST, EVENT_LIST_END, OF_PROCESS, NEEDS_ALL, IS_ACTIVE_WAIT, EVENT_ROW_SIZE) = range(6)
 
-# A runnable that others ask for.
-(ASKED, BEGUN, ANSWERED, SERVICE_SIZE) = range(4)
+# A runnable that others ask for; a process has a ticket for each: the number of what it has asked for last.
+(ASKED, BEGUN, ANSWERED, SERVICE_NUMBER, SERVICE_SIZE) = range(5)
 
 # A server with a budget; a plan is (time, amount).
 (

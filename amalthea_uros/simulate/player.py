@@ -144,6 +144,8 @@ class Player:
             elif code == QUEUE_FULL:
                 self._grow_queues()
             elif code == ENDLESS:
+                # What was observed up to here counts.
+                self._take_rows()
                 raise EndlessJobError(int(self.memory[CAUSE]))
 
     def _consider_machine_code(self, seconds: float, times_left: float) -> None:

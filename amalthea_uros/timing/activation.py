@@ -93,13 +93,18 @@ class Activations:
             return found
         if self._incomplete:
             raise UnknownActivationError(f"the processes that trigger {name!r} are unknown: {self._incomplete}")
-        causes = self._triggers.get(name, []) if isinstance(stimulus, InterProcess) else self._causes(stimulus)
+        causes = self._triggers.get(name, []) if isinstance(stimulus, InterProcess) else self.causes(stimulus)
         if not causes:
             raise UnknownActivationError(f"no process triggers {name!r}")
         return _counted(aggregated(tuple(self._caused_by(cause, output, above) for cause in causes)), stimulus.counter)
 
-    def _causes(self, stimulus: EventTriggered) -> list[Cause]:
-        """The processes in which the events of a stimulus occur."""
+    def causes(self, stimulus: EventTriggered) -> list[Cause]:
+        """The processes in which the events of a stimulus occur.
+
+        Raises
+        ------
+        UnknownActivationError : they can occur otherwise, too, or it is unknown where.
+        """
         found: list[Cause] = []
         for name in stimulus.events:
             event = self.system.events_by_name.get(name)

@@ -204,6 +204,8 @@ def dispatch_all(m: Memory, domain: int) -> None:
         m[chosen + CHOSEN] = best
         m[best + IS_CHOSEN] = 1
     for place in range(first, last):
+        _keep_on_core(m, domain, m[place])
+    for place in range(first, last):
         core = m[place]
         if m[core + CHOSEN]:
             m[m[core + CHOSEN] + IS_CHOSEN] = 0
@@ -227,6 +229,18 @@ def _free_core(m: Memory, domain: int, process: int) -> int:
             if found == 0:
                 found = core
     return found
+
+
+def _keep_on_core(m: Memory, domain: int, core: int) -> None:
+    """If the process of a core was chosen for another one, it changes places with that chosen here."""
+    process, guest = m[core + RUNS], m[core + CHOSEN]
+    if process == 0 or process == guest or m[process + IS_CHOSEN] == 0:
+        return
+    for place in range(m[domain + ITS_CORES], m[domain + ITS_CORES_END]):
+        other = m[place]
+        if m[other + CHOSEN] == process and m[m[guest + ALLOWED] + m[other + CORE_NUMBER]]:
+            m[core + CHOSEN] = process
+            m[other + CHOSEN] = guest
 
 
 def give(m: Memory, core: int, process: int) -> None:

@@ -16,6 +16,7 @@ from amalthea_uros.simulate.layout import (
     EVENT_LIST_END,
     EVENTS,
     EVENTS_SET,
+    HAS_OWNER,
     HELD,
     HELD_SINCE,
     HOLD_SIZE,
@@ -36,9 +37,10 @@ from amalthea_uros.simulate.layout import (
     SEMAPHORE_NUMBER,
     SEQUENCE,
     SERVER,
+    SERVICE_NUMBER,
     STATE,
     STOP,
-    TICKET,
+    TICKETS,
     USED,
     USERS,
     WAITS_ANSWER,
@@ -152,18 +154,20 @@ def _grant(m: Memory, process: int, semaphore: int, amount: int) -> None:
 
 def unlock(m: Memory, process: int, semaphore: int) -> None:
     """Release a semaphore; of those that wait, the most urgent ones get it."""
-    hold, entity = _hold(m, process, semaphore), m[semaphore + SEMAPHORE_ENTITY]
-    if m[hold + HELD] == 0:
+    holder, entity, amount = _holder(m, process, semaphore), m[semaphore + SEMAPHORE_ENTITY], 1
+    if holder:
+        hold = _hold(m, holder, semaphore)
+        # Who holds it exclusively has all of it.
+        amount = m[hold + HELD] if m[hold + HELD] == m[semaphore + USERS] else 1
+        m[hold + HELD] -= amount
+    elif m[semaphore + HAS_OWNER] or m[semaphore + USED] == 0:
         return
-    # Who holds it exclusively has all of it.
-    amount = m[hold + HELD] if m[hold + HELD] == m[semaphore + USERS] else 1
     m[semaphore + USED] -= amount
-    m[hold + HELD] -= amount
     tell_of(m, _RELEASED, process, entity)
     change, was_wanted = m[EVENTS], _is_wanted(m, semaphore)
     _tell_change(m, semaphore, m[semaphore + USED] + amount, was_wanted, was_wanted)
-    if m[semaphore + CEILING] >= 0:
-        change_level(m, process)
+    if holder and m[semaphore + CEILING] >= 0:
+        change_level(m, holder)
     best = _first_waiting(m, semaphore)
     while best:
         m[best + WAITS_FOR] = 0
@@ -175,6 +179,17 @@ def unlock(m: Memory, process: int, semaphore: int) -> None:
         # The change comes before those who get it now, and is complete only after them.
         m[change + 5] = m[semaphore + USED]
         m[change + 6] = 2 * was_wanted + _is_wanted(m, semaphore)
+
+
+def _holder(m: Memory, process: int, semaphore: int) -> int:
+    """Whose use of a semaphore a process ends: its own, or without ownership that of any other; 0 if there is none."""
+    if m[_hold(m, process, semaphore) + HELD]:
+        return process
+    if not m[semaphore + HAS_OWNER]:
+        for place in range(m[PROCESSES], m[PROCESSES_END]):
+            if m[_hold(m, m[place], semaphore) + HELD]:
+                return m[place]
+    return 0
 
 
 def _first_waiting(m: Memory, semaphore: int) -> int:
@@ -254,18 +269,23 @@ def serve(m: Memory, core: int, process: int, operation: int, service: int, flag
     """
     if operation == ASK:
         m[service + ASKED] += 1
-        m[process + TICKET] = m[service + ASKED]
+        m[m[process + TICKETS] + m[service + SERVICE_NUMBER]] = m[service + ASKED]
     elif operation == SERVE:
         m[service + BEGUN] = m[service + ASKED]
     elif operation == SERVED:
         m[service + ANSWERED] = max(m[service + ANSWERED], m[service + BEGUN])
         for place in range(m[PROCESSES], m[PROCESSES_END]):
             other = m[place]
-            if m[other + WAITS_ANSWER] == service and m[other + TICKET] <= m[service + ANSWERED]:
+            if m[other + WAITS_ANSWER] == service and _is_answered(m, other, service):
                 m[other + WAITS_ANSWER] = 0
                 release(m, other)
-    elif m[process + TICKET] > m[service + ANSWERED]:
+    elif not _is_answered(m, process, service):
         m[process + WAITS_ANSWER] = service
         wait(m, core, process, flags & ACTIVE != 0)
         return False
     return True
+
+
+def _is_answered(m: Memory, process: int, service: int) -> bool:
+    """Whether a runnable has answered what a process has asked for last."""
+    return m[m[process + TICKETS] + m[service + SERVICE_NUMBER]] <= m[service + ANSWERED]

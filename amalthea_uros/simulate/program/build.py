@@ -96,6 +96,7 @@ from amalthea_uros.simulate.layout import (
     STOP,
     TARGETS,
     TARGETS_END,
+    TICKETS,
     WATCHED,
 )
 from amalthea_uros.simulate.operations import FIRE, PUT
@@ -112,6 +113,7 @@ from amalthea_uros.simulate.program.scheduling import Dispatched, Dispatching
 from amalthea_uros.simulate.program.watches import Source, Watches, watched
 from amalthea_uros.simulate.sampling.random_source import RandomSource
 from amalthea_uros.simulate.sampling.streams import Stream
+from amalthea_uros.timing.activation import UnknownActivationError
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.critical_sections import protection_of
 from amalthea_uros.timing.preemption import preemption
@@ -309,7 +311,8 @@ class _Builder:
             first, end = self.image.items(served)
             plans, plans_end = self.image.items([0] * (_PLANS * PLAN_SIZE if kind == SPORADIC else 0))
             fields = {
-                SERVER_AT: period if kind in (DEFERRABLE, POLLING_SERVER) else NEVER,
+                # The first period begins at 0: then a polling server loses its budget if it has nothing to serve.
+                SERVER_AT: 0 if kind in (DEFERRABLE, POLLING_SERVER) else NEVER,
                 BUDGET: budget,
                 FULL_BUDGET: budget,
                 SERVER_PERIOD: period,
@@ -377,6 +380,7 @@ class _Builder:
             LET_STAGES_END: lets_end,
             HOLDS: self.image.items([0] * (semaphores * HOLD_SIZE))[0],
             EVENTS_SET: self.image.items([0] * events)[0],
+            TICKETS: self.image.items([0] * len(self.resources.services))[0],
             WATCHED: self.image.items(transitions)[0] if transitions else 0,
         }
         self._set(record, fields)
@@ -463,12 +467,14 @@ class _Builder:
             stimulus, targets = system.stimuli_by_name[name], activated.get(name, [])
             try:
                 self._stimulus(stimulus, record, targets)
+                if isinstance(stimulus, EventTriggered) and not self.context.activations.causes(stimulus):
+                    raise NotSimulatedError(f"no activity in the model raises an event of the stimulus {name!r}")
                 is_internal = isinstance(stimulus, InterProcess | EventTriggered)
                 is_watched = self.image.words[record + STIMULUS_SOURCE] > 0
                 if not is_internal and (targets or stimulus.assignments or is_watched):
                     first = min((order[target] for target in targets), default=len(order))
                     external.append((first, record, self._occurrences(stimulus)))
-            except (NotSimulatedError, UnknownArrivalError) as error:
+            except (NotSimulatedError, UnknownArrivalError, UnknownActivationError) as error:
                 for target in targets:
                     self.left_out[target] = str(error)
         # Of simultaneous activations, that of the process comes first that is the first one of the model.

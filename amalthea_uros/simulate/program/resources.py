@@ -19,6 +19,7 @@ from amalthea_uros.simulate.layout import (
     EVERY,
     EXECUTED,
     FIRST_EFFECT,
+    HAS_OWNER,
     IS_ACTIVE_WAIT,
     NEEDS_ALL,
     NEVER,
@@ -28,6 +29,7 @@ from amalthea_uros.simulate.layout import (
     SEMAPHORE_ENTITY,
     SEMAPHORE_NUMBER,
     SEMAPHORE_SIZE,
+    SERVICE_NUMBER,
     SERVICE_SIZE,
     SITE_SIZE,
     STREAM_NUMBER,
@@ -84,6 +86,7 @@ class Resources:
                 USERS: semaphore.users,
                 CEILING: -1,
                 DEADLINE_CEILING: NEVER,
+                HAS_OWNER: int(semaphore.ownership),
                 SEMAPHORE_NUMBER: number,
                 SEMAPHORE_ENTITY: self.entities.number(EntityKind.SEMAPHORE, semaphore.name),
             }
@@ -92,7 +95,8 @@ class Resources:
         everything = (activity for body in system.software.bodies for activity in walk(body))
         asked = {activity.runnable: None for activity in everything if isinstance(activity, ServerCall) and activity.waits}
         self.executing = servers(system)
-        self.services = {name: self.image.record(SERVICE_SIZE) for name in asked}
+        for number, name in enumerate(asked):
+            self.services[name] = self.image.record(SERVICE_SIZE, {SERVICE_NUMBER: number})
 
     # Times.
 

@@ -1,0 +1,176 @@
+"""Scheduling policies: schedules derived by hand."""
+
+from dataclasses import replace
+
+import pytest
+from by_hand import allocated, built, play
+from hand_made_systems import CORES, Proc, ticks
+
+from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler
+from amalthea_uros.simulate.rows import Job
+from amalthea_uros.trace.table import EventKind
+from amalthea_uros.units import MICROSECOND as US
+
+
+def on(policy, cores=("c0",), **more):
+    return Scheduler(name="s0", policy=policy, cores=cores, **more)
+
+
+def time(name, microseconds):
+    return Parameter(name=name, values=(Duration(microseconds * US),))
+
+
+def test_rate_monotonic_serves_the_shortest_period_first():
+    slow, fast = Proc("slow", (ticks(4),), 20), Proc("fast", (ticks(2),), 5)
+    found = play(built(slow, fast, schedulers=[on(Policy.RATE_MONOTONIC)]), 20)
+    assert found["fast"] == [(0, 0, 2), (5, 5, 7), (10, 10, 12), (15, 15, 17)]
+    # 2..5 and 7..8
+    assert found["slow"] == [(0, 2, 8)]
+
+
+def test_deadline_monotonic_serves_the_shortest_deadline_first():
+    early, late = Proc("early", (ticks(2),), 20, 1, deadline=4), Proc("late", (ticks(3),), 10, deadline=9)
+    found = play(built(late, early, schedulers=[on(Policy.DEADLINE_MONOTONIC)]), 20)
+    assert found["early"] == [(1, 1, 3)]
+    assert found["late"] == [(0, 0, 5), (10, 10, 13)]
+
+
+def test_of_equal_deadlines_the_earlier_activation_goes_first():
+    # `first` and `then` have the deadline 10; that of `last`, 12, is later. At 3 `then` does not preempt.
+    first, then = Proc("first", (ticks(4),), 1000, deadline=10), Proc("then", (ticks(2),), 1000, 3, deadline=7)
+    last = Proc("last", (ticks(1),), 1000, 1, deadline=11)
+    found = play(built(last, then, first, schedulers=[on(Policy.EARLIEST_DEADLINE_FIRST)]), 100)
+    assert (found["first"], found["then"], found["last"]) == ([(0, 0, 4)], [(3, 4, 6)], [(1, 6, 7)])
+
+
+def test_time_slices_of_different_lengths():
+    # a (3 at a time) and b (2 at a time): a 0..3, b 3..5, a 5..8, b 8..10, a 10..11, b 11..12.
+    model = built(
+        Proc("a", (ticks(7),), 1000, priority=1),
+        Proc("b", (ticks(5),), 1000, priority=1),
+        schedulers=[on(Policy.PRIORITY_BASED_ROUND_ROBIN)],
+    )
+    slices = {name: {"parameters": (time("timeSliceLength", length),)} for name, length in (("a", 3), ("b", 2))}
+    found = play(allocated(model, **slices), 100)
+    assert (found["a"], found["b"]) == ([(0, 0, 11)], [(0, 3, 12)])
+    assert (found.column("a", Job.PREEMPTIONS), found.column("b", Job.PREEMPTIONS)) == ([2], [2])
+
+
+def server(policy, capacity, period, priority=2):
+    parameters = (time("capacity", capacity), time("period", period))
+    return Scheduler(name="server", policy=policy, parent=Parent(scheduler="s0", priority=priority), parameters=parameters)
+
+
+@pytest.mark.parametrize(
+    ("policy", "end", "rest"),
+    [
+        # A budget of 3 in 10, a job of 5 at 4. Deferrable: 4..7, then with the budget of 10: 10..12. `rest` executes in between.
+        (Policy.DEFERRABLE_SERVER, 12, [(0, 0, 14)]),
+        # At 0 the polling server has nothing to serve and loses its budget: 10..13, 20..22.
+        (Policy.POLLING_SERVER, 22, [(0, 0, 9)]),
+        # 3 used from 4 on come back at 14: 4..7, 14..16.
+        (Policy.SPORADIC_SERVER, 16, [(0, 0, 12)]),
+    ],
+)
+def test_a_server_spends_its_budget_and_gets_it_back(policy, end, rest):
+    job = Proc("job", (ticks(5),), 1000, 4, scheduler="server", priority=1)
+    # Below the server; 9 ticks.
+    low = Proc("low", (ticks(9),), 1000, priority=1)
+    found = play(built(job, low, schedulers=[on(Policy.OSEK), server(policy, 3, 10)]), 100)
+    assert found["job"][0][2] == end
+    assert found["low"] == rest
+
+
+def test_a_polling_server_loses_what_is_left_when_it_has_nothing_to_serve():
+    # `a` is served 0..1 and leaves 2, which `b` at 3 does not get before 10.
+    a, b = (Proc(name, (ticks(1),), 1000, at, scheduler="server", priority=1) for name, at in (("a", 0), ("b", 3)))
+    found = play(built(a, b, schedulers=[on(Policy.OSEK), server(Policy.POLLING_SERVER, 3, 10)]), 100)
+    assert (found["a"], found["b"]) == ([(0, 0, 1)], [(3, 10, 11)])
+
+
+def test_a_bandwidth_server_goes_on_with_a_later_deadline():
+    # Budget 2 in 8: the job of 5 at 0 has the deadlines 8, 16, 24. `rival` with deadline 12 (4 ticks) goes between the first two.
+    parameters = (time("capacity", 2), time("period", 8))
+    cbs = Scheduler(
+        name="server", policy=Policy.CONSTANT_BANDWIDTH_SERVER, parent=Parent(scheduler="s0"), parameters=parameters
+    )
+    job = Proc("job", (ticks(5),), 1000, scheduler="server", priority=1)
+    rival, last = Proc("rival", (ticks(4),), 1000, deadline=12), Proc("last", (ticks(1),), 1000, deadline=20)
+    found = play(built(job, rival, last, schedulers=[on(Policy.EARLIEST_DEADLINE_FIRST), cbs]), 100)
+    # job 0..2, rival 2..6, job 6..8, last 8..9, job 9..10.
+    assert (found["job"], found["rival"], found["last"]) == ([(0, 0, 10)], [(0, 2, 6)], [(0, 8, 9)])
+
+
+def test_fixed_priorities_of_a_parent_above_deadlines_of_a_child_with_a_server_beside():
+    # s0: child `edf` at 2, `server` at 3 (1 in 4), task `low` at 1. In `edf`: x (deadline 9) before y (deadline 12).
+    schedulers = [
+        on(Policy.OSEK),
+        Scheduler(name="edf", policy=Policy.EARLIEST_DEADLINE_FIRST, parent=Parent(scheduler="s0", priority=2)),
+        server(Policy.DEFERRABLE_SERVER, 1, 4, priority=3),
+    ]
+    y = Proc("y", (ticks(3),), 1000, scheduler="edf", deadline=12)
+    x = Proc("x", (ticks(2),), 1000, 2, scheduler="edf", deadline=9)
+    served = Proc("served", (ticks(2),), 1000, 1, scheduler="server", priority=1)
+    low = Proc("low", (ticks(1),), 1000, priority=1)
+    found = play(built(y, x, served, low, schedulers=schedulers), 100)
+    # y 0..1, served 1..2 (budget used up), x 2..4, served 4..5, y 5..7, low 7..8.
+    assert (found["y"], found["x"]) == ([(0, 0, 7)], [(2, 2, 4)])
+    assert (found["served"], found["low"]) == ([(1, 1, 5)], [(0, 7, 8)])
+
+
+def test_children_of_a_parent_with_fixed_priorities_are_compared_by_their_own_priorities_first():
+    # The task of priority 1 below the more urgent child precedes that of priority 9 below the other one.
+    schedulers = [
+        on(Policy.FIXED_PRIORITY_PREEMPTIVE),
+        *(
+            Scheduler(name=name, policy=Policy.FIXED_PRIORITY_PREEMPTIVE, parent=Parent(scheduler="s0", priority=priority))
+            for name, priority in (("upper", 2), ("lower", 1))
+        ),
+    ]
+    nine, one = (
+        Proc("nine", (ticks(3),), 1000, scheduler="lower", priority=9),
+        Proc("one", (ticks(2),), 1000, 1, scheduler="upper", priority=1),
+    )
+    found = play(built(nine, one, schedulers=schedulers), 100)
+    assert (found["nine"], found["one"]) == ([(0, 0, 5)], [(1, 1, 3)])
+
+
+def test_a_server_within_a_server_is_bound_by_both_budgets():
+    # The outer one has 4 in 10, the inner one 3 in 5: 0..3 inner budget, 5..6 outer budget, then 10..13, 15..16.
+    inner = replace(server(Policy.DEFERRABLE_SERVER, 3, 5), name="inner", parent=Parent(scheduler="server", priority=1))
+    job = Proc("job", (ticks(8),), 1000, scheduler="inner", priority=1)
+    found = play(built(job, schedulers=[on(Policy.OSEK), server(Policy.DEFERRABLE_SERVER, 4, 10), inner]), 100)
+    assert found["job"] == [(0, 0, 16)]
+
+
+GLOBAL = [on(Policy.FIXED_PRIORITY_PREEMPTIVE, CORES)]
+
+
+def test_who_has_a_core_stays_there_if_somebody_else_has_to_give_way():
+    # Two cores: `mid` on c0 and `low` on c1 when `high` comes at 2. `low` gives way, and `mid` is not disturbed.
+    mid, low = Proc("mid", (ticks(6),), 1000, priority=2), Proc("low", (ticks(6),), 1000, priority=1)
+    high = Proc("high", (ticks(3),), 1000, 2, priority=3)
+    found = play(built(mid, low, high, schedulers=GLOBAL), 100, traced=True)
+    assert (found["mid"], found["high"], found["low"]) == ([(0, 0, 6)], [(2, 2, 5)], [(0, 0, 9)])
+    assert (found.column("mid", Job.PREEMPTIONS), found.column("mid", Job.MIGRATIONS)) == ([0], [0])
+    assert found.events("high", EventKind.START) == [(2, EventKind.START, "c1", 0)]
+    assert found.column("low", Job.MIGRATIONS) == [0]
+
+
+def test_a_job_resumes_on_another_core_and_that_is_counted():
+    # `low` is preempted on c1 at 2; c0 is free at 4, so that it goes on there.
+    mid, low = Proc("mid", (ticks(4),), 1000, priority=2), Proc("low", (ticks(6),), 1000, priority=1)
+    high = Proc("high", (ticks(9),), 1000, 2, priority=3)
+    found = play(built(mid, low, high, schedulers=GLOBAL), 100, traced=True)
+    assert found["low"] == [(0, 0, 8)]
+    assert found.column("low", Job.MIGRATIONS) == [1]
+    assert found.events("low", EventKind.RESUME) == [(4, EventKind.RESUME, "c0", 0)]
+
+
+def test_a_task_with_an_affinity_does_not_migrate():
+    # `low` may use c1 only: it waits there until 11, although c0 is idle from 4 on.
+    mid, low = Proc("mid", (ticks(4),), 1000, priority=2), Proc("low", (ticks(6),), 1000, priority=1)
+    high = Proc("high", (ticks(9),), 1000, 2, priority=3)
+    only = {"cores": ("c1",)}
+    found = play(allocated(built(mid, low, high, schedulers=GLOBAL), low=only, high=only), 100)
+    assert (found["mid"], found["high"], found["low"]) == ([(0, 0, 4)], [(2, 2, 11)], [(0, 0, 15)])
