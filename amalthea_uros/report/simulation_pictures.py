@@ -23,7 +23,6 @@ from amalthea_uros.report.pictures.windows import default_window
 from amalthea_uros.services.names import require
 from amalthea_uros.services.recording import record_events
 from amalthea_uros.services.simulate import SimulationResult
-from amalthea_uros.simulate import results
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import ChainObservation, ChainQuantity, MetricObservation, Occurrence, ProcessObservation
 from amalthea_uros.timing.job_metric import JobMetric
@@ -175,7 +174,8 @@ def histogram_picture(result: SimulationResult, name: str) -> str:
 
 def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: MetricObservation) -> str:
     assert observed.histogram is not None
-    edges, counts = _whole_bins(observed.histogram)
+    # Bins are a whole number of picoseconds wide.
+    edges = tuple(map(int, observed.histogram.edges))
     words = quantity.replace("_", " ")
     marks = [Mark("min", observed.min), Mark("mean", observed.mean), Mark("max", observed.max)]
     deadline = _deadlines(result).get(name) if quantity == JobMetric.RESPONSE_TIME else None
@@ -183,15 +183,8 @@ def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: 
         marks.append(Mark("deadline", deadline, MarkKind.LIMIT))
     things = "jobs" if quantity in tuple(JobMetric) else "observations"
     title = f"{_model(result)}: {words} of {name}"
-    chart = Histogram(title, edges, (Series("simulated", counts),), tuple(marks), words, things)
+    chart = Histogram(title, edges, (Series("simulated", observed.histogram.counts),), tuple(marks), words, things)
     return histogram(chart)
-
-
-def _whole_bins(found: results.Histogram) -> tuple[tuple[Time, ...], tuple[int, ...]]:
-    """Edges in whole picoseconds, which rise: narrower bins are taken together."""
-    size = ceil(1 / found.width)
-    counts = tuple(sum(found.counts[first : first + size]) for first in range(0, len(found.counts), size))
-    return tuple(floor(found.start + number * size * found.width) for number in range(len(counts) + 1)), counts
 
 
 def _deadlines(result: SimulationResult) -> dict[str, Time]:
