@@ -56,7 +56,7 @@ def simulate_system(system, options, sinks=()):
         std=0.0,
         at_min=Occurrence(instance=0, time=Fraction(0)),
         at_max=Occurrence(instance=0, time=Fraction(0)),
-        histogram=Histogram(start=Fraction(response), width=Fraction(1, 3), counts=(options.duration // period,)),
+        histogram=Histogram(start=Fraction(response), width=Fraction(1), counts=(options.duration // period,)),
     )
     process = ProcessObservation(
         name="Control_Function",
@@ -249,6 +249,18 @@ def test_an_interrupted_run_leaves_no_trace(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_ctrl_c_before_the_run_is_no_finding(run, monkeypatch):
+    def interrupted(*_arguments, **_options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("amalthea_uros.services.simulate.open_system", interrupted)
+    assert run(ADVANCED) == (130, "", "interrupted\n")
+
+
+def test_a_dash_is_standard_output(run):
+    assert json.loads(run(ADVANCED, "--output", "json=-")[1])["duration_ps"] == 1000 * MS
+
+
 def test_pictures(run, tmp_path):
     paths = {name: tmp_path / f"{name}.svg" for name in ("gantt", "timeline", "histogram")}
     code, _, errors = run(
@@ -307,6 +319,23 @@ WRONG = {
     ),
     "a trace window after the end": (["--trace", "t.btf", "--trace-window", "3s..4s"], "the run ends at 1 s"),
     "a window after the end": (["--window", "3s..4s", "--gantt", "g.svg"], "the run ends at 1 s"),
+    "a window of nothing": (["--window", "1ms..2ms"], "--window chooses what --gantt and --timeline show"),
+    "a trace on standard output": (["--trace", "-"], "only --output writes to standard output"),
+    "a picture on standard output": (["--gantt", "-"], "only --output writes to standard output"),
+    "a file for two pictures": (["--gantt", "g.svg", "--timeline", "Control_Function=g.svg"], "g.svg is the file of 2 options"),
+    "a file for a result and a table": (["--output", "json=x.json", "--table", "x.json"], "x.json is the file of 2 options"),
+    "a result that cannot be written": (
+        ["--output", "json=nowhere/x.json"],
+        "nowhere/x.json: XMI101 error: the file cannot be",
+    ),
+    "a table that cannot be written": (["--table", "nowhere/x.csv"], "nowhere/x.csv: XMI101 error: the file cannot be written"),
+    "a picture that cannot be written": (
+        ["--gantt", "nowhere/x.svg"],
+        "nowhere/x.svg: XMI101 error: the file cannot be written",
+    ),
+    "a trace that cannot be written": (["--trace", "nowhere/x.btf"], "nowhere/x.btf: TRC101 error: the file cannot be written"),
+    "metrics of many runs": (["--metrics", "--runs", "2"], "--table FILE has the metrics of all runs"),
+    "a cluster for one run": (["--cluster", "tcp://nowhere:8786"], "--cluster executes the runs of --sweep or --runs"),
     "no runs": (["--runs", "0"], "x>=1"),
 }
 
