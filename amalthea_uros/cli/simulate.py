@@ -172,8 +172,8 @@ def command(
     """Simulate the system, and show what was observed: response times, loads, latencies, and missed limits.
 
     MODEL_OR_YAML is an app.yaml, one or more .amxmi files, or a folder of .amxmi files. Runs with the same seed are equal. What was
-    observed is no bound: see `amuros analyze` for those. The exit code is 1 if a limit is missed, an activation is lost, or a run
-    fails; with Ctrl-C, the runs of a campaign that are finished are shown, and the exit code is 130.
+    observed is no bound: see `amuros analyze` for those. The exit code is 1 if a limit is missed, an activation is lost, something
+    is not simulated, or a run fails; with Ctrl-C, the runs of a campaign that are finished are shown, and the exit code is 130.
     """
     is_campaign = bool(sweeps) or runs > 1
     pictures = Pictures(gantt, timelines, histograms, window, gantt_of, chain)

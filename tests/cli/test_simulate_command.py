@@ -1,6 +1,7 @@
 """`amuros simulate` as its user sees it, with a simulation of which the observations are known beforehand."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -143,8 +144,23 @@ def test_changes_and_failures_are_shown_beside_the_result(run, tmp_path):
     ]
 
 
-def test_a_run_in_which_nothing_happens_makes_the_exit_code_1(run):
-    assert run(ADVANCED, "--duration", "999us")[0] == 1
+@pytest.mark.parametrize("runs", [1, 2])
+def test_a_run_in_which_nothing_happens_makes_the_exit_code_1_and_says_so(runs, run):
+    code, output, _ = run(ADVANCED, "--duration", "999us", "--runs", runs, "--jobs", 1)
+    assert code == 1
+    assert "nothing was executed" in output
+
+
+@pytest.mark.parametrize("runs", [1, 2])
+def test_a_process_that_is_left_out_makes_the_exit_code_1_and_the_closing_line_says_so(runs, tmp_path):
+    # The first task of the sample without its allocation.
+    model = re.sub(
+        "<taskAllocation .*?</taskAllocation>", "", (ROOT / "samples" / "executor.amxmi").read_text(), count=1, flags=re.DOTALL
+    )
+    (tmp_path / "m.amxmi").write_text(model)
+    done = amuros("simulate", tmp_path / "m.amxmi", "--duration", "40ms", "--runs", str(runs), "--jobs", "1")
+    assert done.returncode == 1, done.stderr
+    assert "is not simulated: it is not allocated to a scheduler" in done.stdout
 
 
 def test_a_table_of_all_variants_and_seeds(run, tmp_path):
