@@ -117,7 +117,7 @@ def _labels(text: str) -> tuple[str, ...]:
     multiple=True,
     type=Assignment("NAME=FILE", Path),
     help="Draw the response times of a process, the latencies of a chain, or another of its quantities, e.g. "
-    "Task.start_to_start=start.svg; may be repeated.",
+    "Task.net_execution_time=net.svg; may be repeated.",
 )
 @click.option(
     "--window",

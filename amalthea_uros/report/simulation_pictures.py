@@ -24,7 +24,14 @@ from amalthea_uros.services.names import require
 from amalthea_uros.services.recording import record_events
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.results import ChainObservation, ChainQuantity, MetricObservation, Occurrence, ProcessObservation
+from amalthea_uros.simulate.results import (
+    WITH_HISTOGRAM,
+    ChainObservation,
+    ChainQuantity,
+    MetricObservation,
+    Occurrence,
+    ProcessObservation,
+)
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import Time, time_text
@@ -135,12 +142,12 @@ def quantity_of(name: str, system: System) -> tuple[str, str]:
 
     Parameters
     ----------
-    name : of a process or chain, or of one of its quantities such as "Task.start_to_start"; by default, the response time or the
+    name : of a process or chain, or of one of its quantities such as "Task.net_execution_time"; by default, the response time or the
         reduced reaction time
 
     Raises
     ------
-    InvalidArgumentError : there is no such process or chain, or it has no such quantity.
+    InvalidArgumentError : there is no such process or chain, or no histogram is kept of such a quantity.
     """
     if name in system.processes:
         return name, JobMetric.RESPONSE_TIME
@@ -148,7 +155,7 @@ def quantity_of(name: str, system: System) -> tuple[str, str]:
         return name, ChainQuantity.REDUCED_REACTION_TIME
     of, _, quantity = name.rpartition(".")
     require("process or chain", [of or name], dict.fromkeys((*system.processes, *system.chains)))
-    require("quantity", [quantity], JobMetric if of in system.processes else ChainQuantity)
+    require("quantity with a histogram", [quantity], WITH_HISTOGRAM if of in system.processes else ChainQuantity)
     return of, quantity
 
 

@@ -51,6 +51,10 @@ class ChainQuantity(StrEnum):
     LAST_TO_LAST = "last_to_last"
 
 
+#: The metrics of processes of which histograms are kept; of chains, all quantities have one.
+WITH_HISTOGRAM = (JobMetric.NET_EXECUTION_TIME, JobMetric.RESPONSE_TIME)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Occurrence:
     """Where something was observed.

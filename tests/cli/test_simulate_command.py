@@ -296,13 +296,6 @@ def test_pictures_show_the_worst_job_by_default(run, tmp_path):
     assert "110 us" in " ".join(etree.parse(tmp_path / "g.svg").getroot().itertext())
 
 
-def test_a_quantity_of_which_no_values_are_kept(run, tmp_path):
-    code, output, errors = run(ADVANCED, "--histogram", f"Control_Function.slack_time={tmp_path / 'x.svg'}")
-    assert code == 2
-    assert "there is no histogram of slack_time of 'Control_Function'; there are those of response_time" in errors
-    assert "Observed over 1 s" in output
-
-
 WRONG = {
     "a duration without unit": (["--duration", "5"], "has no unit"),
     "a duration of nothing": (["--duration", "0s"], "greater than zero"),
@@ -325,7 +318,14 @@ WRONG = {
     "a trace of an unknown kind": (["--trace", "t.xyz"], "no trace format is known"),
     "a process that does not exist": (["--timeline", "X=x.svg"], "unknown process 'X'"),
     "a histogram of nothing": (["--histogram", "X=x.svg"], "unknown process or chain 'X'"),
-    "a quantity that does not exist": (["--histogram", "Control_Function.load=x.svg"], "unknown quantity 'load'; known: net"),
+    "a quantity that does not exist": (
+        ["--histogram", "Control_Function.load=x.svg"],
+        "unknown quantity with a histogram 'load'; known: net",
+    ),
+    "a quantity of which no values are kept": (
+        ["--histogram", "Control_Function.slack_time=x.svg"],
+        "unknown quantity with a histogram 'slack_time'; known: net_execution_time, response_time",
+    ),
     "a chain that does not exist": (["--gantt", "g.svg", "--chain", "X"], "unknown chain 'X'; known: factor-to-output"),
     "a process of the chart that does not exist": (["--gantt", "g.svg", "--gantt-of", "X"], "unknown process 'X'"),
     "a chain without a chart": (["--chain", "factor-to-output"], "add --gantt FILE"),
