@@ -166,6 +166,18 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
         undo.pop_all()
 
 
+def check_writable(path: Path) -> None:
+    """Find out early whether a file can be written; it is left as it is.
+
+    Raises
+    ------
+    FileError : the file cannot be written.
+    """
+    if not _is_stream(path):
+        with ExitStack() as undo:
+            _staged(path, b"", undo)
+
+
 def _is_stream(path: Path) -> bool:
     """Whether a path is a pipe or a device, which must not become a file."""
     mode = _mode(path)

@@ -7,6 +7,7 @@ import os
 import sys
 from importlib import import_module
 from io import StringIO
+from typing import Any
 
 import click
 
@@ -29,8 +30,20 @@ COMMANDS = {
 }
 
 
+#: The exit code that shells give a process that Ctrl-C ended: 128 and the number of the signal.
+INTERRUPTED = 130
+
+
 class LazyGroup(click.Group):
     """Commands that are imported when they are called."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command; click itself would end it with 1 after Ctrl-C, the exit code of findings."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            click.echo("interrupted", err=True)
+            ctx.exit(INTERRUPTED)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names of the commands."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from amalthea_uros._internal.files import resolved
+from amalthea_uros._internal.files import FileError, check_writable, resolved
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.report import formats
 from amalthea_uros.report.terminal import Terminal
@@ -42,7 +42,7 @@ class OutputType(click.ParamType[Output]):
         name, _, path = str(value).partition("=")
         if name not in self.names:
             self.fail(f"unknown format {name!r}, expected one of {', '.join(self.names)}", param, ctx)
-        return Output(name, Path(path) if path else None)
+        return Output(name, None if path in ("", "-") else Path(path))
 
 
 def output_option(result: type) -> Callable[[Any], Any]:
@@ -95,6 +95,21 @@ def refuse_input(path: Path, option: str) -> None:
     """
     if resolved(path) in _inputs():
         raise click.UsageError(f"{option} would replace a file that is read.")
+
+
+def refuse_unwritable(path: Path) -> None:
+    """Refuse a file that cannot be written, before work that may take long.
+
+    Raises
+    ------
+    WriteError : the file cannot be written.
+    """
+    try:
+        check_writable(path)
+    except FileError as error:
+        from amalthea_uros.xmi.files import not_writable
+
+        raise not_writable(error) from None
 
 
 def _inputs() -> set[Path]:

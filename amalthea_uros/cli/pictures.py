@@ -67,6 +67,10 @@ class Pictures:
         chosen = [option for option, value in choices.items() if value is not None]
         if chosen and self.gantt is None:
             raise InvalidArgumentError(f"{chosen[0]} chooses what --gantt FILE shows; add --gantt FILE")
+        if self.window is not None and self.gantt is None and not self.timelines:
+            raise InvalidArgumentError(
+                "--window chooses what --gantt and --timeline show; add one of them, or use --trace-window"
+            )
         if len(chosen) > 1 or (chosen and self.window is not None):
             others = [*chosen, *(["--window"] if self.window is not None else [])]
             raise InvalidArgumentError(f"{' and '.join(others)} each choose what --gantt shows; use only one of them")

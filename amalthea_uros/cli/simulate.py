@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
 import click
 
+from amalthea_uros.cli.main import INTERRUPTED
 from amalthea_uros.cli.output import (
     Output,
     output_option,
     refuse_input,
+    refuse_unwritable,
     show_differences,
     show_findings,
     shows_text,
@@ -30,10 +33,8 @@ from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time, parse_time, time_text
 
-#: As a shell reports a process that Ctrl-C ended: 128 and the number of the signal.
-_INTERRUPTED = 130
-
 _FILE = click.Path(path_type=Path, dir_okay=False)
+_STANDARD_OUTPUT = Path("-")
 
 
 def _duration(text: str) -> Time:
@@ -116,7 +117,7 @@ def _labels(text: str) -> tuple[str, ...]:
     multiple=True,
     type=Assignment("NAME=FILE", Path),
     help="Draw the response times of a process, the latencies of a chain, or another of its quantities, e.g. "
-    "Task.start_to_start=start.svg; may be repeated.",
+    "Task.net_execution_time=net.svg; may be repeated.",
 )
 @click.option(
     "--window",
@@ -171,16 +172,22 @@ def command(
     """Simulate the system, and show what was observed: response times, loads, latencies, and missed limits.
 
     MODEL_OR_YAML is an app.yaml, one or more .amxmi files, or a folder of .amxmi files. Runs with the same seed are equal. What was
-    observed is no bound: see `amuros analyze` for those. The exit code is 1 if a limit is missed, an activation is lost, or a run
-    fails; with Ctrl-C, the runs of a campaign that are finished are shown, and the exit code is 130.
+    observed is no bound: see `amuros analyze` for those. The exit code is 1 if a limit is missed, an activation is lost, something
+    is not simulated, or a run fails; with Ctrl-C, the runs of a campaign that are finished are shown, and the exit code is 130.
     """
     is_campaign = bool(sweeps) or runs > 1
     pictures = Pictures(gantt, timelines, histograms, window, gantt_of, chain)
-    _check_targets(table, traces, pictures)
     if is_campaign and (traces or pictures.paths):
         raise click.UsageError("traces and pictures are made of a single run, without --sweep and --runs")
+    if is_campaign and with_metrics:
+        raise click.UsageError(
+            "--metrics shows a single run, without --sweep and --runs; --table FILE has the metrics of all runs"
+        )
+    if cluster is not None and not is_campaign:
+        raise click.UsageError("--cluster executes the runs of --sweep or --runs; add one of them")
     if trace_window is not None and not traces:
         raise click.UsageError("--trace-window needs --trace FILE")
+    _check_targets(traces, [*pictures.paths, *(path for _, path in outputs if path is not None)], table)
     traced = (trace_window or (0, duration)) if traces else None
     options = Options(duration=duration, seed=seed, mode=Mode(mode), settings=settings, traced=traced, labels=labels)
     if is_campaign:
@@ -198,16 +205,22 @@ def command(
         pictures.write(result)
     except KeyboardInterrupt:
         click.echo("interrupted: the run is not finished; traces of unfinished runs are not kept", err=True)
-        sys.exit(_INTERRUPTED)
+        sys.exit(INTERRUPTED)
     sys.exit(1 if result.is_failed else 0)
 
 
-def _check_targets(table: Path | None, traces: Sequence[Path], pictures: Pictures) -> None:
+def _check_targets(traces: Sequence[Path], results: Sequence[Path], table: Path | None) -> None:
     """Refuse files that cannot be written before the simulation, which may take long."""
-    for path in (*traces, *pictures.paths):
+    late = [*results, *([table] if table is not None else [])]
+    for path, number in Counter([*traces, *late]).items():
+        if path == _STANDARD_OUTPUT:
+            raise click.UsageError("'-' is no file; only --output writes to standard output. Give a file, e.g. --trace run.btf")
+        if number > 1:
+            raise click.UsageError(f"{path} is the file of {number} options; give each its own")
         refuse_input(path, str(path))
+    for path in late:
+        refuse_unwritable(path)
     if table is not None:
-        refuse_input(table, f"--table {table}")
         table_format(table)
 
 
@@ -269,5 +282,5 @@ def _show_campaign(result: CampaignResult, table: Path | None, outputs: Sequence
 
 def _campaign_code(result: CampaignResult) -> int:
     if not result.is_complete:
-        return _INTERRUPTED
+        return INTERRUPTED
     return 1 if result.is_failed else 0

@@ -43,7 +43,7 @@ def duration_text(duration: Time) -> str:
 def closing_line(simulation: Simulation) -> str:
     """What was missed, or what came closest to its limit; and that this is no bound."""
     run = f"Observed over {duration_text(simulation.duration)} (seed {simulation.seed})"
-    parts = filter(None, (_missed(simulation), _not_observed(simulation)))
+    parts = filter(None, (_incomplete(simulation), _missed(simulation), _not_observed(simulation)))
     return f"{run}: {'; '.join(parts)}. {REMINDER}"
 
 
@@ -59,6 +59,12 @@ def value_text(requirement: RequirementObservation, value: Fraction | None) -> s
     if value is None:
         return "-"
     return time_text(round(value)) if requirement.is_time else number_text(value)
+
+
+def _incomplete(simulation: Simulation) -> str:
+    """The first thing that was not simulated, and the number of the others."""
+    errors = simulation.errors
+    return errors[0] + (f"; {counted(len(errors) - 1, 'other error')}" if errors[1:] else "") if errors else ""
 
 
 def _missed(simulation: Simulation) -> str:

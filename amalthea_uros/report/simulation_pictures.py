@@ -23,9 +23,15 @@ from amalthea_uros.report.pictures.windows import default_window
 from amalthea_uros.services.names import require
 from amalthea_uros.services.recording import record_events
 from amalthea_uros.services.simulate import SimulationResult
-from amalthea_uros.simulate import results
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.results import ChainObservation, ChainQuantity, MetricObservation, Occurrence, ProcessObservation
+from amalthea_uros.simulate.results import (
+    WITH_HISTOGRAM,
+    ChainObservation,
+    ChainQuantity,
+    MetricObservation,
+    Occurrence,
+    ProcessObservation,
+)
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import Time, time_text
@@ -136,12 +142,12 @@ def quantity_of(name: str, system: System) -> tuple[str, str]:
 
     Parameters
     ----------
-    name : of a process or chain, or of one of its quantities such as "Task.start_to_start"; by default, the response time or the
+    name : of a process or chain, or of one of its quantities such as "Task.net_execution_time"; by default, the response time or the
         reduced reaction time
 
     Raises
     ------
-    InvalidArgumentError : there is no such process or chain, or it has no such quantity.
+    InvalidArgumentError : there is no such process or chain, or no histogram is kept of such a quantity.
     """
     if name in system.processes:
         return name, JobMetric.RESPONSE_TIME
@@ -149,7 +155,7 @@ def quantity_of(name: str, system: System) -> tuple[str, str]:
         return name, ChainQuantity.REDUCED_REACTION_TIME
     of, _, quantity = name.rpartition(".")
     require("process or chain", [of or name], dict.fromkeys((*system.processes, *system.chains)))
-    require("quantity", [quantity], JobMetric if of in system.processes else ChainQuantity)
+    require("quantity with a histogram", [quantity], WITH_HISTOGRAM if of in system.processes else ChainQuantity)
     return of, quantity
 
 
@@ -175,7 +181,8 @@ def histogram_picture(result: SimulationResult, name: str) -> str:
 
 def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: MetricObservation) -> str:
     assert observed.histogram is not None
-    edges, counts = _whole_bins(observed.histogram)
+    # Bins are a whole number of picoseconds wide.
+    edges = tuple(map(int, observed.histogram.edges))
     words = quantity.replace("_", " ")
     marks = [Mark("min", observed.min), Mark("mean", observed.mean), Mark("max", observed.max)]
     deadline = _deadlines(result).get(name) if quantity == JobMetric.RESPONSE_TIME else None
@@ -183,15 +190,8 @@ def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: 
         marks.append(Mark("deadline", deadline, MarkKind.LIMIT))
     things = "jobs" if quantity in tuple(JobMetric) else "observations"
     title = f"{_model(result)}: {words} of {name}"
-    chart = Histogram(title, edges, (Series("simulated", counts),), tuple(marks), words, things)
+    chart = Histogram(title, edges, (Series("simulated", observed.histogram.counts),), tuple(marks), words, things)
     return histogram(chart)
-
-
-def _whole_bins(found: results.Histogram) -> tuple[tuple[Time, ...], tuple[int, ...]]:
-    """Edges in whole picoseconds, which rise: narrower bins are taken together."""
-    size = ceil(1 / found.width)
-    counts = tuple(sum(found.counts[first : first + size]) for first in range(0, len(found.counts), size))
-    return tuple(floor(found.start + number * size * found.width) for number in range(len(counts) + 1)), counts
 
 
 def _deadlines(result: SimulationResult) -> dict[str, Time]:

@@ -35,8 +35,10 @@ if TYPE_CHECKING:
     #: Opens what events are written to, when the entities of the trace are known.
     OpenSink: TypeAlias = Callable[[Sequence[Entity]], TraceSink]
 
-#: The end of the columns with verdicts in a row of a table, the verdict that is a failure, and the column with lost activations.
-_VERDICT, _MISSED, _LOST = ".verdict", "observed_missed", "lost_activations"
+#: The end of the columns with verdicts in a row of a table, and the verdict that is a failure.
+_VERDICT, _MISSED = ".verdict", "observed_missed"
+#: The columns with the number of lost activations, and with what was not simulated.
+_LOST, _ERRORS = "lost_activations", "errors"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,10 +83,9 @@ class SimulationResult:
 
     @property
     def is_failed(self) -> bool:
-        """Whether a limit was observed as missed, an activation was lost, or nothing was executed."""
+        """Whether a limit was observed as missed, an activation was lost, or not everything was simulated."""
         simulation = self.simulation
-        is_idle = not any(process.jobs or process.unfinished for process in simulation.processes)
-        return bool(simulation.missed or simulation.lost_activations or is_idle)
+        return bool(simulation.missed or simulation.lost_activations or simulation.errors)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,8 +114,8 @@ class CampaignResult:
 
     @property
     def is_failed(self) -> bool:
-        """Whether a run could not be executed, or in one of them a limit was missed or an activation was lost."""
-        return bool(self.failed or self.missed)
+        """Whether a run failed, or in one a limit was missed, an activation was lost, or not everything was simulated."""
+        return bool(self.failed or self.missed or self.incomplete)
 
     @property
     def is_complete(self) -> bool:
@@ -125,6 +126,11 @@ class CampaignResult:
     def failed(self) -> tuple[Outcome, ...]:
         """The runs that could not be executed."""
         return tuple(outcome for outcome in self.outcomes if outcome.error)
+
+    @property
+    def incomplete(self) -> tuple[Outcome, ...]:
+        """The runs in which not everything was simulated."""
+        return tuple(outcome for outcome in self.outcomes if outcome.record.get(_ERRORS))
 
     @property
     def missed(self) -> tuple[Outcome, ...]:

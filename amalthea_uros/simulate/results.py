@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from amalthea_uros._internal.by_name import Results
-from amalthea_uros.diagnostics import Finding
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.simulate.options import Mode
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time, time_text
@@ -49,6 +49,10 @@ class ChainQuantity(StrEnum):
     FIRST_TO_LAST = "first_to_last"
     LAST_TO_FIRST = "last_to_first"
     LAST_TO_LAST = "last_to_last"
+
+
+#: The metrics of processes of which histograms are kept; of chains, all quantities have one.
+WITH_HISTOGRAM = (JobMetric.NET_EXECUTION_TIME, JobMetric.RESPONSE_TIME)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -390,6 +394,13 @@ class Simulation:
         return sum(process.lost_activations for process in self.processes)
 
     @property
+    def errors(self) -> tuple[str, ...]:
+        """What makes the observations incomplete: processes that were left out, a run that ended early or in which nothing happened."""
+        found = tuple(finding.message for finding in self.findings if finding.severity is Severity.ERROR)
+        is_idle = not any(process.jobs or process.unfinished for process in self.processes)
+        return ("nothing was executed", *found) if is_idle else found
+
+    @property
     def judged(self) -> tuple[Judged, ...]:
         """The processes, requirements and constraints with a verdict."""
         return (*(process for process in self.processes if process.verdict is not None), *self.requirements)
@@ -460,6 +471,8 @@ class Simulation:
         for requirement in sorted(self.requirements, key=lambda each: _BEST_FIRST.index(each.verdict)):
             yield f"{requirement.name}.{requirement.quantity.replace(' ', '_')}.verdict", requirement.verdict
         yield "lost_activations", self.lost_activations
+        if self.errors:
+            yield "errors", "; ".join(self.errors)
 
 
 _COLUMNS = ("min_ps", "avg_ps", "max_ps", "std_ps")

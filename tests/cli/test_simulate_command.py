@@ -1,6 +1,7 @@
 """`amuros simulate` as its user sees it, with a simulation of which the observations are known beforehand."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -56,7 +57,7 @@ def simulate_system(system, options, sinks=()):
         std=0.0,
         at_min=Occurrence(instance=0, time=Fraction(0)),
         at_max=Occurrence(instance=0, time=Fraction(0)),
-        histogram=Histogram(start=Fraction(response), width=Fraction(1, 3), counts=(options.duration // period,)),
+        histogram=Histogram(start=Fraction(response), width=Fraction(1), counts=(options.duration // period,)),
     )
     process = ProcessObservation(
         name="Control_Function",
@@ -143,8 +144,23 @@ def test_changes_and_failures_are_shown_beside_the_result(run, tmp_path):
     ]
 
 
-def test_a_run_in_which_nothing_happens_makes_the_exit_code_1(run):
-    assert run(ADVANCED, "--duration", "999us")[0] == 1
+@pytest.mark.parametrize("runs", [1, 2])
+def test_a_run_in_which_nothing_happens_makes_the_exit_code_1_and_says_so(runs, run):
+    code, output, _ = run(ADVANCED, "--duration", "999us", "--runs", runs, "--jobs", 1)
+    assert code == 1
+    assert "nothing was executed" in output
+
+
+@pytest.mark.parametrize("runs", [1, 2])
+def test_a_process_that_is_left_out_makes_the_exit_code_1_and_the_closing_line_says_so(runs, tmp_path):
+    # The first task of the sample without its allocation.
+    model = re.sub(
+        "<taskAllocation .*?</taskAllocation>", "", (ROOT / "samples" / "executor.amxmi").read_text(), count=1, flags=re.DOTALL
+    )
+    (tmp_path / "m.amxmi").write_text(model)
+    done = amuros("simulate", tmp_path / "m.amxmi", "--duration", "40ms", "--runs", str(runs), "--jobs", "1")
+    assert done.returncode == 1, done.stderr
+    assert "is not simulated: it is not allocated to a scheduler" in done.stdout
 
 
 def test_a_table_of_all_variants_and_seeds(run, tmp_path):
@@ -249,6 +265,18 @@ def test_an_interrupted_run_leaves_no_trace(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_ctrl_c_before_the_run_is_no_finding(run, monkeypatch):
+    def interrupted(*_arguments, **_options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("amalthea_uros.services.simulate.open_system", interrupted)
+    assert run(ADVANCED) == (130, "", "interrupted\n")
+
+
+def test_a_dash_is_standard_output(run):
+    assert json.loads(run(ADVANCED, "--output", "json=-")[1])["duration_ps"] == 1000 * MS
+
+
 def test_pictures(run, tmp_path):
     paths = {name: tmp_path / f"{name}.svg" for name in ("gantt", "timeline", "histogram")}
     code, _, errors = run(
@@ -266,13 +294,6 @@ def test_pictures_show_the_worst_job_by_default(run, tmp_path):
     assert run(ADVANCED, "--duration", "10ms", "--gantt", tmp_path / "g.svg", "--seed", 100)[0] == 0
     # The job from 0 to 100 us, with a margin of a tenth.
     assert "110 us" in " ".join(etree.parse(tmp_path / "g.svg").getroot().itertext())
-
-
-def test_a_quantity_of_which_no_values_are_kept(run, tmp_path):
-    code, output, errors = run(ADVANCED, "--histogram", f"Control_Function.slack_time={tmp_path / 'x.svg'}")
-    assert code == 2
-    assert "there is no histogram of slack_time of 'Control_Function'; there are those of response_time" in errors
-    assert "Observed over 1 s" in output
 
 
 WRONG = {
@@ -297,7 +318,14 @@ WRONG = {
     "a trace of an unknown kind": (["--trace", "t.xyz"], "no trace format is known"),
     "a process that does not exist": (["--timeline", "X=x.svg"], "unknown process 'X'"),
     "a histogram of nothing": (["--histogram", "X=x.svg"], "unknown process or chain 'X'"),
-    "a quantity that does not exist": (["--histogram", "Control_Function.load=x.svg"], "unknown quantity 'load'; known: net"),
+    "a quantity that does not exist": (
+        ["--histogram", "Control_Function.load=x.svg"],
+        "unknown quantity with a histogram 'load'; known: net",
+    ),
+    "a quantity of which no values are kept": (
+        ["--histogram", "Control_Function.slack_time=x.svg"],
+        "unknown quantity with a histogram 'slack_time'; known: net_execution_time, response_time",
+    ),
     "a chain that does not exist": (["--gantt", "g.svg", "--chain", "X"], "unknown chain 'X'; known: factor-to-output"),
     "a process of the chart that does not exist": (["--gantt", "g.svg", "--gantt-of", "X"], "unknown process 'X'"),
     "a chain without a chart": (["--chain", "factor-to-output"], "add --gantt FILE"),
@@ -307,6 +335,23 @@ WRONG = {
     ),
     "a trace window after the end": (["--trace", "t.btf", "--trace-window", "3s..4s"], "the run ends at 1 s"),
     "a window after the end": (["--window", "3s..4s", "--gantt", "g.svg"], "the run ends at 1 s"),
+    "a window of nothing": (["--window", "1ms..2ms"], "--window chooses what --gantt and --timeline show"),
+    "a trace on standard output": (["--trace", "-"], "only --output writes to standard output"),
+    "a picture on standard output": (["--gantt", "-"], "only --output writes to standard output"),
+    "a file for two pictures": (["--gantt", "g.svg", "--timeline", "Control_Function=g.svg"], "g.svg is the file of 2 options"),
+    "a file for a result and a table": (["--output", "json=x.json", "--table", "x.json"], "x.json is the file of 2 options"),
+    "a result that cannot be written": (
+        ["--output", "json=nowhere/x.json"],
+        "nowhere/x.json: XMI101 error: the file cannot be",
+    ),
+    "a table that cannot be written": (["--table", "nowhere/x.csv"], "nowhere/x.csv: XMI101 error: the file cannot be written"),
+    "a picture that cannot be written": (
+        ["--gantt", "nowhere/x.svg"],
+        "nowhere/x.svg: XMI101 error: the file cannot be written",
+    ),
+    "a trace that cannot be written": (["--trace", "nowhere/x.btf"], "nowhere/x.btf: TRC101 error: the file cannot be written"),
+    "metrics of many runs": (["--metrics", "--runs", "2"], "--table FILE has the metrics of all runs"),
+    "a cluster for one run": (["--cluster", "tcp://nowhere:8786"], "--cluster executes the runs of --sweep or --runs"),
     "no runs": (["--runs", "0"], "x>=1"),
 }
 

@@ -8,7 +8,7 @@ from svg_reading import SVG, assert_readable, parsed, rectangles, scale, texts
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.histogram import Histogram, Series, histogram
 from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind, short_time_text
-from amalthea_uros.units import MICROSECOND, MILLISECOND
+from amalthea_uros.units import MICROSECOND, MILLISECOND, parse_time
 
 US, MS = MICROSECOND, MILLISECOND
 EDGES = tuple(number * US for number in range(10, 31))
@@ -97,6 +97,16 @@ def test_many_bins_are_put_together_without_losing_values():
     tips = [node.text for node in parsed(picture).iter(f"{SVG}title") if "jobs" in node.text]
     assert len(tips) <= 200
     assert sum(int(tip.split(": ")[1].split()[0]) for tip in tips) == 1024
+
+
+@pytest.mark.parametrize(("width", "shown"), [(1 * US, 5 * US), (2 * US, 10 * US), (10 * US, 50 * US)])
+def test_bins_that_are_put_together_have_a_round_width_and_round_edges(width, shown):
+    # 700 bins from 13 widths on are too many; 5 of them are one, from 10 on.
+    picture = drawn((1,) * 700, edges=tuple(range(13 * width, 714 * width, width)))
+    tips = [node.text.partition(":")[0] for node in parsed(picture).iter(f"{SVG}title") if "jobs" in node.text]
+    edges = [tuple(map(parse_time, tip.split(" to "))) for tip in tips]
+    assert edges[0] == (10 * width, 15 * width)
+    assert all(low % shown == 0 and high == low + shown for low, high in edges)
 
 
 def test_empty_bins_at_the_ends_take_no_room():

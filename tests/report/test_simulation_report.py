@@ -227,6 +227,17 @@ def test_the_closing_line_says_what_was_observed_and_that_this_is_no_bound(simul
     assert text(simulation).splitlines()[-1] == line
 
 
+def test_what_was_not_simulated_comes_first():
+    left_out = Finding("SIM001", Severity.ERROR, "'Task_A' is not simulated: its execution time is not known")
+    warning = Finding("SIM002", Severity.WARNING, "'chain' is not followed")
+    line = closing_line(replace(SIMULATION, findings=(left_out, warning)))
+    assert line.startswith(
+        "Observed over 5 min (seed 7): 'Task_A' is not simulated: its execution time is not known; no deadline"
+    )
+    nothing = replace(SIMULATION, processes=Results(), findings=(left_out, left_out))
+    assert closing_line(nothing).startswith("Observed over 5 min (seed 7): nothing was executed; 2 other errors; ")
+
+
 def test_if_nothing_was_observed_nothing_is_praised():
     unseen = replace(CONTROL, verdict=ObservedVerdict.NOT_OBSERVED, metrics={}, reason="no job ended")
     line = closing_line(replace(SIMULATION, processes=Results([unseen])))

@@ -226,22 +226,42 @@ def test_each_value_is_in_its_bin(values):
     histogram = counted(values)
     assert len(histogram.counts) <= MAX_BINS
     for number, count in enumerate(histogram.counts.tolist()):
-        start = (histogram.first + number) << histogram.shift
-        assert count == sum(start <= value < start + (1 << histogram.shift) for value in values)
+        start = (histogram.first + number) * histogram.width
+        assert count == sum(start <= value < start + histogram.width for value in values)
 
 
 @given(anything, st.lists(st.integers(1, 49)))
 def test_a_histogram_does_not_depend_on_chunks_or_order(values, cuts):
     one, other = counted(values), counted(values[::-1], [cut for cut in cuts if cut < len(values)])
-    assert (one.shift, one.first, one.counts.tolist()) == (other.shift, other.first, other.counts.tolist())
+    assert (one.width, one.first, one.counts.tolist()) == (other.width, other.first, other.counts.tolist())
 
 
 @given(anything)
 def test_a_histogram_is_no_coarser_than_needed(values):
     histogram = counted(values)
-    if histogram.shift:
-        shift = histogram.shift - 1
-        assert (max(values) >> shift) - (min(values) >> shift) >= MAX_BINS
+    digits = str(histogram.width)
+    assert digits[0] in "12"
+    assert not digits[1:].strip("0")
+    if histogram.width > 1:
+        narrower = histogram.width // (2 if digits[0] == "2" else 5)
+        assert max(values) // narrower - min(values) // narrower >= MAX_BINS
+
+
+@pytest.mark.parametrize(
+    ("span", "width"), [(1023, 1), (1024, 2), (2047, 2), (2048, 10), (10_239, 10), (10_240, 20), (20_479, 20), (20_480, 100)]
+)
+def test_the_width_of_bins_is_a_round_number_of_units(span, width):
+    # 1,024 bins from 0 to the span; 2 * 1,024 and 10 * 1,024 are the first numbers that are too many for a width.
+    histogram = BinCounts(unit=3)
+    histogram.add(np.array([0, 3 * span + 2]), 0, 3 * span + 2)
+    assert histogram.width == 3 * width
+
+
+def test_the_bins_of_a_clock_of_300_mhz_are_whole_picoseconds():
+    (found,) = observed([row(0, k, 0, 0, 10_000 * k, 10_000 * k) for k in range(1, 4000)], base=3)
+    histogram = found[JobMetric.RESPONSE_TIME].histogram
+    assert histogram.width == 20_000
+    assert all(edge.denominator == 1 for edge in histogram.edges)
 
 
 @given(anything, anything)

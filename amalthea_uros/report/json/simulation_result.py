@@ -155,6 +155,7 @@ def _rounded(value: Fraction | None) -> int | None:
 def _summary(simulation: Simulation) -> dict[str, Any]:
     tightest = simulation.tightest
     return {
+        "errors": list(simulation.errors),
         "judged": len(simulation.judged),
         "missed": len(simulation.missed),
         "not_observed": len(simulation.not_observed),

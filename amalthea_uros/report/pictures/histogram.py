@@ -29,6 +29,8 @@ from amalthea_uros.units import Time, time_text
 _PLOT, _GAP, _RIGHT = 240, 8, 34
 #: With more bins they could not be told from each other.
 _MOST_BINS = 200
+#: So many bins are put together: widths of 1, 2, 10, 20, ... of anything become 1, 2, 5, 10, 20, 50, ... of it.
+_GROUPS = [digit * 10**tens for tens in range(16) for digit in (1, 5)]
 #: A lower bar would not be seen, in pixels.
 _LOWEST = 1.5
 #: One part of so many is free on both sides, and at least so many bins have room: a single one is no wall.
@@ -116,10 +118,15 @@ def _trimmed(histogram: Histogram) -> Histogram:
 
 
 def _coarsened(histogram: Histogram) -> Histogram:
-    """With so many neighbouring bins put together that they can be told from each other."""
-    size = ceil((len(histogram.edges) - 1) / _MOST_BINS)
-    edges = (*histogram.edges[:-1:size], histogram.edges[-1])
-    return replace(histogram, edges=edges, series=tuple(_grouped(series, size) for series in histogram.series))
+    """With so many neighbouring bins put together that they can be told from each other; edges are multiples of the new width."""
+    edges = histogram.edges
+    size = next(size for size in _GROUPS if len(edges) <= size * (_MOST_BINS - 1))
+    before = edges[0] // (edges[1] - edges[0]) % size
+    after = -(before + len(edges) - 1) % size
+    start, end = edges[0] - before * (edges[1] - edges[0]), edges[-1] + after * (edges[-1] - edges[-2])
+    padded = (replace(series, counts=(0,) * before + series.counts) for series in histogram.series)
+    merged = tuple(_grouped(series, size) for series in padded)
+    return replace(histogram, edges=(start, *edges[size - before : -1 : size], end), series=merged)
 
 
 def _grouped(series: Series, size: int) -> Series:

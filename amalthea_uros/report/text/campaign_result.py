@@ -34,7 +34,8 @@ def _observed(outcome: Outcome) -> str:
     if outcome.error:
         return f"failed: {outcome.error}"
     lost = outcome.record.get("lost_activations")
-    texts = [f"missed: {', '.join(missed)}"] if (missed := missed_in(outcome.record)) else []
+    texts = [str(errors)] if (errors := outcome.record.get("errors")) else []
+    texts += [f"missed: {', '.join(missed)}"] if (missed := missed_in(outcome.record)) else []
     texts += [f"lost: {counted(lost, 'activation')}"] if isinstance(lost, int) and lost else []
     return "; ".join(texts) or "nothing missed"
 
@@ -45,5 +46,7 @@ def closing_line(result: CampaignResult) -> str:
     runs = counted(finished, "run") if result.is_complete else f"{finished:,} of {counted(result.planned, 'run')}"
     duration = time_text(result.options.duration)
     failures = [f"{counted(len(result.failed), 'run')} failed"] if result.failed else []
+    if result.incomplete:
+        failures.append(f"not everything was simulated in {len(result.incomplete):,}")
     missed = f"limits missed or activations lost in {len(result.missed):,}" if result.missed else "nothing missed"
     return f"Observed in {runs} of {duration} each: {'; '.join([missed, *failures])}; what was not observed can still occur"

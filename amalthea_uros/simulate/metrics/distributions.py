@@ -64,7 +64,7 @@ class Distributions:
         self.totals = [0] * self.size
         self.lowest, self.highest = [(0, 0)] * self.size, [(0, 0)] * self.size
         # Bins that are narrower than a picosecond could not be told apart.
-        self._histograms = {index: BinCounts((self.base - 1).bit_length()) for index in self.with_histograms}
+        self._histograms = {index: BinCounts(unit=self.base) for index in self.with_histograms}
         self._squares = [0] * self.size
 
     def add(self, values: Numbers, instances: Numbers, times: Numbers) -> None:
@@ -150,7 +150,7 @@ class Distributions:
         found = self._histograms.get(index)
         if found is None:
             return None
-        width = Fraction(1 << found.shift, self.base)
+        width = Fraction(found.width, self.base)
         return Histogram(start=found.first * width, width=width, counts=tuple(found.counts.tolist()))
 
 

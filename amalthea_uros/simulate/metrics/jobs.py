@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.simulate.metrics.distributions import Distributions
-from amalthea_uros.simulate.results import CountObservation, MetricObservation
+from amalthea_uros.simulate.results import WITH_HISTOGRAM, CountObservation, MetricObservation
 from amalthea_uros.simulate.rows import Job
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time
@@ -45,7 +45,7 @@ _COUNTS = (Job.PREEMPTIONS, Job.MIGRATIONS)
 BETWEEN = (JobMetric.ACTIVATE_TO_ACTIVATE, JobMetric.START_TO_START, JobMetric.END_TO_END, JobMetric.END_TO_START)
 #: So many jobs at a time stay in the cache of a processor.
 _CACHED = 2048
-_OWN_HISTOGRAMS = (OWN.index(JobMetric.NET_EXECUTION_TIME), OWN.index(JobMetric.RESPONSE_TIME))
+_OWN_HISTOGRAMS = tuple(map(OWN.index, WITH_HISTOGRAM))
 
 
 @dataclass(slots=True)
