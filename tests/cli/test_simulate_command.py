@@ -320,7 +320,7 @@ WRONG = {
     "a histogram of nothing": (["--histogram", "X=x.svg"], "unknown process or chain 'X'"),
     "a quantity that does not exist": (
         ["--histogram", "Control_Function.load=x.svg"],
-        "unknown quantity with a histogram 'load'; known: net",
+        "unknown quantity with a histogram 'load'",
     ),
     "a quantity of which no values are kept": (
         ["--histogram", "Control_Function.slack_time=x.svg"],
