@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from functools import cache
 from hashlib import blake2b
@@ -81,9 +82,9 @@ def compiled() -> Play:
     play.__qualname__ = _name()
     signature = "int64(int64[::1])"
     try:
-        return _as_play(njit(signature, cache=True)(play))
+        return _as_play(njit(signature, cache=True, nogil=True)(play))
     except RuntimeError:  # there is no folder in which numba could keep the machine code
-        return _as_play(njit(signature)(play))
+        return _as_play(njit(signature, nogil=True)(play))
 
 
 def _functions(module: ModuleType) -> list[FunctionType]:
@@ -99,7 +100,7 @@ def _is_in(value: object, machine: dict[FunctionType, Any]) -> bool:
 @cache
 def _name() -> str:
     """A name that changes with every change of the kernel."""
-    sources = "".join(getsource(module) for module in (*_MODULES, layout, operations))
+    sources = "".join(getsource(module) for module in (*_MODULES, layout, operations, sys.modules[__name__]))
     return f"play_{blake2b(sources.encode(), digest_size=8).hexdigest()}"
 
 

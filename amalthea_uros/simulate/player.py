@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import TYPE_CHECKING, TypeAlias, cast
@@ -83,6 +85,8 @@ class Player:
     traced: tuple[int, int] = (0, 0)
     memory: Memory = field(init=False)
     is_compiled: bool = field(init=False, default=False)
+    _thread: ThreadPoolExecutor | None = None
+    _handed: deque[Future[None]] = field(default_factory=deque)
     _regions: dict[int, int] = field(default_factory=dict)
     _values: int = 0
     _pools: dict[int, int] = field(default_factory=dict)
@@ -116,6 +120,12 @@ class Player:
         ------
         EndlessJobError : a job goes on forever without taking time.
         """
+        try:
+            self._play_to_the_end()
+        finally:
+            self._await_taker()
+
+    def _play_to_the_end(self) -> None:
         time, window, began = 0, max(1, self.until // 1024), perf_counter()
         self._consider_machine_code(0, 0)
         edges = sorted({edge for edge in (*self.traced, self.until) if 0 < edge <= self.until})
@@ -160,6 +170,7 @@ class Player:
             self.memory = cast(Memory, np.array(self.memory, np.int64))
             self.is_compiled = True
             self._place_rows(_ROWS_OF_MACHINE_CODE)
+            self._thread = ThreadPoolExecutor(max_workers=1)
 
     # What the kernel gets.
 
@@ -221,8 +232,24 @@ class Player:
         for (first, _, size), take in zip(_ROW_KINDS, (self.jobs, self.observations, self.events), strict=True):
             begin, end = self._regions[first], int(self.memory[first])
             if end > begin:
-                take(np.array(self.memory[begin:end], np.int64).reshape(-1, size))
+                self._hand_over(take, np.array(self.memory[begin:end], np.int64).reshape(-1, size))
                 self.memory[first] = begin
+
+    def _hand_over(self, take: Taker, rows: Numbers) -> None:
+        """Have rows taken: at once, or by a thread while machine code goes on; only two chunks wait for it at a time."""
+        if self._thread is None:
+            take(rows)
+            return
+        self._handed.append(self._thread.submit(take, rows))
+        while len(self._handed) > 2:
+            self._handed.popleft().result()
+
+    def _await_taker(self) -> None:
+        """Everything is taken when this returns."""
+        while self._handed:
+            self._handed.popleft().result()
+        if self._thread is not None:
+            self._thread.shutdown()
 
     def pending(self, process: str) -> int:
         """The number of activations of a process whose jobs have not ended."""
