@@ -309,7 +309,7 @@ class TestSets:
         monkeypatch.setitem(_UP, "0.9.8", Step("0.9.8", "0.9.9", large))
         write(tmp_path / "a.amxmi", "0.9.8")
         (finding,) = migrate_files(tmp_path / "a.amxmi").findings
-        assert (finding.rule, finding.message) == ("XMI105", "the migration needs more memory than there is")
+        assert (finding.rule, finding.message) == ("XMI105", "there is not enough memory for the migration")
 
     def test_an_error_in_a_step_is_a_finding(self, tmp_path, monkeypatch):
         def broken(models, notes, official):

@@ -130,7 +130,7 @@ def test_a_runnable_whose_condition_is_false_is_not_executed():
 
 @pytest.mark.parametrize(("operation", "filled"), [(ReceiveOperation.FIFO_READ, 5), (ReceiveOperation.LIFO_TAKE, 3)])
 def test_reading_leaves_elements_in_a_channel_and_taking_does_not(operation, filled):
-    # 1 + 2 * 2 elements are sent by 12; the receiver gets 2 at 15. The number is told by the length of the job at 20.
+    # 1 + 2 * 2 elements have been sent at 12; the receiver gets 2 at 15. The length of the job at 20 shows the number.
     sender = Proc("sender", (ticks(1), Send(channel="c", elements=2)), 10, **TASK)
     receiver = Proc("receiver", (ticks(1), Receive(channel="c", elements=2, operation=operation)), 1000, 15, **TASK)
     cases = tuple(

@@ -16,7 +16,7 @@ from amalthea_uros.units import Time, time_text
 #: Pixels.
 LANE = 30
 _RADIUS, _TICK = 4.0, 5
-#: Lines of different chains are told by their dashes.
+#: Different chains have different dashes.
 _DASHES = ("none", "7 3", "2.5 2.5", "9 3 2 3")
 
 

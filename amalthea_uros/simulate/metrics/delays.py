@@ -7,6 +7,7 @@ target has to be the only one of one source, and a source that has been missed i
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -28,7 +29,7 @@ _TOO_FAR = "sources and targets are too far apart to be observed"
 
 
 @dataclass(slots=True)
-class Delays:
+class Delays(ABC):
     """What all matchings have in common.
 
     Attributes
@@ -55,9 +56,9 @@ class Delays:
         """The upper limit."""
         return None if self.constraint.upper is None else self.constraint.upper * self.base
 
+    @abstractmethod
     def add(self, times: Numbers, which: Numbers) -> None:
         """Take occurrences in, in the order of time: of the source (0) and the target (1)."""
-        raise NotImplementedError
 
     def quantities(self, end: int) -> Iterator[LimitedQuantity]:
         """What was observed up to the end of the run."""
@@ -74,8 +75,9 @@ class Delays:
                     violated_at=Fraction(self.first_violation, self.base) if self.first_violation >= 0 else None,
                 )
 
+    @abstractmethod
     def _values(self, end: int) -> LimitedValues:
-        raise NotImplementedError
+        """The values, and what is missing of them."""
 
     def _violation(self) -> str:
         return ""

@@ -8,6 +8,7 @@ before it, and ends when every event has occurred.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(slots=True, kw_only=True)
-class Synchronization:
+class Synchronization(ABC):
     """What both readings have in common.
 
     Attributes
@@ -45,17 +46,18 @@ class Synchronization:
     def __post_init__(self) -> None:
         self.extremes = Extremes(self.base)
 
+    @abstractmethod
     def add(self, times: Numbers, which: Numbers) -> None:
         """Take occurrences in, in the order of time; each is of one of the events."""
-        raise NotImplementedError
 
     def quantities(self, end: int) -> Iterator[LimitedQuantity]:
         """What was observed up to the end of the run."""
         values = self._values(end)
         yield LimitedQuantity(object=self.object, quantity=self.quantity, limit=self.tolerance, values=values)
 
+    @abstractmethod
     def _values(self, end: int) -> LimitedValues:
-        raise NotImplementedError
+        """The values, and what is missing of them."""
 
 
 @dataclass(slots=True, kw_only=True)

@@ -148,7 +148,7 @@ def migrate_set(
 def failed(path: Path, error: Exception) -> Finding:
     """The finding for an error of ours, which must end neither the whole run nor a command without words."""
     if isinstance(error, MemoryError):
-        message = "the migration needs more memory than there is"
+        message = "there is not enough memory for the migration"
         return Finding(
             "XMI105", Severity.ERROR, message, Location(path), "Migrate fewer files at once, or on a larger machine."
         )
