@@ -19,6 +19,7 @@ from amalthea_uros.simulate.layout import (
     BUSY,
     LOST,
     LOST_MESSAGES,
+    NOW,
     OVERFLOWS,
     RUNS,
     SINCE,
@@ -52,6 +53,7 @@ from amalthea_uros.trace.semaphore_states import SemaphoreStates
 from amalthea_uros.trace.sinks import TraceSink
 from amalthea_uros.trace.suspensions import RunnableSuspensions
 from amalthea_uros.trace.table import Entity, EntityKind, EventTable
+from amalthea_uros.units import time_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -79,11 +81,17 @@ def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] 
 
 @dataclass(slots=True)
 class _Run:
-    """A run, and what is observed in it."""
+    """A run, and what is observed in it.
+
+    Attributes
+    ----------
+    end : of the run in time units; it is earlier than planned if nothing can be simulated any more
+    """
 
     context: TimingContext
     options: Options
     program: Program
+    end: int = field(init=False)
     player: Player = field(init=False)
     jobs: list[JobMetrics] = field(init=False)
     routes: list[RouteMetrics] = field(init=False)
@@ -95,6 +103,7 @@ class _Run:
 
     def __post_init__(self) -> None:
         program = self.program
+        self.end = self.options.duration * program.units
         self.jobs = [JobMetrics(program.units) for _ in program.processes]
         self.runnables = [JobMetrics(program.units) for _ in program.runnables]
         self.observers = Observers(self.context.system, self.options, program, self.end)
@@ -110,11 +119,6 @@ class _Run:
             traced=(traced[0] * program.units, traced[1] * program.units),
         )
 
-    @property
-    def end(self) -> int:
-        """The end of the run in time units."""
-        return self.options.duration * self.program.units
-
     def play(self, sinks: Sequence[TraceSink]) -> None:
         """Play to the end, and write the events."""
         self.sinks = sinks
@@ -122,7 +126,10 @@ class _Run:
             self.player.run()
         except EndlessJobError as error:
             name = next(name for name, record in self.program.records.items() if record == error.args[0])
-            message = f"{name!r} executes activities forever without taking time; the run ends there"
+            now = int(self.player.memory[NOW])
+            self.end = max(1, now)
+            at = time_text(Fraction(now, self.program.units))
+            message = f"at {at}, {name!r} executes activities forever without taking time; the run ends there"
             self.context.notes.error("SIM003", message, self.context.system.processes[name])
 
     def _observe(self, rows: NDArray[np.int64]) -> None:

@@ -198,6 +198,8 @@ def test_a_loop_that_takes_no_time_and_does_not_end_ends_the_run():
     with patch.object(jobs, "MOST_STEPS", 1000):
         found = simulate_system(built(Proc("T", body, 10, priority=1), OTHER, **MODES), Options(duration=95 * US))
     assert [(each.rule, each.message) for each in found.findings] == [
-        ("SIM003", "'T' executes activities forever without taking time; the run ends there")
+        ("SIM003", "at 21 us, 'T' executes activities forever without taking time; the run ends there")
     ]
     assert (found.processes["T"].jobs, found.processes["other"].jobs) == (2, 2)
+    # Nothing counts as late because of the time that was not simulated.
+    assert found.processes["T"].longest_unfinished == 1 * US
