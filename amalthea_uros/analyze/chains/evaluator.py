@@ -11,6 +11,7 @@ from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStag
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, Value
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.events import Event, EventChain
 from amalthea_uros.timing.clocks import controller_of_core
 from amalthea_uros.timing.context import TimingContext
@@ -18,7 +19,7 @@ from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import GAPS, LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, routes
-from amalthea_uros.timing.dataflow.stages import Stage, communication_of, link_text, stages
+from amalthea_uros.timing.dataflow.stages import Read, Stage, communication_of, link_text, stages
 from amalthea_uros.timing.phases import Occurrence, unknown_phases
 
 
@@ -63,6 +64,8 @@ class ChainEvaluator:
             return ChainResult(name=chain.name, communication="", reason=str(error))
         every = [route for found in ways.values() for route in found]
         self._note(chain, left_out, every)
+        if any(_reads_explicitly(stage) for route in every for stage in self._stages(route)):
+            self.context.notes.assume("an explicit read sees what is written at the same instant")
         found = self._evaluated(ways)
         all_values = _combine(unfolded, found.values)
         tightest = _tightest(all_values)
@@ -282,3 +285,7 @@ def _best(values: Sequence[Value], quantity: Quantity) -> Value:
         return value.value or 0
 
     return min(values, key=time) if quantity.is_upper else max(values, key=time)
+
+
+def _reads_explicitly(stage: Stage) -> bool:
+    return isinstance(stage.enter, Read) and stage.enter.communication is Communication.EXPLICIT
