@@ -70,7 +70,7 @@ def gantt_picture(
     start, end = view.window
     events = record_events(result, start, end)
     ways = () if view.way is None else (_way(events, *view.way),)
-    rows = jobs_of(events, start, end, _deadlines(result))
+    rows = jobs_of(events, start, end, _deadlines(result), _cores(result))
     return gantt(GanttChart(f"{_model(result)}: {view.title}", start, end, rows, ways))
 
 
@@ -196,6 +196,11 @@ def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: 
 
 def _deadlines(result: SimulationResult) -> dict[str, Time]:
     return {each.name: each.deadline for each in result.simulation.processes if each.deadline is not None}
+
+
+def _cores(result: SimulationResult) -> dict[str, str]:
+    """Of the processes that can run on one only: a short window may begin and end before they start."""
+    return {each.name: each.core for each in result.simulation.processes if each.core is not None}
 
 
 def _with_jobs(result: SimulationResult) -> Iterable[ProcessObservation]:

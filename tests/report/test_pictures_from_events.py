@@ -213,3 +213,9 @@ def test_a_chart_is_drawn_from_events():
     assert "Interrupt, job 4: running on Core_0 for 10 ps from 20 ps on" in gantt(
         GanttChart("x", 0, 60, jobs_of(table(*PREEMPTION)))
     )
+
+
+def test_a_process_that_does_not_run_in_the_window_is_on_the_core_that_is_stated():
+    waiting = table(event(0, K.ACTIVATE), event(0, K.ACTIVATE, ISR), event(0, K.START, ISR, 0, CORE_1))
+    assert [core.name for core in jobs_of(waiting)] == ["Core_1", UNKNOWN_CORE]
+    assert [core.name for core in jobs_of(waiting, cores={"Task": "Core_0", "Interrupt": "Core_0"})] == ["Core_0", "Core_1"]

@@ -44,7 +44,11 @@ _Key: TypeAlias = tuple[int, int]
 
 
 def jobs_of(
-    table: EventTable, start: Time | None = None, end: Time | None = None, deadlines: Mapping[str, Time] | None = None
+    table: EventTable,
+    start: Time | None = None,
+    end: Time | None = None,
+    deadlines: Mapping[str, Time] | None = None,
+    cores: Mapping[str, str] | None = None,
 ) -> tuple[CoreRows, ...]:
     """The jobs of a window, by the core on which each process is seen first.
 
@@ -54,11 +58,12 @@ def jobs_of(
     ----------
     start, end : of the window; None: the first, the last event
     deadlines : process -> its deadline, relative to the activation
+    cores : process -> the core on which it runs, for those of which no event tells it
     """
     if not len(table):
         return ()
     first, last = int(table.time[0]), int(table.time[-1])
-    reader = _Reader(table.entities, first if start is None else min(start, first))
+    reader = _Reader(table.entities, first if start is None else min(start, first), cores or {})
     reader.read(table, first if start is None else start, last if end is None else end)
     return reader.rows(last if end is None else end, deadlines or {})
 
@@ -133,10 +138,12 @@ class _Reader:
     begin : since when jobs have been in the states that their first events tell
     homes : process -> the core on which it is seen first
     calls : runnable that runs -> its start, and its job
+    stated : process -> core, by their names
     """
 
     entities: Sequence[Entity]
     begin: Time
+    stated: Mapping[str, str]
     jobs: dict[_Key, _OpenJob] = field(default_factory=dict)
     homes: dict[int, int] = field(default_factory=dict)
     lost: dict[int, list[Time]] = field(default_factory=dict)
@@ -182,8 +189,14 @@ class _Reader:
         cores: dict[int, list[ProcessRow]] = {}
         for process, ended in sorted(jobs.items()):
             row = ProcessRow(self.entities[process].name, tuple(ended), tuple(self.lost.get(process, ())))
-            cores.setdefault(self.homes.get(process, len(self.entities)), []).append(row)
+            cores.setdefault(self._home(process), []).append(row)
         return tuple(CoreRows(self._core_name(core), tuple(rows)) for core, rows in sorted(cores.items()))
+
+    def _home(self, process: int) -> int:
+        if process in self.homes:
+            return self.homes[process]
+        stated = Entity(EntityKind.CORE, self.stated.get(self.entities[process].name, ""))
+        return self.entities.index(stated) if stated in self.entities else len(self.entities)
 
     def _core_name(self, core: int) -> str:
         return self.entities[core].name if core < len(self.entities) else UNKNOWN_CORE

@@ -33,6 +33,8 @@ _MOST_BINS = 200
 _GROUPS = [digit * 10**tens for tens in range(16) for digit in (1, 5)]
 #: A lower bar would not be seen, in pixels.
 _LOWEST = 1.5
+#: A single bin is at least one part of so many of its value wide, so that the axis has readable numbers.
+_RESOLUTION = 100
 #: One part of so many is free on both sides, and at least so many bins have room: a single one is no wall.
 _MARGIN, _FEWEST_BINS = 25, 12
 
@@ -120,7 +122,8 @@ def _trimmed(histogram: Histogram) -> Histogram:
 def _coarsened(histogram: Histogram) -> Histogram:
     """With so many neighbouring bins put together that they can be told from each other; edges are multiples of the new width."""
     edges = histogram.edges
-    size = next(size for size in _GROUPS if len(edges) <= size * (_MOST_BINS - 1))
+    fewest = -(-len(edges) // (_MOST_BINS - 1)) if len(edges) > 2 else edges[1] // (edges[1] - edges[0]) // _RESOLUTION
+    size = next(size for size in _GROUPS if size >= fewest)
     before = edges[0] // (edges[1] - edges[0]) % size
     after = -(before + len(edges) - 1) % size
     start, end = edges[0] - before * (edges[1] - edges[0]), edges[-1] + after * (edges[-1] - edges[-2])
