@@ -26,7 +26,7 @@ from amalthea_uros.simulate.metrics.repetitions import Repetitions
 from amalthea_uros.simulate.metrics.runnable_orders import RunnableOrder
 from amalthea_uros.simulate.metrics.synchronizations import AllOccurrences, SubsequentOccurrences
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.program.build import Program
+from amalthea_uros.simulate.program.program import Program
 from amalthea_uros.simulate.program.watches import Source, event_names, is_of_label, is_of_order, scope
 from amalthea_uros.simulate.results import LabelObservation
 from amalthea_uros.simulate.rows import Observation

@@ -42,7 +42,7 @@ from amalthea_uros.simulate.layout import (
 )
 from amalthea_uros.simulate.memory import Memory
 from amalthea_uros.simulate.operations import ENDLESS, QUEUE_FULL, ROWS_FULL, STREAM_EMPTY, WINDOW
-from amalthea_uros.simulate.program.build import Program
+from amalthea_uros.simulate.program.program import Program
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

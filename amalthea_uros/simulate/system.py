@@ -34,7 +34,8 @@ from amalthea_uros.simulate.observers import Observers
 from amalthea_uros.simulate.operations import POLLING, RUNNING
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.player import EndlessJobError, Player
-from amalthea_uros.simulate.program.build import Program, build_program
+from amalthea_uros.simulate.program.build import build_program
+from amalthea_uros.simulate.program.program import Program
 from amalthea_uros.simulate.results import (
     ChainObservation,
     CoreObservation,

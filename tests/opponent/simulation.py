@@ -19,7 +19,8 @@ from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.player import Player
-from amalthea_uros.simulate.program.build import Program, build_program
+from amalthea_uros.simulate.program.build import build_program
+from amalthea_uros.simulate.program.program import Program
 from amalthea_uros.simulate.results import MetricObservation
 from amalthea_uros.simulate.rows import STIMULUS, Observation
 from amalthea_uros.simulate.rows import Job as Column

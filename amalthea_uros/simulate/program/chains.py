@@ -27,7 +27,7 @@ from amalthea_uros.simulate.layout import (
     VALUE,
 )
 from amalthea_uros.simulate.operations import ENTER, LEAVE, MARK, PUBLISH, PUT, REACH, RESPOND, TAKE
-from amalthea_uros.simulate.program.body import Hooks, Operation
+from amalthea_uros.simulate.program.hooks import Hooks, Operation
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold

@@ -18,9 +18,13 @@ class Image:
         """A new record of zeros, apart from some fields; the place at which it begins."""
         place = len(self.words)
         self.words += [0] * size
-        for number, value in (fields or {}).items():
-            self.words[place + number] = value
+        self.put(place, fields or {})
         return place
+
+    def put(self, record: int, fields: Mapping[int, int]) -> None:
+        """Set fields of a record."""
+        for number, value in fields.items():
+            self.words[record + number] = value
 
     def items(self, values: Iterable[int]) -> tuple[int, int]:
         """A new list; the places at which it begins and ends."""

@@ -19,8 +19,8 @@ from amalthea_uros.simulate.layout import (
 )
 from amalthea_uros.simulate.operations import TAKE_MESSAGE
 from amalthea_uros.simulate.options import Mode
-from amalthea_uros.simulate.program.body import Hooks
 from amalthea_uros.simulate.program.chains import ChainCompiler
+from amalthea_uros.simulate.program.hooks import Hooks
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.sampling.random_source import RandomSource

@@ -50,6 +50,7 @@ from amalthea_uros.timing.counters import first_effect
 from amalthea_uros.timing.multiframe import Frame
 from amalthea_uros.timing.server_calls import servers
 from amalthea_uros.trace.table import EntityKind
+from amalthea_uros.units import Time
 
 
 @dataclass(slots=True)
@@ -99,6 +100,10 @@ class Resources:
             self.services[name] = self.image.record(SERVICE_SIZE, {SERVICE_NUMBER: number})
 
     # Times.
+
+    def time(self, time: Time) -> int:
+        """A time in time units; one that is too long never comes."""
+        return min(time * self.units, NEVER)
 
     def ticks(self, ticks: Distribution[int], core: str, factor: Fraction, place: str) -> Stream:
         """The times that ticks, or units that take `factor` ticks each, take on a core."""

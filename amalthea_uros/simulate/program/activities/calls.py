@@ -1,0 +1,122 @@
+"""Calls of runnables, and of those that other processes execute."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from amalthea_uros.perf.activities import Call, ServerCall, ServerCallKind, Waiting
+from amalthea_uros.perf.distributions import Statistics
+from amalthea_uros.perf.events import RunnableChange, RunnableEvent
+from amalthea_uros.perf.software import Runnable
+from amalthea_uros.simulate.layout import EXECUTION_NUMBER, EXECUTION_SIZE, LOOP_SIZE
+from amalthea_uros.simulate.operations import (
+    ACTIVE,
+    AGAIN,
+    ASK,
+    AWAIT,
+    BEGIN_EXECUTION,
+    BEGIN_RUNNABLE,
+    END_EXECUTION,
+    END_RUNNABLE,
+    JUMP,
+    REPEAT,
+    SERVE,
+    SERVED,
+)
+from amalthea_uros.simulate.program.activities.obstacles import check_executing
+from amalthea_uros.simulate.program.code import Label
+from amalthea_uros.simulate.program.obstacles import NotSimulatedError
+from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH
+from amalthea_uros.timing.memory import count_of
+
+if TYPE_CHECKING:
+    from amalthea_uros.simulate.program.body import Body
+
+
+def call(body: Body, activity: Call) -> None:
+    """The activities of a runnable, as often as it is called; it starts and ends each time."""
+    runnable = _callable(body, activity)
+    number = body.number
+    again, done = _repeated(body, activity)
+    skip = body.tested(runnable.condition) if activity.times is not None else None
+    body.add_all(body.hooks.before.get(number, ()))
+    _execution(body, runnable)
+    body.add_all(body.hooks.after.get(number, ()))
+    body.mark(skip)
+    if again is not None:
+        body.code.add(JUMP, again)
+    body.mark(done)
+
+
+def _callable(body: Body, activity: Call) -> Runnable:
+    runnable = body.context.system.runnables.get(activity.runnable)
+    if runnable is None:
+        raise NotSimulatedError(f"the runnable {activity.runnable!r} is not defined in the model")
+    if runnable.name in body.above:
+        raise NotSimulatedError(f"the runnable {runnable.name!r} calls itself")
+    if len(body.above) > MAX_CALL_DEPTH:
+        raise NotSimulatedError(f"calls are nested deeper than {MAX_CALL_DEPTH} levels")
+    return runnable
+
+
+def _repeated(body: Body, activity: Call) -> tuple[Label | None, Label | None]:
+    """The begin and the end of a loop around what a call stands for, if it stands for several."""
+    if activity.times is None:
+        return None, None
+    least, mean, most = count_of(activity.times)
+    record, done = body.resources.image.record(LOOP_SIZE), Label()
+    passes = Statistics(lower=least, average=float(mean), upper=most)
+    body.code.add(REPEAT, record, body.resources.count(passes, f"{body.place()} passes"))
+    again = body.code.here()
+    body.code.add(AGAIN, record, done)
+    return again, done
+
+
+def _execution(body: Body, runnable: Runnable) -> None:
+    """One execution, between what reports its start and its end."""
+    service = body.resources.services.get(runnable.name, 0)
+    site = body.resources.site(runnable.name) if body.parts.is_noted else 0
+    measured = _measured(body, runnable.name)
+    if site:
+        body.code.add(BEGIN_RUNNABLE, site)
+    if measured:
+        body.code.add(BEGIN_EXECUTION, measured)
+    body.observe(RunnableEvent, runnable.name, RunnableChange.START)
+    if service:
+        body.code.add(SERVE, service)
+    outer, body.above = body.above, (*body.above, runnable.name)
+    body.activities(runnable.activities)
+    body.above = outer
+    if service:
+        body.code.add(SERVED, service)
+    body.observe(RunnableEvent, runnable.name, RunnableChange.TERMINATE)
+    if measured:
+        body.code.add(END_EXECUTION, measured)
+    if site:
+        body.code.add(END_RUNNABLE, site)
+
+
+def _measured(body: Body, runnable: str) -> int:
+    """The record of the executions of a runnable in this process, if they are measured, or 0."""
+    number = body.parts.watches.measured.get(runnable)
+    if number is None:
+        return 0
+    if runnable not in body.executions:
+        body.executions[runnable] = body.resources.image.record(EXECUTION_SIZE, {EXECUTION_NUMBER: number})
+    return body.executions[runnable]
+
+
+def server_call(body: Body, activity: ServerCall) -> None:
+    """A request to another process, and waiting for its end."""
+    waits = activity.waits and activity.kind is not ServerCallKind.ASYNCHRONOUS
+    if not waits:
+        check_executing(body, activity)
+    elif activity.runnable not in body.resources.executing:
+        raise NotSimulatedError(f"it waits for the server runnable {activity.runnable!r}, which no process executes")
+    # Where a model does not state it, a client waits actively, as for INCHRON's importer.
+    flags = 0 if activity.waiting is Waiting.PASSIVE else ACTIVE
+    service = body.resources.services.get(activity.runnable, 0)
+    if activity.kind is not ServerCallKind.GET_RESULT and service:
+        body.code.add(ASK, service)
+    if waits:
+        body.code.add(AWAIT, service, flags)

@@ -1,0 +1,124 @@
+"""Cores, the domains whose processes share them, and servers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import gcd
+
+from amalthea_uros.perf.os import Policy
+from amalthea_uros.simulate.layout import (
+    BUDGET,
+    BUDGET_RATIO,
+    CONSTANT_BANDWIDTH,
+    CORE_DOMAIN,
+    CORE_ENTITY,
+    CORE_NUMBER,
+    CORE_SIZE,
+    DEFERRABLE,
+    DOMAIN_SIZE,
+    FULL_BUDGET,
+    ITS_CORES,
+    ITS_CORES_END,
+    NEVER,
+    PARENT,
+    PERIOD_RATIO,
+    PLAN_SIZE,
+    PLANS,
+    PLANS_END,
+    POLLING_SERVER,
+    SERVED,
+    SERVED_END,
+    SERVER_AT,
+    SERVER_DOMAIN,
+    SERVER_KIND,
+    SERVER_PERIOD,
+    SERVER_SIZE,
+    SPORADIC,
+    STOP,
+)
+from amalthea_uros.simulate.program.resources import Resources
+from amalthea_uros.simulate.program.scheduling import Dispatching
+from amalthea_uros.timing.scheduling import standard_policy
+from amalthea_uros.trace.table import EntityKind
+
+#: Places for what a sporadic server gets back.
+_PLANS = 64
+_KINDS = {
+    Policy.DEFERRABLE_SERVER: DEFERRABLE,
+    Policy.POLLING_SERVER: POLLING_SERVER,
+    Policy.SPORADIC_SERVER: SPORADIC,
+    Policy.CONSTANT_BANDWIDTH_SERVER: CONSTANT_BANDWIDTH,
+    Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH: CONSTANT_BANDWIDTH,
+}
+
+
+@dataclass(slots=True)
+class Hardware:
+    """The records of cores, domains and servers.
+
+    Attributes
+    ----------
+    cores, servers : by name
+    domains : by core
+    """
+
+    resources: Resources
+    dispatching: Dispatching
+    cores: dict[str, int] = field(default_factory=dict)
+    domains: dict[str, int] = field(default_factory=dict)
+    servers: dict[str, int] = field(default_factory=dict)
+
+    def place_cores(self) -> None:
+        """Cores, and domains of those that share processes."""
+        for number, core in enumerate(self.resources.context.system.cores):
+            entity = self.resources.entities.number(EntityKind.CORE, core)
+            fields = {STOP: NEVER, CORE_NUMBER: number, CORE_ENTITY: entity}
+            self.cores[core] = self.resources.image.record(CORE_SIZE, fields)
+        for cores in self.dispatching.domains():
+            domain = self.resources.image.record(DOMAIN_SIZE)
+            first, end = self.resources.image.items(self.cores[core] for core in cores)
+            self.resources.image.put(domain, {ITS_CORES: first, ITS_CORES_END: end})
+            for core in cores:
+                self.domains[core] = domain
+                self.resources.image.put(self.cores[core], {CORE_DOMAIN: domain})
+
+    def place_servers(self, processes: Mapping[str, int]) -> None:
+        """Servers that serve any of some processes, which have records by their names."""
+        here = [self.dispatching.processes[name].scheduled for name in processes]
+        for name in self.dispatching.servers:
+            if any(self._is_within(item.server, name) for item in here):
+                self.servers[name] = self.resources.image.record(SERVER_SIZE)
+        for name, record in self.servers.items():
+            server = self.dispatching.servers[name]
+            policy = standard_policy(server.scheduler.policy)
+            kind = _KINDS[Policy(policy or "")]
+            if policy == Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH:
+                self.resources.context.notes.assume(f"the server {name!r} does not reuse what other servers leave")
+            budget, period = self.resources.time(server.budget), self.resources.time(server.period)
+            common = gcd(budget, period)
+            served = [processes[item.name] for item in here if self._is_within(item.server, name)]
+            first, end = self.resources.image.items(served)
+            plans, plans_end = self.resources.image.items([0] * (_PLANS * PLAN_SIZE if kind == SPORADIC else 0))
+            fields = {
+                # The first period begins at 0: then a polling server loses its budget if it has nothing to serve.
+                SERVER_AT: 0 if kind in (DEFERRABLE, POLLING_SERVER) else NEVER,
+                BUDGET: budget,
+                FULL_BUDGET: budget,
+                SERVER_PERIOD: period,
+                SERVER_KIND: kind,
+                PARENT: self.servers.get(server.server or "", 0),
+                SERVER_DOMAIN: self.domains[server.core],
+                SERVED: first,
+                SERVED_END: end,
+                BUDGET_RATIO: budget // common,
+                PERIOD_RATIO: period // common,
+                PLANS: plans,
+                PLANS_END: plans_end,
+            }
+            self.resources.image.put(record, fields)
+
+    def _is_within(self, server: str | None, outer: str) -> bool:
+        while server is not None and server != outer:
+            server = self.dispatching.servers[server].server
+        return server == outer

@@ -1,0 +1,203 @@
+"""Processes as records: how they are scheduled, and what they execute."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from amalthea_uros.perf.os import Scheduler
+from amalthea_uros.perf.software import Preemption, Task
+from amalthea_uros.simulate.layout import (
+    ALLOWED,
+    CAPTURES,
+    CAPTURES_END,
+    CEILING,
+    DEADLINE_CEILING,
+    DECISION,
+    DOMAIN,
+    ENTITY,
+    ENTRY,
+    EVENTS_SET,
+    FIRST_PLACE,
+    HAS_COOPERATIVE,
+    HAS_SERVER_DEADLINE,
+    HOLD_SIZE,
+    HOLDS,
+    INNER,
+    IS_BY_DEADLINE,
+    IS_COOPERATIVE,
+    IS_REPORTED,
+    LET_STAGES,
+    LET_STAGES_END,
+    LEVEL,
+    LIMIT,
+    MEMBERS,
+    MEMBERS_END,
+    NEVER,
+    NUMBER,
+    OWN_LEVEL,
+    PROCESS_SIZE,
+    QUEUE,
+    QUEUE_CAPTURES,
+    RELATIVE_DEADLINE,
+    RUNNING_LEVEL,
+    SERVER,
+    SLICE,
+    TICKETS,
+    WATCHED,
+)
+from amalthea_uros.simulate.program.bodies import decision_code, process_code
+from amalthea_uros.simulate.program.chains import ChainCompiler
+from amalthea_uros.simulate.program.hardware import Hardware
+from amalthea_uros.simulate.program.hooks import Hooks
+from amalthea_uros.simulate.program.image import Image
+from amalthea_uros.simulate.program.obstacles import NotSimulatedError
+from amalthea_uros.simulate.program.parts import Parts
+from amalthea_uros.simulate.program.resources import Resources
+from amalthea_uros.simulate.program.scheduling import Dispatched
+from amalthea_uros.timing.critical_sections import protection_of
+from amalthea_uros.timing.preemption import preemption
+from amalthea_uros.timing.scheduling import EqualPriority
+from amalthea_uros.timing.stated_demand import states_execution_time
+from amalthea_uros.trace.table import EntityKind
+
+#: Places for activations of each process to begin with.
+PLACES_AT_FIRST = 4
+
+
+@dataclass(slots=True)
+class ProcessRecords:
+    """The records of processes, and of decisions of schedulers.
+
+    Attributes
+    ----------
+    decisions : by scheduler and core
+    """
+
+    parts: Parts
+    hardware: Hardware
+    chains: ChainCompiler
+    decisions: dict[tuple[str, str], int] = field(default_factory=dict)
+
+    @property
+    def resources(self) -> Resources:
+        """What programs refer to."""
+        return self.parts.resources
+
+    @property
+    def image(self) -> Image:
+        """The memory."""
+        return self.parts.resources.image
+
+    def add(self, item: Dispatched, number: int) -> None:
+        """Fill the record of a process, which has a number in rows.
+
+        Raises
+        ------
+        NotSimulatedError : something in it cannot be simulated.
+        """
+        scheduled, context, chains = item.scheduled, self.resources.context, self.chains
+        process = scheduled.process
+        if not states_execution_time(process, context.system):
+            raise NotSimulatedError("it has no execution time, and neither have the runnables that it calls")
+        core = item.cores[0]
+        scheduler = context.deciding(item.name, core)
+        hooks = chains.hooks.get(item.name, Hooks())
+        code = process_code(self.parts, process, core, hooks, scheduler, in_group=scheduled.group is not None)
+        captures, captures_end = self.image.items(chains.captures.get(item.name, ()))
+        lets, lets_end = self.image.items(chains.let_stages.get(item.name, ()))
+        semaphores, events = len(self.resources.semaphores), len(self.resources.os_events)
+        queue, _ = self.image.items([0] * (PLACES_AT_FIRST * (QUEUE_CAPTURES + captures_end - captures)))
+        transitions = self.parts.watches.transitions(item.name)
+        allowed, _ = self.image.items(int(name in item.cores) for name in self.hardware.cores)
+        is_edf = scheduled.equal_priority is EqualPriority.EDF
+        has_server_deadline = self.hardware.dispatching.has_server_deadline(scheduled)
+        level = self.hardware.dispatching.level(scheduled)
+        fields = {
+            LEVEL: level,
+            OWN_LEVEL: level,
+            RUNNING_LEVEL: self.hardware.dispatching.running_level(item),
+            INNER: _inner(item) if has_server_deadline else 0,
+            LIMIT: process.activation_limit if isinstance(process, Task) else NEVER,
+            QUEUE: queue,
+            FIRST_PLACE: queue,
+            ENTRY: code.write(self.image),
+            NUMBER: number,
+            IS_REPORTED: 1,
+            ENTITY: self.resources.entities.process(item.name),
+            DOMAIN: self.hardware.domains[core],
+            ALLOWED: allowed,
+            IS_COOPERATIVE: int(not scheduled.is_isr and preemption(scheduled) is Preemption.COOPERATIVE),
+            IS_BY_DEADLINE: int(is_edf),
+            HAS_SERVER_DEADLINE: int(has_server_deadline),
+            RELATIVE_DEADLINE: self.resources.time(scheduled.deadline or 0) if is_edf else 0,
+            SLICE: self.resources.time(scheduled.slice) if scheduled.equal_priority is EqualPriority.ROUND_ROBIN else 0,
+            SERVER: self.hardware.servers.get(scheduled.server or "", 0),
+            DECISION: self._decision(scheduler, core) if scheduler is not None else 0,
+            CAPTURES: captures,
+            CAPTURES_END: captures_end,
+            LET_STAGES: lets,
+            LET_STAGES_END: lets_end,
+            HOLDS: self.image.items([0] * (semaphores * HOLD_SIZE))[0],
+            EVENTS_SET: self.image.items([0] * events)[0],
+            TICKETS: self.image.items([0] * len(self.resources.services))[0],
+            WATCHED: self.image.items(transitions)[0] if transitions else 0,
+        }
+        self.image.put(self.parts.processes[item.name], fields)
+
+    def _decision(self, scheduler: Scheduler, core: str) -> int:
+        """What decides for a scheduler on a core when a task is activated: it precedes everything else."""
+        key = (scheduler.name, core)
+        if key not in self.decisions:
+            level = self.hardware.dispatching.highest_level + 2
+            queue, _ = self.image.items([0] * (PLACES_AT_FIRST * QUEUE_CAPTURES))
+            allowed, _ = self.image.items(int(name == core) for name in self.hardware.cores)
+            fields = {
+                LEVEL: level,
+                OWN_LEVEL: level,
+                RUNNING_LEVEL: level,
+                LIMIT: NEVER,
+                QUEUE: queue,
+                FIRST_PLACE: queue,
+                ENTRY: decision_code(self.parts, scheduler, core).write(self.image),
+                ENTITY: self.resources.entities.number(EntityKind.SCHEDULER, scheduler.name),
+                DOMAIN: self.hardware.domains[core],
+                ALLOWED: allowed,
+                HOLDS: self.image.items([0] * (len(self.resources.semaphores) * HOLD_SIZE))[0],
+            }
+            self.decisions[key] = self.image.record(PROCESS_SIZE, fields)
+        return self.decisions[key]
+
+    def place_members(self) -> None:
+        """The members of each domain, highest level first; those of a level in the order of the model."""
+        words = self.image.words
+        everything = [*self.parts.processes.values(), *self.decisions.values()]
+        for domain in set(self.hardware.domains.values()):
+            members = [record for record in everything if words[record + DOMAIN] == domain]
+            members.sort(key=lambda record: -words[record + OWN_LEVEL])
+            first, end = self.image.items(members)
+            fields = {
+                MEMBERS: first,
+                MEMBERS_END: end,
+                HAS_COOPERATIVE: int(any(words[record + IS_COOPERATIVE] for record in members)),
+            }
+            self.image.put(domain, fields)
+
+    def place_ceilings(self) -> None:
+        """The ceilings of semaphores: of all that use them."""
+        words, system = self.image.words, self.resources.context.system
+        uses = {name: protection_of(system.processes[name], system) for name in self.parts.processes}
+        for semaphore in system.os.semaphores:
+            if not semaphore.ceiling:
+                continue
+            users = [self.parts.processes[name] for name in uses if semaphore.name in uses[name].semaphores]
+            deadlines = [words[user + RELATIVE_DEADLINE] for user in users if words[user + IS_BY_DEADLINE]]
+            fields = {
+                CEILING: max((words[user + OWN_LEVEL] for user in users), default=0) + 1,
+                DEADLINE_CEILING: min(deadlines, default=NEVER),
+            }
+            self.image.put(self.resources.semaphores[semaphore.name], fields)
+
+
+def _inner(item: Dispatched) -> int:
+    """The order within a server that has a deadline itself."""
+    return item.scheduled.rank[-1] if item.scheduled.rank else 0

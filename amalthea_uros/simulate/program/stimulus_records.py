@@ -1,0 +1,117 @@
+"""Stimuli as records, and the occurrences of those that come from outside."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from amalthea_uros.perf.activities import Trigger
+from amalthea_uros.perf.events import StimulusEvent
+from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Stimulus
+from amalthea_uros.simulate.arrivals import Occurrences, UnknownArrivalError, occurrences
+from amalthea_uros.simulate.layout import (
+    ASSIGNMENTS,
+    ASSIGNMENTS_END,
+    CONDITION,
+    COUNTER,
+    STIMULUS_ENTITY,
+    STIMULUS_SOURCE,
+    TARGETS,
+    TARGETS_END,
+)
+from amalthea_uros.simulate.operations import FIRE
+from amalthea_uros.simulate.program.chains import ChainCompiler
+from amalthea_uros.simulate.program.hooks import Hooks
+from amalthea_uros.simulate.program.obstacles import NotSimulatedError
+from amalthea_uros.simulate.program.parts import Parts
+from amalthea_uros.simulate.program.resources import Resources
+from amalthea_uros.simulate.program.watches import Source
+from amalthea_uros.simulate.sampling.random_source import RandomSource
+from amalthea_uros.timing.activation import UnknownActivationError
+from amalthea_uros.trace.table import EntityKind
+
+
+@dataclass(slots=True)
+class StimulusRecords:
+    """The records of stimuli.
+
+    Attributes
+    ----------
+    left_out : why a process is not simulated
+    """
+
+    parts: Parts
+    left_out: dict[str, str]
+
+    @property
+    def resources(self) -> Resources:
+        """What programs refer to."""
+        return self.parts.resources
+
+    def place(self) -> list[tuple[int, Occurrences]]:
+        """Fill the records; those of stimuli that come from outside, and when they occur."""
+        system = self.resources.context.system
+        activated: dict[str, list[str]] = {}
+        for name in self.parts.processes:
+            for stimulus_name in system.processes[name].stimuli:
+                activated.setdefault(stimulus_name, []).append(name)
+        order = {name: number for number, name in enumerate(self.parts.processes)}
+        external: list[tuple[int, int, Occurrences]] = []
+        for name, record in self.parts.stimuli.items():
+            stimulus, targets = system.stimuli_by_name[name], activated.get(name, [])
+            try:
+                self._stimulus(stimulus, record, targets)
+                if isinstance(stimulus, EventTriggered) and not self.resources.context.activations.causes(stimulus):
+                    raise NotSimulatedError(f"no activity in the model raises an event of the stimulus {name!r}")
+                is_internal = isinstance(stimulus, InterProcess | EventTriggered)
+                is_watched = self.resources.image.words[record + STIMULUS_SOURCE] > 0
+                if not is_internal and (targets or stimulus.assignments or is_watched):
+                    first = min((order[target] for target in targets), default=len(order))
+                    external.append((first, record, self._occurrences(stimulus)))
+            except (NotSimulatedError, UnknownArrivalError, UnknownActivationError) as error:
+                for target in targets:
+                    self.left_out[target] = str(error)
+        # Of simultaneous activations, that of the process comes first that is the first one of the model.
+        external.sort(key=lambda entry: entry[0])
+        return [(record, found) for _, record, found in external]
+
+    def _occurrences(self, stimulus: Stimulus) -> Occurrences:
+        options, context = self.resources.options, self.resources.context
+        source = RandomSource(options.seed, f"stimulus {stimulus.name}")
+        found = occurrences(stimulus, context.system, options.mode, source, self.resources.units)
+        for sentence in found.assumptions:
+            context.notes.assume(sentence)
+        return found
+
+    def _stimulus(self, stimulus: Stimulus, record: int, targets: Sequence[str]) -> None:
+        first, end = self.resources.image.items(self.parts.processes[target] for target in targets)
+        pairs: list[int] = []
+        for assignment in stimulus.assignments:
+            pairs += (self.parts.modes.label(assignment.label), self.parts.modes.value(assignment.label, assignment.value))
+        assignments, assignments_end = self.resources.image.items(pairs)
+        counter = stimulus.counter if isinstance(stimulus, InterProcess | EventTriggered) else None
+        source = self.parts.watches.number(Source(StimulusEvent, stimulus.name))
+        fields = {
+            TARGETS: first,
+            TARGETS_END: end,
+            CONDITION: self.parts.modes.condition(stimulus.condition) if stimulus.condition is not None else 0,
+            COUNTER: self.resources.counter(stimulus, counter),
+            ASSIGNMENTS: assignments,
+            ASSIGNMENTS_END: assignments_end,
+            STIMULUS_ENTITY: self.resources.entities.number(EntityKind.STIMULUS, stimulus.name),
+            STIMULUS_SOURCE: 0 if source is None else source + 1,
+        }
+        self.resources.image.put(record, fields)
+
+
+def hook_firings(parts: Parts, chains: ChainCompiler) -> None:
+    """Have events fire the stimuli that they activate; triggers fire theirs by themselves."""
+    context = parts.resources.context
+    if not any(isinstance(stimulus, EventTriggered) for stimulus in context.system.stimuli.stimuli):
+        return
+    for name in parts.processes:
+        hooks = chains.hooks.setdefault(name, Hooks())
+        for firing in context.dataflow.firings(name):
+            if not isinstance(firing.position.activity, Trigger):
+                side = hooks.before if firing.is_before else hooks.after
+                side.setdefault(firing.position.number, []).append((FIRE, parts.stimuli[firing.stimulus], 0))
