@@ -43,8 +43,13 @@ def version_of(element):
 
 
 @row("INC-IO-VERSION", "E")
+def version_is_not_older_than_the_metamodels(model):
+    return [d.migrated_from for d in model.documents if d.migrated_from]
+
+
+@row("INC-IO-VERSION", "W")
 def version(model):
-    return [d.version for d in model.documents if d.version not in WRITABLE]
+    return [d.version for d in model.documents if d.version not in WRITABLE and not d.migrated_from]
 
 
 @row("INC-IO-SAMEVERSION", "E")
@@ -64,16 +69,55 @@ def members(model):
     return [m for m in model.walk() if isinstance(m, am.INamespaceMember) and m.namespace and "xmi:id" not in texts[m.document]]
 
 
-@row("INC-IO-REF", "E")
-def references_resolve(model):
+#: Where a reference that leads to nothing ends in a crash: the class of the holder and the feature.
+FATAL = {
+    ("RunnableCall", "runnable"),
+    ("LabelAccess", "data"),
+    ("ModeLabelAccess", "data"),
+    ("InterProcessTrigger", "stimulus"),
+    ("ModeValueCondition", "label"),
+    ("ModeLabelCondition", "label1"),
+    ("ModeLabelCondition", "label2"),
+    ("ProcessingUnit", "frequency_domain"),
+    ("TaskAllocation", "task"),
+    ("Task", "stimuli"),
+    ("ISR", "stimuli"),
+    ("MemoryMapping", "abstract_element"),
+    ("EventChain", "stimulus"),
+    ("EventChain", "response"),
+}
+
+
+def broken(model):
+    """The references that lead to nothing, and whether am2inc crashes at them."""
     plain = {f"{m.name}?type={type(m).__name__}" for m in members(model)}
-    return [reference.holder for reference, text in model.unresolved() if text not in plain]
+    found = [reference for reference, text in model.unresolved() if text not in plain]
+    return [(reference.holder, (type(reference.holder).__name__, reference.feature) in FATAL) for reference in found]
+
+
+@row("INC-IO-REF", "E")
+def needed_references_resolve(model):
+    return [holder for holder, is_fatal in broken(model) if is_fatal]
+
+
+@row("INC-IO-REF", "W")
+def references_resolve(model):
+    return [holder for holder, is_fatal in broken(model) if not is_fatal]
+
+
+def everything_unknown(model):
+    read = [(ElementTree.fromstring(d.source.text), facts(reads_with(d))) for d in model.documents if d.source]
+    return [(kind, name) for root, known in read for kind, name in unknown(root, "Amalthea", known)]
 
 
 @row("INC-IO-FEATURE", "E")
-def everything_is_known(model):
-    read = [(ElementTree.fromstring(d.source.text), facts(reads_with(d))) for d in model.documents if d.source]
-    return [name for root, known in read for name in unknown(root, "Amalthea", known)]
+def elements_and_literals_are_known(model):
+    return [name for kind, name in everything_unknown(model) if kind != "attribute"]
+
+
+@row("INC-IO-FEATURE", "W")
+def attributes_are_known(model):
+    return [name for kind, name in everything_unknown(model) if kind == "attribute"]
 
 
 def unknown(node, cls, known):
@@ -81,16 +125,16 @@ def unknown(node, cls, known):
     for name, value in node.attrib.items():
         feature = features.get(name)
         if feature is None and not name.startswith("{"):
-            yield name
+            yield "attribute", name
         elif feature is not None and feature.type in known.enums and value not in known.enums[feature.type].literals:
-            yield value
+            yield "literal", value
     for child in node:
         feature = features.get(child.tag)
         if feature is None:
-            yield child.tag
+            yield "element", child.tag
         elif feature.kind is Kind.CONTAINMENT:
             given = child.get("{http://www.w3.org/2001/XMLSchema-instance}type", feature.type).removeprefix("am:")
-            yield from unknown(child, given, known) if given in known.classes else [given]
+            yield from unknown(child, given, known) if given in known.classes else [("class", given)]
 
 
 @row("INC-IO-XMIID", "E")
@@ -276,11 +320,16 @@ def systems_have_one_interrupt_controller(model):
 
 
 @row("INC-MAP-TASK", "E")
-def allocations_are_complete(model):
-    return [a for a in mapping(model, "task_allocation") if a.task is None or a.scheduler is None]
+def allocations_have_a_task(model):
+    return [a for a in mapping(model, "task_allocation") if a.task is None]
 
 
-@row("INC-MAP-TASK-ONCE", "E")
+@row("INC-MAP-TASK", "W")
+def allocations_have_a_scheduler(model):
+    return [a for a in mapping(model, "task_allocation") if a.task is not None and a.scheduler is None]
+
+
+@row("INC-MAP-TASK-ONCE", "W")
 def every_process_is_allocated_once(model):
     count = Counter([*(a.task for a in mapping(model, "task_allocation")), *(a.isr for a in mapping(model, "isr_allocation"))])
     return [p for p in (*model.all(am.Task), *model.all(am.ISR)) if count[p] != 1]
@@ -391,7 +440,13 @@ def jitter_converts(model):
 @row("INC-ST-RELPER", "E")
 def distances_convert(model):
     good = am.TimeGaussDistribution | am.TimeUniformDistribution
-    return [s for s in model.all(am.RelativePeriodicStimulus) if not isinstance(s.next_occurrence, good)]
+    stated = [s for s in model.all(am.RelativePeriodicStimulus) if s.next_occurrence is not None]
+    return [s for s in stated if not isinstance(s.next_occurrence, good)]
+
+
+@row("INC-ST-RELPER", "W")
+def distances_are_stated(model):
+    return [s for s in model.all(am.RelativePeriodicStimulus) if s.next_occurrence is None]
 
 
 @row("INC-ST-RELPER-UNIT", "W")
@@ -452,6 +507,25 @@ def boundaries_have_a_sampling_type(model):
 @row("INC-SW-TICKS-BETA", "W")
 def no_beta(model):
     return values(model, am.DiscreteValueBetaDistribution)
+
+
+@row("INC-SW-TICKS-STAT", "W")
+def no_statistics(model):
+    return values(model, am.DiscreteValueStatistics)
+
+
+UNPROTECTED = (None, "_undefined_", "inherited", "noProtection")
+
+
+@row("INC-SW-STABILITY", "W")
+def no_data_stability(model):
+    return [e for e in (*model.all(am.Label), *model.all(am.LabelAccess)) if e.data_stability not in UNPROTECTED]
+
+
+@row("INC-OS-CONSISTENCY", "W")
+def no_data_consistency(model):
+    found = [c for c in model.walk() if isinstance(c, am.OsDataConsistency)]
+    return [c for c in found if c.mode not in UNPROTECTED or c.data_stability or c.non_atomic_data_coherency]
 
 
 @row("INC-SW-REF", "E")
@@ -634,9 +708,18 @@ def label_events_hold_for_all_runnables(model):
     return on_cores + [e for e in model.all(am.LabelEvent) if e.runnable is not None]
 
 
+def without_ends(model):
+    return [c for c in model.all(am.AbstractEventChain) if c.stimulus is None or c.response is None]
+
+
+@row("INC-EC-ENDS", "E")
+def chains_with_items_have_ends(model):
+    return [c for c in without_ends(model) if isinstance(c, am.EventChain) and c.items]
+
+
 @row("INC-EC-ENDS", "W")
 def chains_have_ends(model):
-    return [c for c in model.all(am.AbstractEventChain) if c.stimulus is None or c.response is None]
+    return [c for c in without_ends(model) if not (isinstance(c, am.EventChain) and c.items)]
 
 
 def parts(chain):
@@ -670,17 +753,35 @@ def branches_have_the_ends_of_the_chain(model):
     return empty + [c for c in parallel(model) if any((p.stimulus, p.response) != (c.stimulus, c.response) for p in parts(c))]
 
 
-@row("INC-EC-PAR-ITEMS", "E")
-def branches_have_items(model):
+def flat(model):
     return [c for c in parallel(model) if any(not p.items for p in parts(c))]
+
+
+@row("INC-EC-PAR-ITEMS", "E")
+def branches_that_are_converted_have_items(model):
+    return [c for c in flat(model) if c not in branches_have_the_ends_of_the_chain(model)]
+
+
+@row("INC-EC-PAR-ITEMS", "W")
+def branches_have_items(model):
+    return [c for c in flat(model) if c in branches_have_the_ends_of_the_chain(model)]
+
+
+def members_of(event):
+    """How many events an end of a chain means."""
+    return len(event.events) if isinstance(event, am.EventSet) else 1
+
+
+@row("INC-EC-SET", "E")
+def chains_have_no_empty_sets(model):
+    empty = [c for c in model.all(am.EventChain) if 0 in (members_of(c.stimulus), members_of(c.response))]
+    later = [s for c in model.all(am.AbstractEventChain) if c not in parallel(model) for s in parts(c)[1:]]
+    return empty + [s for s in later if s.stimulus and members_of(s.stimulus) != 1 and is_mapped(s.stimulus, model)]
 
 
 @row("INC-EC-SET", "W")
 def chains_start_and_end_with_one_event(model):
-    def several(event):
-        return isinstance(event, am.EventSet) and len(event.events) > 1
-
-    return [c for c in model.all(am.EventChain) if several(c.stimulus) or several(c.response)]
+    return [c for c in model.all(am.EventChain) if max(members_of(c.stimulus), members_of(c.response)) > 1]
 
 
 @row("INC-EC-CYCLE", "E")

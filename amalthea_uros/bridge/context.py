@@ -164,9 +164,9 @@ class Extracting:
         self.unresolved_stimuli[name] = None
         return name
 
-    def leave_out(self, element: Element) -> None:
-        """Count an object that the generic performance model cannot represent."""
-        name = type(element).__name__
+    def leave_out(self, element: Element, name: str = "") -> None:
+        """Count an object that the generic performance model cannot represent, by its class or another name."""
+        name = name or type(element).__name__
         count, first = self._left_out.get(name, (0, element))
         self._left_out[name] = (count + 1, first)
 

@@ -59,12 +59,12 @@ class Call(AbstractActivity):
 
     Attributes
     ----------
-    times : how often the runnable is called here on average, where that is known
+    times : how often the runnable is called here, where that is known; a fraction is an average without a maximum
     """
 
     runnable: str
     counter: Counter | None = None
-    times: Count | None = None
+    times: Count | float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from math import ceil, floor, inf
+from math import ceil, floor, inf, isfinite
 
 from amalthea_uros._internal.graphs import bottom_up
 from amalthea_uros.perf.activities import (
@@ -194,6 +194,7 @@ class DemandModel:
                 scale = self.settings.scale
                 return [self._time(need, self.ticks_per_unit(name, core) * scale, core) for name, need in needs]
             case LabelAccess(label=label, kind=kind, times=times) if self.settings.memory is not Memory.NONE:
+                self._require_maximum(times)
                 return [self.access(core, label, kind, times)]
             case Send(channel=channel, elements=elements) if self.settings.memory is not Memory.NONE:
                 return [self.access(core, channel, AccessKind.WRITE, max(1, elements))]
@@ -272,8 +273,17 @@ class DemandModel:
             case None if runnable.condition is not None:
                 frames = [replace(_any_time(frame), best=0, is_certain=not frame.worst) for frame in frames]
         if call.times is not None:
+            self._require_maximum(call.times)
             frames = [_repeated(frame, call.times) for frame in frames]
         return [counted for frame in frames if (counted := self._counted(frame, call)) is not None]
+
+    def _require_maximum(self, times: Count | float | None) -> None:
+        """Check that the maximum of a number of calls or accesses is known; raises as `of_process`."""
+        if isinstance(times, float):
+            # It is usually measured; a fraction can only be an average.
+            if isfinite(times) and not times.is_integer():
+                raise UnknownDemandError(f"a number of calls or accesses, {times:g}, is an average without a maximum")
+            self.notes.assume("a single whole number of calls or accesses is exact")
 
     def _runnable(self, runnable: Runnable, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
         """The frames of a runnable, by its own executions."""

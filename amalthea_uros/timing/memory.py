@@ -160,7 +160,7 @@ def count_of(times: Count | float | None) -> tuple[int, Fraction, int]:
 
     Raises
     ------
-    UnknownDemandError : they are negative or in the wrong order.
+    UnknownDemandError : they are negative or in the wrong order, as if only a mean is stated and the maximum is 0.
     """
     if times is None:
         return _ONCE
@@ -171,6 +171,8 @@ def count_of(times: Count | float | None) -> tuple[int, Fraction, int]:
         )
     except (ValueError, OverflowError):
         raise UnknownDemandError("a number of calls or accesses is not finite") from None
-    if not 0 <= found[0] <= found[2]:
-        raise UnknownDemandError("a number of calls or accesses is negative, or its minimum is greater than its maximum")
+    if not 0 <= found[0] <= found[1] <= found[2]:
+        raise UnknownDemandError(
+            "a number of calls or accesses is negative, or its mean is not between its minimum and maximum"
+        )
     return found

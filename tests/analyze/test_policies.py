@@ -369,6 +369,17 @@ class TestCosts:
         found = worst(system([root()], tasks, runnables=[Runnable(name="R", activities=(ticks(7),))]))
         assert found["T"].startswith("a number of calls or accesses is ")
 
+    def test_an_average_number_of_calls_has_no_maximum(self):
+        """Between 0 and any number of calls have an average of 2.5, so that no multiple of the demand is a bound."""
+
+        def found(times):
+            tasks = [("T", 100, [Call(runnable="R", times=times)], {"scheduler": "root", "priority": 1})]
+            return worst(system([root()], tasks, runnables=[Runnable(name="R", activities=(ticks(7),))]))["T"]
+
+        assert found(2.5) == "a number of calls or accesses, 2.5, is an average without a maximum"
+        assert found(Count(least=0, mean=22.0, most=0)).startswith("a number of calls or accesses is ")
+        assert (found(2.0), found(Count(least=0, mean=2.5, most=4))) == (14, 28)
+
     def test_factors_of_single_processes(self):
         built = system([root()], self.ONE)
         assert worst(built, Settings(factors={"T": Fraction(3)})) == {"T": 15}

@@ -12,10 +12,11 @@ from amalthea_uros.services.check import summaries
 SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 
 
-#: What the importer does not take over of what the descriptions ask for: requirements, a policy, a semaphore with a ceiling.
+#: What the importer does not take over of what the descriptions ask for: requirements, a policy, statistics of execution
+#: times, a semaphore with a ceiling.
 WISHES = {
     "bodas-test-advanced": {"INC-CO-KIND"},
-    "bodas-test-hardware": {"INC-CO-KIND", "INC-OS-ALGORITHM"},
+    "bodas-test-hardware": {"INC-CO-KIND", "INC-OS-ALGORITHM", "INC-SW-TICKS-STAT"},
     "bodas-test-simple": {"INC-CO-KIND"},
     "drive-and-lift": {"INC-CO-KIND", "INC-OS-SEMA-TYPE"},
     "rclc-in-executor": {"INC-CO-KIND"},

@@ -120,7 +120,7 @@ DEMANDS = st.builds(
 )
 COUNTERS = st.none() | st.builds(Counter, prescaler=st.integers(1, 5), offset=st.integers(0, 3))
 COUNTS = (
-    st.none() | st.builds(Count, least=st.just(0), mean=st.just(1.0), most=st.integers(0, 3)) | st.sampled_from([1.0, 1.5, 2.0])
+    st.none() | st.builds(Count, least=st.just(0), mean=st.just(1.0), most=st.integers(1, 3)) | st.sampled_from([1.0, 2.0, 3.0])
 )
 
 

@@ -110,7 +110,7 @@ def built_or_refused(file):
 
 #: What a description can ask for, and the importer does not take over.
 WISHES = {"INC-CO-KIND", "INC-LC-MAX", "INC-OS-ALGORITHM", "INC-OS-SEMA-TYPE", "INC-SW-PREEMPTION"}
-WISHES |= {"INC-HW-ACCESS", "INC-SW-TICKS-BETA", "INC-SW-TICKS-DEFAULT"}
+WISHES |= {"INC-HW-ACCESS", "INC-SW-TICKS-BETA", "INC-SW-TICKS-DEFAULT", "INC-SW-TICKS-STAT"}
 
 
 @given(description=applications())

@@ -15,7 +15,7 @@ from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.events import Event, EventChain
 from amalthea_uros.timing.clocks import controller_of_core
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined, sequences, unfold
+from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined, empty_sets, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import GAPS, LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, routes
@@ -64,6 +64,7 @@ class ChainEvaluator:
             return ChainResult(name=chain.name, communication="", reason=str(error))
         every = [route for found in ways.values() for route in found]
         self._note(chain, left_out, every)
+        self._note_ends(chain, tuple(ways))
         if any(_reads_explicitly(stage) for route in every for stage in self._stages(route)):
             self.context.notes.assume("an explicit read sees what is written at the same instant")
         found = self._evaluated(ways)
@@ -124,6 +125,18 @@ class ChainEvaluator:
         """
         found = routes([first, then], self.context.dataflow)
         return _tightest(_worst_of([list(self.latencies(route).values()) for route in found]))
+
+    def _note_ends(self, chain: EventChain, ways: Sequence[tuple[str, ...]]) -> None:
+        """Report ends of a chain that it does not state itself."""
+        notes = self.context.notes
+        for end, stated, index in (("stimulus", chain.stimulus, 0), ("response", chain.response, -1)):
+            if stated is None:
+                events = " and ".join(repr(event) for event in dict.fromkeys(way[index] for way in ways))
+                verb = "starts" if index == 0 else "ends"
+                notes.warning("CHN007", f"the chain {chain.name!r} has no {end} of its own; it {verb} with {events}", chain)
+        for name in empty_sets(chain, self.context.system):
+            message = f"the event set {name!r} of the chain {chain.name!r} is empty and is skipped"
+            notes.warning("CHN008", message, chain)
 
     def _note(self, chain: EventChain, left_out: Iterable[str], found: Sequence[Route]) -> None:
         """Report what had to be assumed about a chain."""

@@ -65,18 +65,27 @@ def _build_count(count: perf.Count | float, _context: Building) -> am.NumericSta
     return am.SingleValueStatistic(value=float(count))
 
 
-def _extract_count(statistic: Any, _context: Extracting, _element: Element) -> perf.Count | float | None:
+def _extract_count(statistic: am.NumericStatistic | None, context: Extracting, element: Element) -> perf.Count | float | None:
     match statistic:
-        case am.MinAvgMaxStatistic(min=least, avg=mean, max=most):
+        case am.MinAvgMaxStatistic(min=least, avg=mean, max=most) if (least, mean, most) != (None, None, None):
             return perf.Count(least=least or 0, mean=mean or 0.0, most=most or 0)
-        case am.SingleValueStatistic(value=value):
-            return value or 0.0
+        case am.SingleValueStatistic(value=float(value)):
+            return value
+        case am.MinAvgMaxStatistic() | am.SingleValueStatistic():
+            # Rather once than never.
+            context.note("EXT004", f"the statistic of the {type(element).__name__} has no value and is ignored", element)
     return None
+
+
+def _extract_accesses(statistic: am.LabelAccessStatistic, context: Extracting, element: Element) -> perf.Count | float | None:
+    if statistic.cache_misses is not None:
+        context.leave_out(statistic.cache_misses, "LabelAccessStatistic.cacheMisses")
+    return _extract_count(statistic.value, context, element)
 
 
 _ACCESSES = Codec(
     lambda count, context: am.LabelAccessStatistic(value=_build_count(count, context)),
-    lambda value, context, element: _extract_count(value.value, context, element),
+    _extract_accesses,
 )
 _CALLS = Codec(
     lambda count, context: am.RunEntityCallStatistic(statistic=_build_count(count, context)),

@@ -48,4 +48,19 @@ KINDS = (
         rationale="An error in this program; the chain or constraint is unknown, and everything else is analysed.",
         remedy="Report it to the authors of this program, with the model if possible.",
     ),
+    FindingKind(
+        id="CHN007",
+        title="event chain without a stimulus or response of its own",
+        severity=Severity.WARNING,
+        rationale="Its latencies start at the stimulus of the first segment, or end at the response of the last one, which may not be "
+        "what the chain is meant to cover.",
+        remedy="Set the stimulus and the response of the chain.",
+    ),
+    FindingKind(
+        id="CHN008",
+        title="empty event set in a chain",
+        severity=Severity.WARNING,
+        rationale="The chain is evaluated without this set, so it can start or end elsewhere.",
+        remedy="Add events to the set, or use an event instead.",
+    ),
 )

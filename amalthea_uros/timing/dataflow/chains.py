@@ -210,12 +210,23 @@ def _events(name: str | None, system: System) -> tuple[str, ...]:
 
 def events_of(chain: EventChain, system: System) -> set[str]:
     """All events of a chain, of its segments and of the chains that it refers to."""
+    return {event for end in _ends(chain, system) for event in _events(end, system)}
+
+
+def empty_sets(chain: EventChain, system: System) -> list[str]:
+    """The sets without events that a chain, its segments or the chains that it refers to start or end with; they are skipped."""
+    sets = ((end, system.events_by_name.get(end)) for end in sorted(_ends(chain, system)))
+    return [end for end, event in sets if isinstance(event, EventSet) and not event.events]
+
+
+def _ends(chain: EventChain, system: System) -> set[str]:
+    """The stimuli and responses of a chain, of its segments and of the chains that it refers to."""
     found: set[str] = set()
     seen: set[str] = set()
     pending: list[EventChain | Segment] = [chain]
     while pending:
         item = pending.pop()
-        found.update(_events(item.stimulus, system), _events(item.response, system))
+        found.update(end for end in (item.stimulus, item.response) if end is not None)
         for part in item.items.items if item.items is not None else ():
             if isinstance(part, ChainReference) and part.chain in seen:
                 continue

@@ -566,6 +566,23 @@ class TestForms:
         assert rules == ["CHN005"]
         assert chain.routes == (f"{start} -[the same job]-> {middle} -[data L]-> {end}",)
 
+    @pytest.mark.parametrize(("ends", "rules"), [("both", []), ("stimulus", ["CHN007"]), ("", ["CHN007", "CHN007"])])
+    def test_ends_that_a_chain_takes_from_its_segments_are_reported(self, ends, rules):
+        start, middle, end = self.names()
+        items = Sequence((Segment(stimulus=start, response=middle), Segment(stimulus=middle, response=end)))
+        stated = {"stimulus": start if ends else None, "response": end if ends == "both" else None}
+        chain, _, _, found = self.evaluate(EventChain(name="c", items=items, **stated))
+        assert found == rules
+        assert chain.routes == (f"{start} -[the same job]-> {middle} -[data L]-> {end}",)
+
+    def test_an_empty_set_is_reported(self):
+        start, middle, end = self.names()
+        items = Sequence((Segment(stimulus=start, response=middle), Segment(stimulus="nothing", response=end)))
+        nothing = EventSet(name="nothing", events=())
+        chain, _, _, rules = self.evaluate(EventChain(name="c", stimulus=start, response=end, items=items), more=(nothing,))
+        assert rules == ["CHN008"]
+        assert chain.routes == (f"{start} -[the same job]-> {middle} -[data L]-> {end}",)
+
     @pytest.mark.parametrize("missing", [{"stimulus": None}, {"response": None}, {"response": "unknown"}])
     def test_missing_elements_are_reported(self, missing):
         start, _, end = self.names()

@@ -47,6 +47,8 @@ def _is_refused(chain: AbstractEventChain) -> bool:
     """Whether something inside a chain prevents its conversion, and that of every chain of which it is a part."""
     if not chain.items:
         return None in ends(chain)
+    if any(part.unresolved is not None for part in parts(chain)):
+        return True
     if is_parallel(chain):
         return any(ends(branch) != ends(chain) for branch in parts(chain))
     return not all(part.stimulus is not None and is_converted(part.stimulus) for part in parts(chain)[1:])

@@ -26,6 +26,8 @@ def moments(event: Event) -> frozenset[str]:
 
 def is_converted(event: Event) -> bool:
     """Whether am2inc converts an event, or all events of a set, as part of a chain."""
+    if event.unresolved is not None:
+        return False
     if isinstance(event, EventSet):
         return all(map(is_converted, event.events))
     if not isinstance(event, CONVERTED) or event.entity is None or event.entity.unresolved is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros.metamodel.classes import INamespaceMember
 from amalthea_uros.metamodel.element import Element
-from amalthea_uros.metamodel.naming import TYPE_MARK, encode, name_of
+from amalthea_uros.metamodel.naming import TYPE_MARK, encode, name_of, segments
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rules.inchron._tags import tag_of
 
@@ -19,3 +19,8 @@ def without_namespace(context: Context) -> dict[Element, str]:
     """The members of namespaces that have no `xmi:id`, with the names by which am2inc finds them."""
     members = (member for member in context.all(INamespaceMember) if member.namespace is not None and not has_id(member))
     return {member: f"{encode(name_of(member))}{TYPE_MARK}{type(member).__name__}" for member in members}
+
+
+def has_encoded_name(element: Element) -> bool:
+    """Whether references encode characters of a name; am2inc computes names without encoding."""
+    return any(segment and segment != encode(segment) for segment in segments(element))

@@ -15,6 +15,6 @@ def fault(value: str | None, mode: Mode | None) -> str | None:
         return None
     if isinstance(mode, EnumMode):
         known = any(literal.name == value for literal in mode.literals)
-        return None if known else f"{value or ''!r}, which is not a literal of {mode.name!r}"
+        return None if known else f"{value or ''!r}, which is not a literal of {mode.name or ''!r}"
     is_integer = value is not None and _INTEGER(value) and -(2**31) <= int(value) < 2**31
     return None if is_integer else f"{value or ''!r}, which is not a 32-bit integer"

@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: EventChain, context: Context) -> Iterator[str]:
     if element in context.once(_endless):
-        yield f"the event chain {element.name!r} is part of a reference cycle or leads into one"
+        yield f"the event chain {element.name or ''!r} is part of a reference cycle or leads into one"
 
 
 def _endless(context: Context) -> set[EventChain]:

@@ -15,10 +15,11 @@ from amalthea_uros.validate.rules.inchron._events import CONVERTED
 def _check(element: Event | AbstractEventChain, context: Context) -> Iterator[str]:
     if isinstance(element, Event) and not isinstance(element, CONVERTED):
         how = "converted only as part of an event chain" if isinstance(element, EventSet) else "not converted by am2inc"
-        yield f"the {type(element).__name__} {element.name!r} is {how}"
+        yield f"the {type(element).__name__} {element.name or ''!r} is {how}"
     for event in events_read(element) if isinstance(element, AbstractEventChain) else ():
         if not isinstance(event, CONVERTED):
-            yield f"the event chain {element.name or ''!r} is dropped by am2inc because of the {type(event).__name__} {event.name!r}"
+            cause = f"the {type(event).__name__} {event.name or ''!r}"
+            yield f"the event chain {element.name or ''!r} is dropped by am2inc because of {cause}"
 
 
 RULE = ModelRule(

@@ -11,10 +11,12 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: LabelEvent | ProcessEvent | RunnableEvent, context: Context) -> Iterator[str]:
-    if isinstance(element, LabelEvent) and element.runnable is not None:
-        yield f"the restriction of the event {element.name!r} to the runnable {element.runnable.name!r} is dropped by am2inc"
-    if isinstance(element, ProcessEvent | RunnableEvent) and element.processing_unit is not None:
-        yield f"the restriction of the event {element.name!r} to the core {element.processing_unit.name!r} is dropped by am2inc"
+    if isinstance(element, LabelEvent):
+        restriction = None if element.runnable is None else f"the runnable {element.runnable.name or ''!r}"
+    else:
+        restriction = None if element.processing_unit is None else f"the core {element.processing_unit.name or ''!r}"
+    if restriction is not None:
+        yield f"the restriction of the event {element.name or ''!r} to {restriction} is dropped by am2inc"
 
 
 RULE = ModelRule(

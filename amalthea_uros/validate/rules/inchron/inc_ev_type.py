@@ -15,12 +15,12 @@ from amalthea_uros.validate.rules.inchron._events import CONVERTED, is_converted
 def _check(element: Event | AbstractEventChain, context: Context) -> Iterator[str]:
     if isinstance(element, CONVERTED):
         if element.entity is None:
-            yield f"the event {element.name!r} has no entity"
+            yield f"the event {element.name or ''!r} has no entity"
         elif element.event_type not in moments(element):
-            yield f"the type of the event {element.name!r} is not one of {', '.join(sorted(moments(element)))}"
+            yield f"the type of the event {element.name or ''!r} is not one of {', '.join(sorted(moments(element)))}"
     for event in events_read(element) if isinstance(element, AbstractEventChain) else ():
         if isinstance(event, CONVERTED) and not is_converted(event):
-            yield f"the event chain {element.name or ''!r} is dropped by am2inc because of the event {event.name!r}"
+            yield f"the event chain {element.name or ''!r} is dropped by am2inc because of the event {event.name or ''!r}"
 
 
 RULE = ModelRule(

@@ -17,7 +17,7 @@ def _check(element: HwAccessElement | HwConnection | HwDefinition, context: Cont
     if isinstance(element, HwAccessElement):
         yield f"the cost of accesses to {element.destination.name if element.destination else ''!r} is ignored by am2inc"
     elif any(element.__dict__.get(name) is not None for name in _COSTS & element.__dict__.keys()):
-        yield f"the access cost of {element.name!r} is ignored by am2inc"
+        yield f"the access cost of {element.name or ''!r} is ignored by am2inc"
 
 
 RULE = ModelRule(

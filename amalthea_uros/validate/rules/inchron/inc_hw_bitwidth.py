@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: HwPort, context: Context) -> Iterator[str]:
     if isinstance(element.container, HwModule) and not (element.bit_width or 0) > 0:
-        yield f"the port {element.name!r} of {element.container.name!r} has no positive bit width"
+        yield f"the port {element.name or ''!r} of {element.container.name or ''!r} has no positive bit width"
 
 
 RULE = ModelRule(

@@ -14,7 +14,7 @@ def _check(element: Cache, context: Context) -> Iterator[str]:
     holder = element.container
     modules = holder.modules if isinstance(holder, HwStructure) else []
     if not isinstance(holder, ProcessingUnit) and not any(isinstance(module, ProcessingUnit) for module in modules):
-        yield f"the cache {element.name!r} is neither inside a processing unit nor in the same structure as one"
+        yield f"the cache {element.name or ''!r} is neither inside a processing unit nor in the same structure as one"
 
 
 RULE = ModelRule(

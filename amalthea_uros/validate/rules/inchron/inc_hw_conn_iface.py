@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: ConnectionHandler, context: Context) -> Iterator[str]:
     if not element.ports or element.ports[0].port_interface not in ("AXI", "AHB", "APB", "custom"):
-        yield f"the connection handler {element.name!r} has no first port with the interface AXI, AHB, APB or custom"
+        yield f"the connection handler {element.name or ''!r} has no first port with the interface AXI, AHB, APB or custom"
 
 
 RULE = ModelRule(

@@ -14,9 +14,9 @@ def _check(element: HwConnection | HwPort, context: Context) -> Iterator[str]:
     if isinstance(element, HwConnection):
         types = {port.port_type for port in (element.port1, element.port2) if port is not None}
         if types != {"initiator", "responder"}:
-            yield f"the connection {element.name!r} does not join an initiator and a responder port"
+            yield f"the connection {element.name or ''!r} does not join an initiator and a responder port"
     if isinstance(element, HwPort) and isinstance(element.container, HwModule) and element.port_type in (None, "_undefined_"):
-        yield f"the port {element.name!r} of {element.container.name!r} has no port type"
+        yield f"the port {element.name or ''!r} of {element.container.name or ''!r} has no port type"
 
 
 RULE = ModelRule(

@@ -13,7 +13,8 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: HwFeature, context: Context) -> Iterator[str]:
     category = element.container
     if isinstance(category, HwFeatureCategory) and category.name in context.once(_needed):
-        yield f"the feature {element.name!r} is ignored by am2inc, although execution needs for {category.name!r} depend on it"
+        name = element.name or ""
+        yield f"the feature {name!r} is ignored by am2inc, although execution needs for {category.name!r} depend on it"
 
 
 def _needed(context: Context) -> set[str | None]:

@@ -15,7 +15,7 @@ def _check(element: FrequencyDomain, context: Context) -> Iterator[str | Downgra
     cores = context.once(_cores).get(element, [])
     if not cores or amount(element.default_value) > 0:
         return
-    message = f"the frequency domain {element.name!r} has no positive frequency with a unit"
+    message = f"the frequency domain {element.name or ''!r} has no positive frequency with a unit"
     is_compared = any(_has_others(core) for core in cores)
     yield message if element.default_value is None and is_compared else Downgraded(message)
 

@@ -14,7 +14,7 @@ from amalthea_uros.validate.rules.inchron._importer import has_unit
 def _check(element: Memory | Cache, context: Context) -> Iterator[str]:
     size = element.definition.size if element.definition is not None else None
     if size is None or not has_unit(size):
-        yield f"the memory {element.name!r} has no definition with a size and a unit"
+        yield f"the memory {element.name or ''!r} has no definition with a size and a unit"
 
 
 RULE = ModelRule(

@@ -13,7 +13,7 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: HwStructure, context: Context) -> Iterator[str]:
     last = context.once(_systems)[-1:]
     if element.structure_type == "System" and element not in last:
-        yield f"the imported project is named after {last[0].name!r}, not after {element.name!r}"
+        yield f"the imported project is named after {last[0].name!r}, not after {element.name or ''!r}"
 
 
 def _systems(context: Context) -> list[HwStructure]:

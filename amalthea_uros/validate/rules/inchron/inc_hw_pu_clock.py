@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: ProcessingUnit, context: Context) -> Iterator[str]:
     if element.frequency_domain is None:
-        yield f"the processing unit {element.name!r} has no frequency domain"
+        yield f"the processing unit {element.name or ''!r} has no frequency domain"
 
 
 RULE = ModelRule(

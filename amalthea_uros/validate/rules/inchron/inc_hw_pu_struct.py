@@ -17,7 +17,7 @@ def _check(element: HwStructure, context: Context) -> Iterator[str]:
     inner = context.once(_cpus_within)[element]
     # A structure around all CPUs groups nothing.
     if inner > 1 and (element in cpus or inner < len(cpus)):
-        yield f"the grouping of {inner} CPUs in the structure {element.name!r} is dropped by am2inc"
+        yield f"the grouping of {inner} CPUs in the structure {element.name or ''!r} is dropped by am2inc"
 
 
 def _cpus(context: Context) -> set[Element]:

@@ -14,14 +14,14 @@ from amalthea_uros.metamodel.features import containments_of, features_of
 from amalthea_uros.metamodel.source import Prefixes
 from amalthea_uros.metamodel.versions import Facts, facts
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import Downgraded, ModelRule
 from amalthea_uros.validate.rules.inchron._importer import metamodel_of
 from amalthea_uros.validate.rules.inchron._tags import attributes_at, tag_of
 
 _TAG = re.compile(r"<(?P<name>[^\s/>!?]+)").match
 
 
-def _check(element: Element, context: Context) -> Iterator[str]:
+def _check(element: Element, context: Context) -> Iterator[str | Downgraded]:
     document = context.document_of(element)
     version = metamodel_of(document)
     if "_extras" not in element.__dict__ and _is_same(type(element).__name__, context.version_of(element), version):
@@ -39,7 +39,9 @@ def _check(element: Element, context: Context) -> Iterator[str]:
     yield from _not_read(element, class_name, known)
     held = _features(class_name, known.version)
     for name in [name for name, value in element.__dict__.items() if name not in held and value not in (None, [])]:
-        yield f"{class_name} has no feature {features_of(type(element))[name].xml_name!r} in AMALTHEA {known.version}"
+        feature = features_of(type(element))[name]
+        message = f"{class_name} has no feature {feature.xml_name!r} in AMALTHEA {known.version}"
+        yield message if feature.kind == "containment" else Downgraded(message)
     for name, literals in _literals(class_name, known.version):
         value = element.__dict__.get(name)
         if value is not None and value not in literals:
@@ -76,7 +78,7 @@ def _xsi_type(element: Element) -> str | None:
     return None if tag is None else tag[1].get(tag[0].prefixes.xsi_type)
 
 
-def _not_read(element: Element, class_name: str, known: Facts) -> Iterator[str]:
+def _not_read(element: Element, class_name: str, known: Facts) -> Iterator[str | Downgraded]:
     """Messages about attributes and elements that were preserved although the metamodel has no place for them."""
     extras, document = extras_if_any(element), element.document
     if extras is None or document is None:
@@ -85,7 +87,7 @@ def _not_read(element: Element, class_name: str, known: Facts) -> Iterator[str]:
     for name, text in extras.attributes.items():
         feature = known.feature(class_name, name)
         if feature is None and not name.startswith("xmlns"):
-            yield f"{class_name} has no attribute {name!r} in AMALTHEA {known.version}"
+            yield Downgraded(f"{class_name} has no attribute {name!r} in AMALTHEA {known.version}")
         elif feature is not None and own.feature(class_name, name) and not _is_literal(text, feature.type, known):
             yield f"{text!r} is not a valid value of the attribute {name!r} of {class_name}"
     prefixes = document.source.prefixes if document.source is not None else Prefixes()
@@ -141,7 +143,7 @@ RULE = ModelRule(
     target=Element,
     check=_check,
     rationale="am2inc refuses files with unknown elements, classes or literals. It skips unknown attributes and prints a "
-    "message.",
+    "message (warning).",
     remedy="Remove or correct the element, attribute or value; store data of other tools in custom properties.",
     fails="""
 <swModel>

@@ -20,7 +20,8 @@ def _check(element: IReferable, context: Context) -> Iterator[str]:
     elif isinstance(element, INamespaceMember) and element.namespace is not None:
         count = context.once(_plain_names)[type(element), element.name]
         if count > 1:
-            yield f"the name {element.name!r} is used by {count} objects of the class {type(element).__name__} in different namespaces"
+            objects = f"{count} objects of the class {type(element).__name__}"
+            yield f"the name {element.name or ''!r} is used by {objects} in different namespaces"
 
 
 def _plain_names(context: Context) -> Counter[tuple[type[Element], str | None]]:

@@ -14,7 +14,7 @@ from amalthea_uros.validate.rules.inchron._missing import missing
 def _check(element: EventChainLatencyConstraint, context: Context) -> Iterator[str]:
     absent = missing({"maximum": element.maximum, "type": None if element.type == "_undefined_" else element.type})
     if absent:
-        yield f"the latency constraint {element.name!r} has no {absent}"
+        yield f"the latency constraint {element.name or ''!r} has no {absent}"
 
 
 RULE = ModelRule(

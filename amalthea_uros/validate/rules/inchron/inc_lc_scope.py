@@ -12,10 +12,13 @@ from amalthea_uros.validate.rules.inchron._chains import dropped
 
 
 def _check(element: EventChainLatencyConstraint, context: Context) -> Iterator[str]:
+    name = element.name or ""
     if element.scope is None:
-        yield f"the latency constraint {element.name!r} has no scope"
+        yield f"the latency constraint {name!r} has no scope"
+    elif element.scope.unresolved is not None:
+        yield f"the event chain of the latency constraint {name!r} cannot be resolved"
     elif element.scope in context.once(dropped):
-        yield f"the latency constraint {element.name!r} is dropped by am2inc together with its event chain {element.scope.name!r}"
+        yield f"the latency constraint {name!r} is dropped by am2inc together with its event chain {element.scope.name or ''!r}"
 
 
 RULE = ModelRule(
@@ -24,7 +27,8 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=EventChainLatencyConstraint,
     check=_check,
-    rationale="am2inc drops the constraint if it has no scope or its event chain is dropped, and prints a warning.",
+    rationale="am2inc drops the constraint if it has no scope, if a reference to or within its event chain cannot be resolved, or if "
+    "its event chain is dropped. It prints a warning.",
     remedy="Set the scope of the constraint, and correct its event chain if am2inc drops it.",
     fails="""
 <constraintsModel>

@@ -14,7 +14,7 @@ def _check(element: SchedulerAllocation, context: Context) -> Iterator[str]:
     core = element.executing_pu
     if core is not None and core not in element.responsibility:
         name = element.scheduler.name if element.scheduler is not None else None
-        yield f"the executing processing unit {core.name!r} of the scheduler {name or ''!r} is ignored by am2inc"
+        yield f"the executing processing unit {core.name or ''!r} of the scheduler {name or ''!r} is ignored by am2inc"
 
 
 RULE = ModelRule(

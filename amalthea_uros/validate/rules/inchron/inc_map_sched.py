@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Scheduler | SchedulerAllocation, context: Context) -> Iterator[str]:
     if isinstance(element, Scheduler) and element not in context.once(_responsible):
-        yield f"the scheduler {element.name!r} is not responsible for any processing unit"
+        yield f"the scheduler {element.name or ''!r} is not responsible for any processing unit"
     if isinstance(element, SchedulerAllocation) and element.scheduler is None:
         yield "the scheduler allocation has no scheduler"
 

@@ -11,7 +11,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: PhysicalSectionMapping, context: Context) -> Iterator[str]:
-    yield f"the physical section mapping {element.name!r} is dropped by am2inc"
+    yield f"the physical section mapping {element.name or ''!r} is dropped by am2inc"
 
 
 RULE = ModelRule(

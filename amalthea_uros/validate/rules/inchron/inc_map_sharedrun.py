@@ -13,7 +13,7 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: Runnable, context: Context) -> Iterator[str]:
     systems = context.once(_systems).get(element, [])
     if len(systems) > 1:
-        yield f"the runnable {element.name!r} is used by the operating systems {systems[0].name!r} and {systems[1].name!r}"
+        yield f"the runnable {element.name or ''!r} is used by the operating systems {systems[0].name!r} and {systems[1].name!r}"
 
 
 def _systems(context: Context) -> dict[Runnable, list[OperatingSystem]]:

@@ -7,14 +7,15 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import TaskAllocation
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import Downgraded, ModelRule
 from amalthea_uros.validate.rules.inchron._missing import missing
 
 
-def _check(element: TaskAllocation, context: Context) -> Iterator[str]:
+def _check(element: TaskAllocation, context: Context) -> Iterator[str | Downgraded]:
     absent = missing({"task": element.task, "scheduler": element.scheduler})
     if absent:
-        yield f"the task allocation has no {absent}"
+        message = f"the task allocation has no {absent}"
+        yield message if element.task is None else Downgraded(message)
 
 
 RULE = ModelRule(
@@ -23,8 +24,8 @@ RULE = ModelRule(
     severity=Severity.ERROR,
     target=TaskAllocation,
     check=_check,
-    rationale="am2inc crashes with a segmentation fault if the task is missing. The task disappears if the scheduler is "
-    "missing.",
+    rationale="am2inc crashes with a segmentation fault if the task is missing. If only the scheduler is missing, the task "
+    "disappears (warning).",
     remedy="Set the task and the scheduler.",
     fails="""
 <osModel>
@@ -36,7 +37,7 @@ RULE = ModelRule(
   <tasks name="T"/>
 </swModel>
 <mappingModel>
-  <taskAllocation task="T?type=Task"/>
+  <taskAllocation scheduler="S?type=TaskScheduler"/>
 </mappingModel>
 """,
     passes="""

@@ -13,13 +13,13 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: Task | ISR, context: Context) -> Iterator[str]:
     times = context.uses(TaskAllocation, "task")[element] + context.uses(ISRAllocation, "isr")[element]
     if times != 1:
-        yield f"{element.name!r} is allocated {times} times" if times else f"{element.name!r} is not allocated"
+        yield f"{element.name or ''!r} is allocated {times} times" if times else f"{element.name or ''!r} is not allocated"
 
 
 RULE = ModelRule(
     id="INC-MAP-TASK-ONCE",
     title="process without exactly one allocation",
-    severity=Severity.ERROR,
+    severity=Severity.WARNING,
     target=(Task, ISR),
     check=_check,
     rationale="A process without an allocation silently gets no core or disappears. A process with several allocations is "

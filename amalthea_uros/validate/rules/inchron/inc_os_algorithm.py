@@ -16,7 +16,7 @@ def _check(element: TaskScheduler, context: Context) -> Iterator[str]:
         element.definition.name if element.definition is not None else type(before).__name__ if before is not None else None
     )
     if policy not in (None, "FixedPriorityPreemptive"):
-        yield f"the policy {policy} of the scheduler {element.name!r} is changed to FixedPriorityPreemptive by am2inc"
+        yield f"the policy {policy} of the scheduler {element.name or ''!r} is changed to FixedPriorityPreemptive by am2inc"
 
 
 RULE = ModelRule(

@@ -13,7 +13,7 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: OperatingSystem, context: Context) -> Iterator[str]:
     count = len(element.interrupt_controllers)
     if count > 1:
-        yield f"the {count} interrupt controllers of {element.name!r} are merged by am2inc"
+        yield f"the {count} interrupt controllers of {element.name or ''!r} are merged by am2inc"
 
 
 RULE = ModelRule(

@@ -12,9 +12,9 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: OsOverhead | Scheduler, context: Context) -> Iterator[str]:
     if isinstance(element, OsOverhead) and any(isinstance(part, Ticks) for part in element.walk()):
-        yield f"the overhead {element.name!r} contains Ticks"
+        yield f"the overhead {element.name or ''!r} contains Ticks"
     if isinstance(element, Scheduler) and element.computation_items:
-        yield f"the scheduler {element.name!r} has computation items"
+        yield f"the scheduler {element.name or ''!r} has computation items"
 
 
 RULE = ModelRule(

@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: SchedulingParameter, context: Context) -> Iterator[str]:
     if element.key is None and isinstance(element.container, TaskScheduler):
-        yield f"a scheduling parameter of the scheduler {element.container.name!r} has no key"
+        yield f"a scheduling parameter of the scheduler {element.container.name or ''!r} has no key"
 
 
 RULE = ModelRule(

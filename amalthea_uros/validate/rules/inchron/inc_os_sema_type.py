@@ -13,7 +13,7 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: Semaphore, context: Context) -> Iterator[str]:
     is_plain = element.semaphore_type in (None, "_undefined_", "CountingSemaphore")
     if not is_plain or element.priority_ceiling_protocol or element.ownership:
-        yield f"the semaphore {element.name!r} is changed to a plain counting semaphore by am2inc"
+        yield f"the semaphore {element.name or ''!r} is changed to a plain counting semaphore by am2inc"
 
 
 RULE = ModelRule(

@@ -14,7 +14,7 @@ from amalthea_uros.validate.rules.inchron._importer import amount
 def _check(element: PeriodicBurstStimulus, context: Context) -> Iterator[str]:
     count = 1 if element.occurrence_count is None else element.occurrence_count
     if count < 1 and not amount(element.occurrence_min_distance) > 0:
-        yield f"the burst stimulus {element.name!r} has neither a positive occurrence count nor a positive minimum distance"
+        yield f"the burst stimulus {element.name or ''!r} has neither a positive occurrence count nor a positive minimum distance"
 
 
 RULE = ModelRule(

@@ -14,9 +14,9 @@ def _check(element: PeriodicStimulus, context: Context) -> Iterator[str]:
     jitter = element.jitter
     if isinstance(jitter, TimeGaussDistribution):
         if jitter.lower_bound is None or jitter.upper_bound is None or (jitter.mean is not None and jitter.mean.value):
-            yield f"the Gaussian jitter of the stimulus {element.name!r} has a missing bound or a mean other than 0"
+            yield f"the Gaussian jitter of the stimulus {element.name or ''!r} has a missing bound or a mean other than 0"
     elif jitter is not None and not isinstance(jitter, TimeConstant | TimeUniformDistribution):
-        yield f"the jitter of the stimulus {element.name!r} is dropped by am2inc"
+        yield f"the jitter of the stimulus {element.name or ''!r} is dropped by am2inc"
 
 
 RULE = ModelRule(

@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Stimulus, context: Context) -> Iterator[str]:
     if element.set_mode_value_list is not None:
-        yield f"the mode values set by the stimulus {element.name!r} are ignored by am2inc"
+        yield f"the mode values set by the stimulus {element.name or ''!r} are ignored by am2inc"
 
 
 RULE = ModelRule(

@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Task | ISR, context: Context) -> Iterator[str]:
     if not element.stimuli:
-        yield f"{element.name!r} has no stimulus"
+        yield f"{element.name or ''!r} has no stimulus"
 
 
 RULE = ModelRule(

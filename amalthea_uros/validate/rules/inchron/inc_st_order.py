@@ -17,7 +17,7 @@ def _check(element: Process, context: Context) -> Iterator[str]:
     for stimulus in dropped:
         if not isinstance(stimulus, NOT_CONVERTED):
             cause = f"it follows the unsupported {dropped[0].name!r}"
-            yield f"the stimulus {stimulus.name!r} of {element.name!r} is dropped by am2inc because {cause}"
+            yield f"the stimulus {stimulus.name or ''!r} of {element.name or ''!r} is dropped by am2inc because {cause}"
 
 
 def _fix(element: Process, context: Context) -> bool:

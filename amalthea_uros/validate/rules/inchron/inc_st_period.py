@@ -13,7 +13,7 @@ from amalthea_uros.validate.rules.inchron._importer import amount
 
 def _check(element: Stimulus, context: Context) -> Iterator[str]:
     if isinstance(element, FixedPeriodic) and not amount(element.recurrence) > 0:
-        yield f"the stimulus {element.name!r} has no positive recurrence with a unit"
+        yield f"the stimulus {element.name or ''!r} has no positive recurrence with a unit"
 
 
 RULE = ModelRule(

@@ -13,7 +13,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: RelativePeriodicStimulus, context: Context) -> Iterator[str]:
     if len({bound.unit for bound in _bounds(element)}) > 1:
-        yield f"the bounds of the next occurrence of the stimulus {element.name!r} have different units"
+        yield f"the bounds of the next occurrence of the stimulus {element.name or ''!r} have different units"
 
 
 def _bounds(stimulus: RelativePeriodicStimulus) -> list[Time]:

@@ -18,7 +18,7 @@ def _check(element: Stimulus | Process, context: Context) -> Iterator[str]:
     if isinstance(element, Process):
         for stimulus in element.stimuli:
             if isinstance(stimulus, NOT_CONVERTED):
-                yield f"{element.name!r} is not activated by its stimulus {stimulus.name!r}, which am2inc does not convert"
+                yield f"{element.name or ''!r} is not activated by its stimulus {stimulus.name or ''!r}, which am2inc does not convert"
 
 
 RULE = ModelRule(

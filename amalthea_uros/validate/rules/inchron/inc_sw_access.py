@@ -21,9 +21,9 @@ def _check(element: LabelAccess | ModeLabelAccess | SemaphoreAccess, context: Co
         case LabelAccess() if element.access not in ("read", "write"):
             yield "the label access is neither a read nor a write"
         case ModeLabelAccess(data=ModeLabel(mode=EnumMode()) as label) if element.access not in ("read", "set"):
-            yield f"the access to the mode label {label.name!r} neither reads nor sets a literal and is dropped by am2inc"
+            yield f"the access to the mode label {label.name or ''!r} neither reads nor sets a literal and is dropped by am2inc"
         case ModeLabelAccess(data=ModeLabel() as label, access=None | "_undefined_"):
-            yield f"the access to the mode label {label.name!r} has no access type and is dropped by am2inc"
+            yield f"the access to the mode label {label.name or ''!r} has no access type and is dropped by am2inc"
         case SemaphoreAccess(semaphore=None):
             yield "the semaphore access has no semaphore"
 

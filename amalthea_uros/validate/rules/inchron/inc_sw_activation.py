@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Runnable, context: Context) -> Iterator[str]:
     if element.activations:
-        yield f"the activations of the runnable {element.name!r} are ignored by am2inc"
+        yield f"the activations of the runnable {element.name or ''!r} are ignored by am2inc"
 
 
 RULE = ModelRule(

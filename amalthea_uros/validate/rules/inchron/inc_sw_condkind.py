@@ -27,7 +27,7 @@ def _check(element: Condition, context: Context) -> Iterator[str | Downgraded]:
         if first is None or second is None:
             yield "the condition has fewer than two mode labels"
         elif first.unresolved is None and second.unresolved is None and not _is_of_same_kind(first, second):
-            yield Downgraded(f"the mode labels {first.name!r} and {second.name!r} have modes of different kinds")
+            yield Downgraded(f"the mode labels {first.name or ''!r} and {second.name or ''!r} have modes of different kinds")
     else:
         message = f"the {type(element).__name__} does not compare modes"
         yield message if isinstance(element.container, ConditionConjunction) else Downgraded(message)

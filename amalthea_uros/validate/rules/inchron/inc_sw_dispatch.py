@@ -19,7 +19,7 @@ def _check(element: CustomProperty, context: Context) -> Iterator[str]:
         return
     holder, value = element.container, element.value
     if isinstance(holder, Task) and element.key == "callbackServer" and not isinstance(value, BooleanObject):
-        yield f"the custom property 'callbackServer' of the task {holder.name!r} is not a BooleanObject"
+        yield f"the custom property 'callbackServer' of the task {holder.name or ''!r} is not a BooleanObject"
     if isinstance(holder, Group) and element.key == "dispatchingPolicy" and _is_server(holder.enclosing(Task)):
         policy = value.value if isinstance(value, StringObject) else None
         if policy not in _POLICIES:

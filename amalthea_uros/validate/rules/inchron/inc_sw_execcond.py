@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Runnable, context: Context) -> Iterator[str]:
     if element.execution_condition is not None:
-        yield f"the execution condition of the runnable {element.name!r} is ignored by am2inc"
+        yield f"the execution condition of the runnable {element.name or ''!r} is ignored by am2inc"
 
 
 RULE = ModelRule(

@@ -13,7 +13,7 @@ from amalthea_uros.validate.rules.inchron._importer import metamodel
 
 def _check(element: Runnable, context: Context) -> Iterator[str]:
     if element.activity_graph is None and metamodel(element) >= "3":
-        yield f"the runnable {element.name!r} has no activity graph"
+        yield f"the runnable {element.name or ''!r} has no activity graph"
 
 
 RULE = ModelRule(

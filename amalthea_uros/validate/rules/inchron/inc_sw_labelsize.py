@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Label, context: Context) -> Iterator[str]:
     if element.size is None:
-        yield f"the label {element.name!r} has no size"
+        yield f"the label {element.name or ''!r} has no size"
 
 
 RULE = ModelRule(

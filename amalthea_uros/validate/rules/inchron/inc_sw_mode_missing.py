@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: ModeLabel, context: Context) -> Iterator[str]:
     if element.mode is None:
-        yield f"the mode label {element.name!r} has no mode"
+        yield f"the mode label {element.name or ''!r} has no mode"
 
 
 RULE = ModelRule(

@@ -13,7 +13,8 @@ from amalthea_uros.validate.rule import ModelRule
 def _check(element: ModeLabelAccess, context: Context) -> Iterator[str]:
     match element:
         case ModeLabelAccess(data=ModeLabel(mode=NumericMode()) as label, access="set"):
-            yield f"the mode label {label.name!r} is set to the step {element.effective('step')} instead of {element.value or ''!r}"
+            step = element.effective("step")
+            yield f"the mode label {label.name or ''!r} is set to the step {step} instead of {element.value or ''!r}"
 
 
 RULE = ModelRule(

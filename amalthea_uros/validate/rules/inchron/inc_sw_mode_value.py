@@ -24,7 +24,7 @@ def _check(element: ModeLabel | ModeValueCondition | ModeLabelAccess, context: C
 def _faults(label: ModeLabel, value: str | None, use: str) -> Iterator[str]:
     found = fault(value, label.mode)
     if found is not None:
-        yield f"the mode label {label.name!r} {use} {found}"
+        yield f"the mode label {label.name or ''!r} {use} {found}"
 
 
 RULE = ModelRule(

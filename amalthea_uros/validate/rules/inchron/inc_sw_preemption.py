@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Task, context: Context) -> Iterator[str]:
     if element.preemption == "cooperative":
-        yield f"the cooperative task {element.name!r} is changed to non-preemptive by am2inc"
+        yield f"the cooperative task {element.name or ''!r} is changed to non-preemptive by am2inc"
 
 
 RULE = ModelRule(

@@ -5,34 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import (
-    ActivityGraphItem,
-    ClearEvent,
-    InterProcessTrigger,
-    LabelAccess,
-    ModeLabelAccess,
-    ProcessPrototype,
-    RunnableCall,
-    SetEvent,
-    WaitEvent,
-)
+from amalthea_uros.metamodel.classes import ActivityGraphItem, ClearEvent, ProcessPrototype, SetEvent, WaitEvent
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rules.inchron._needed import OF_ITEMS
 
-#: The reference that each of these items needs.
-_REFERENCES: dict[type[ActivityGraphItem], str] = {
-    RunnableCall: "runnable",
-    LabelAccess: "data",
-    ModeLabelAccess: "data",
-    InterProcessTrigger: "stimulus",
-    SetEvent: "event_mask",
-    ClearEvent: "event_mask",
-    WaitEvent: "event_mask",
-}
+#: What each of these items needs.
+_PARTS = {**OF_ITEMS, **dict.fromkeys((SetEvent, ClearEvent, WaitEvent), "event_mask")}
 
 
 def _check(element: ActivityGraphItem, context: Context) -> Iterator[str]:
-    feature = _REFERENCES[type(element)]
+    feature = _PARTS[type(element)]
     # am2inc does not read the calls of prototypes.
     if getattr(element, feature) is None and not isinstance(element.container, ProcessPrototype):
         yield f"the {feature.replace('_', ' ')} of the {type(element).__name__} is not set"
@@ -42,7 +25,7 @@ RULE = ModelRule(
     id="INC-SW-REF",
     title="activity item without a target",
     severity=Severity.ERROR,
-    target=tuple(_REFERENCES),
+    target=tuple(_PARTS),
     check=_check,
     rationale="am2inc crashes with a segmentation fault.",
     remedy="Set the runnable, label, stimulus or event mask that the item uses.",
