@@ -42,11 +42,8 @@ def starting_points(folders: list[Path]) -> list[Path]:
 def make_case(number: int, seed: int, files: list[Path]) -> Case:
     """The case of a number; the same for the same seed and files."""
     rng = Random(f"{seed}:{number}")
-    path = files[number] if number < len(files) else rng.choice(files)
-    content = path.read_bytes()
-    if number >= len(files):
-        content = _mutated(rng, path, content)
-    return Case(f"case{path.suffix}", content)
+    path = rng.choice(files)
+    return Case(f"case{path.suffix}", _mutated(rng, path, path.read_bytes()))
 
 
 def _mutated(rng: Random, path: Path, content: bytes) -> bytes:
