@@ -14,6 +14,8 @@ from fuzzing import description_mutations, model_mutations
 
 _DESCRIPTIONS = (".yaml", ".yml")
 _MODELS = (".amxmi",)
+#: Of cases; there are many more models to start from.
+_DESCRIPTIONS_SHARE = 0.4
 #: In bytes; larger files take too long to tell anything more.
 _MAX_SIZE = 60_000
 _ENCODINGS = ("utf-16", "utf-8-sig", "latin-1", "cp1252", "utf-32")
@@ -42,7 +44,8 @@ def starting_points(folders: list[Path]) -> list[Path]:
 def make_case(number: int, seed: int, files: list[Path]) -> Case:
     """The case of a number; the same for the same seed and files."""
     rng = Random(f"{seed}:{number}")
-    path = rng.choice(files)
+    is_description = rng.random() < _DESCRIPTIONS_SHARE
+    path = rng.choice([path for path in files if (path.suffix in _DESCRIPTIONS) == is_description])
     return Case(f"case{path.suffix}", _mutated(rng, path, path.read_bytes()))
 
 
