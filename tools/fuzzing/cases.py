@@ -36,9 +36,10 @@ class Case:
 
 def starting_points(folders: list[Path]) -> list[Path]:
     """The files that cases are made from: samples, hostile files, and those in further folders."""
-    places = [ROOT / "samples", ROOT / "tests" / "hostile", *folders]
-    files = [path for place in places for path in sorted(place.rglob("*")) if path.suffix in (*_DESCRIPTIONS, *_MODELS)]
-    return [path for path in files if path.is_file() and path.stat().st_size <= _MAX_SIZE]
+    own = [path for name in ("samples", "tests/hostile") for path in sorted((ROOT / name).iterdir())]
+    files = [*own, *(path for folder in folders for path in sorted(folder.rglob("*")))]
+    known = (*_DESCRIPTIONS, *_MODELS)
+    return [path for path in files if path.suffix in known and path.is_file() and path.stat().st_size <= _MAX_SIZE]
 
 
 def make_case(number: int, seed: int, files: list[Path]) -> Case:
