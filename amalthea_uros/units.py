@@ -31,7 +31,8 @@ SECOND: Time = 1000 * MILLISECOND
 HOUR: Time = 3600 * SECOND
 
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
-_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S*)\s*", re.ASCII)
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:[^\s\d.,:+-]\S*)?)\s*", re.ASCII)
+_COMMA = re.compile(r"\s*[+-]?\d+(?:,\d+)+(?:\.\d*)?\s*[^\s\d]*\s*", re.ASCII)
 _LONGEST_NUMBER = 40
 #: Quantities fit into 64 bits, so that arrays can hold them: times up to 106 days.
 _LIMIT = 2**63
@@ -71,7 +72,8 @@ TIME = Dimension(
         "ps": PICOSECOND,
         "ns": NANOSECOND,
         "us": MICROSECOND,
-        "µs": MICROSECOND,
+        "µs": MICROSECOND,  # U+00B5, on keyboards
+        "μs": MICROSECOND,  # U+03BC, to which Unicode normalises it
         "ms": MILLISECOND,
         "s": SECOND,
         "min": 60 * SECOND,
@@ -92,6 +94,8 @@ def parse(text: str, dimension: Dimension) -> Fraction:
     ------
     ValueError : no number, no unit, an unknown unit, out of range, or not a whole number of the internal unit.
     """
+    if _COMMA.fullmatch(text):
+        raise ValueError(f"{shortened(text)!r} contains a comma; write decimals with a point and no separators for thousands")
     match = _QUANTITY.fullmatch(text)
     if match is None or len(match[1]) > _LONGEST_NUMBER:
         raise ValueError(f"{shortened(text)!r} is not {dimension.article} such as {dimension.example!r}")

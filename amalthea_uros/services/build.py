@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.services.paths import StrPath
 from amalthea_uros.uros.assemble import Assembly, assemble
+
+if TYPE_CHECKING:
+    from amalthea_uros.spec.description import Description
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,12 +53,26 @@ def describe(path: StrPath, platform: str | None = None) -> Assembly:
     ------
     ReadError : the file cannot be read, or something in it is wrong; carries a finding for each mistake.
     """
-    from amalthea_uros.spec.platforms import whole_hardware
-    from amalthea_uros.spec.read import read_description
+    from amalthea_uros.spec.description import Description
+    from amalthea_uros.spec.read import read_draft
 
     file = Path(path)
-    description = read_description(file)
-    hardware, name = whole_hardware(description.hardware, file.parent, platform)
+    draft = read_draft(file, Description)
+    try:
+        if draft.section is None:
+            raise ReadError(draft.findings)
+        assembly = _assembled(draft.section, file.parent, platform)
+    except ReadError as error:
+        raise ReadError(draft.with_more(error.findings)) from None
+    if draft.findings:
+        raise ReadError(draft.findings)
+    return assembly
+
+
+def _assembled(description: Description, folder: Path, platform: str | None) -> Assembly:
+    from amalthea_uros.spec.platforms import whole_hardware
+
+    hardware, name = whole_hardware(description.hardware, folder, platform)
     return assemble(description, hardware, name)
 
 

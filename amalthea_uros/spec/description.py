@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -12,13 +12,13 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.processes import Isr, Label, Task
 from amalthea_uros.spec.requirements import Chain, Requirement
 from amalthea_uros.spec.section import Section
-from amalthea_uros.spec.values import Name
+from amalthea_uros.spec.values import WHOLE_NUMBER, Name
 
 
 class Description(Section):
     """A micro-ROS application on a controller, and the other software that runs there."""
 
-    amuros: Literal[1]
+    amuros: Annotated[Literal[1], WHOLE_NUMBER]
     """Version of the format."""
     name: Name
     """Name of the application."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import Count, Duration, Name, problem
+from amalthea_uros.spec.values import Count, Duration, Name, Number, problem
 
 
 class Bucket(Section):
@@ -39,11 +39,11 @@ class ExecutionTime(Shorthand):
     """Distribution of execution times between `min` and `max`; if omitted, it is unknown."""
     deviation: Duration | None = None
     """Standard deviation of the Gauss distribution, whose mean is `avg`."""
-    alpha: float | None = Field(None, gt=0)
+    alpha: Number | None = None
     """First shape parameter of the beta distribution."""
-    beta: float | None = Field(None, gt=0)
+    beta: Number | None = None
     """Second shape parameter of the beta distribution."""
-    exceeding: float | None = Field(None, gt=0, lt=1000)
+    exceeding: Annotated[Number, Field(lt=1000)] | None = None
     """Per mille of the execution times of a Weibull distribution that exceed `max`."""
     histogram: list[Bucket] | None = Field(None, min_length=1)
     """Measured execution times."""

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import BeforeValidator, Field
 
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import CountOrNone, Name, Rate, Size
+from amalthea_uros.spec.values import WHOLE_NUMBER, CountOrNone, Name, Rate, Size, unexpected
 
 MAX_CORES = 1024
 
@@ -26,8 +26,13 @@ class Core(Shorthand):
 
 
 def _of_number(value: Any) -> Any:
-    is_number = isinstance(value, int) and not isinstance(value, bool)
-    return [{"name": f"Core_{index}"} for index in range(min(value, MAX_CORES + 1))] if is_number else value
+    if isinstance(value, list):
+        return value
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise unexpected("expected the number of cores, or a list of them")
+    if not 1 <= value <= MAX_CORES:
+        raise unexpected(f"expected 1 or more, up to {MAX_CORES}" if value > MAX_CORES else "expected 1 or more")
+    return [{"name": f"Core_{index}"} for index in range(value)]
 
 
 #: The cores, or their number: 4 means Core_0 to Core_3.
@@ -82,7 +87,7 @@ class Hardware(Shorthand):
 class Platform(Section):
     """A controller that applications refer to by name."""
 
-    amuros: Literal[1]
+    amuros: Annotated[Literal[1], WHOLE_NUMBER]
     """Version of the format."""
     platform: Name
     """Name by which execution times refer to it."""

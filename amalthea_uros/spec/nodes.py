@@ -1,7 +1,8 @@
 """YAML text -> nodes with their locations.
 
 The text is untrusted: its size, its depth and what its aliases expand to are limited, tags are refused. Scalars follow the core
-schema of YAML 1.2 (`on` and `no` are text, `1:30` is not a number). All errors that do not stop the parser are reported.
+schema of YAML 1.2 (`on` and `no` are text, `1:30` is not a number), but decimals stay text. All errors that do not stop the parser are
+reported.
 """
 
 from __future__ import annotations
@@ -22,11 +23,14 @@ MAX_NODES = 400_000
 #: Further errors are not reported in one run.
 MAX_FINDINGS = 100
 
-_INTEGER = re.compile(r"[-+]?\d{1,30}")
-_FLOAT = re.compile(r"[-+]?(\.\d+|\d+(\.\d*)?)([eE][-+]?\d{1,3})?")
+#: As one writes numbers that mean the same to every reader: 010 is ten in YAML 1.2 and eight in YAML 1.1, so it is text.
+_INTEGER = re.compile(r"0|-?[1-9]\d{0,29}", re.ASCII)
 _WORDS = {"": None, "~": None, "null": None, "Null": None, "NULL": None} | {
     word: value for value, name in ((True, "true"), (False, "false")) for word in (name, name.title(), name.upper())
 }
+
+_MERGE = "<<"
+_TABS = "tabs cannot be used for indentation"
 
 _Parser: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 #: The events and marks of libyaml and of PyYAML's own parser have no common type.
@@ -46,7 +50,7 @@ class Scalar:
     """A single value."""
 
     place: Place
-    value: str | int | float | bool | None
+    value: str | int | bool | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,13 +107,11 @@ def read_nodes(path: Path, text: str) -> tuple[Node, Source, list[Finding]]:
 def _reason(error: yaml.MarkedYAMLError, source: Source) -> str:
     problem, context = error.problem or "", error.context or ""
     mark = error.problem_mark
+    if "tab character that violates indentation" in problem:
+        return f"not valid YAML: {_TABS}"
     if mark is not None and "cannot start any token" in problem:
         character = source.lines[mark.line][mark.column : mark.column + 1]
-        problem = (
-            "tabs cannot be used for indentation"
-            if character == "\t"
-            else f"a value cannot start with {character!r} without quotes"
-        )
+        problem = _TABS if character == "\t" else f"a value cannot start with {character!r} without quotes"
         context = ""
     return f"not valid YAML: {problem}{f' ({context})' if context else ''}"
 
@@ -152,10 +154,9 @@ class _Reader:
 
     def node(self, event: _Event, events: Iterator[_Event], depth: int) -> Node:
         """The node that begins with an event."""
-        if depth > MAX_DEPTH:
-            raise self.stop("YML002", f"the content is nested more than {MAX_DEPTH} levels deep", event.start_mark)
+        self.check_depth(depth, event.start_mark)
         if isinstance(event, yaml.AliasEvent):
-            return self.alias(event)
+            return self.alias(event, depth)
         if getattr(event, "tag", None) not in (None, "!"):
             raise self.stop("YML001", "tags are not allowed", event.start_mark, "Write the plain value.")
         place = _place(event.start_mark)
@@ -183,6 +184,7 @@ class _Reader:
     def mapping(self, place: Place, events: Iterator[_Event], depth: int) -> Mapping:
         """The nodes of a mapping; of a duplicate key the first value is used."""
         found = Mapping(place, {}, {})
+        inherited: list[Mapping] = []
         for event in events:
             if isinstance(event, yaml.MappingEndEvent):
                 break
@@ -190,12 +192,31 @@ class _Reader:
                 raise self.stop("YML001", "a key must be a plain string", event.start_mark)
             value = self.node(next(events), events, depth + 1)
             where = _place(event.start_mark)
+            if event.value == _MERGE:
+                inherited += self.merged(value, event.start_mark)
+                continue
             if event.value in found.items:
                 self.second(event.value, found.keys[event.value], where)
                 continue
             found.items[event.value] = value
             found.keys[event.value] = where
+        # Keys of the mapping itself come first, then those of earlier mappings: https://yaml.org/type/merge.html
+        for other in inherited:
+            for key, item in other.items.items():
+                found.keys.setdefault(key, other.keys[key])
+                found.items.setdefault(key, item)
         return found
+
+    def merged(self, value: Node, mark: Any) -> list[Mapping]:
+        """The mappings that a merge key names."""
+        named = value.items if isinstance(value, Sequence) else [value]
+        mappings = [item for item in named if isinstance(item, Mapping)]
+        if len(mappings) < len(named):
+            message = f"{_MERGE!r} merges mappings, but its value is something else"
+            raise self.stop(
+                "YML001", message, mark, "Write an alias of a mapping, e.g. <<: *defaults, or a list of such aliases."
+            )
+        return mappings
 
     def second(self, key: str, first: Place, where: Place) -> None:
         """Report a duplicate key."""
@@ -204,16 +225,22 @@ class _Reader:
         if len(self.findings) == MAX_FINDINGS:
             raise ReadError(self.findings)
 
-    def alias(self, event: _Event) -> Node:
+    def alias(self, event: _Event, depth: int) -> Node:
         """The node that an alias refers to; it is counted again with everything in it."""
         node = self.anchors.get(event.anchor)
         if node is None:
             raise self.stop(
                 "YML001", f"undefined alias *{event.anchor}: no complete anchor &{event.anchor} before it", event.start_mark
             )
-        for _ in _walk(node):
+        for level, _ in _walk(node, depth):
+            self.check_depth(level, event.start_mark)
             self.tally(event.start_mark)
         return node
+
+    def check_depth(self, depth: int, mark: Any) -> None:
+        """Stop at the limit of nesting."""
+        if depth > MAX_DEPTH:
+            raise self.stop("YML002", f"the content is nested more than {MAX_DEPTH} levels deep", mark)
 
     def tally(self, mark: Any) -> None:
         """Count a node, and stop at the limit."""
@@ -231,23 +258,22 @@ def _place(mark: Any) -> Place:
     return Place(mark.line, mark.column)
 
 
-def _value(event: _Event) -> str | int | float | bool | None:
+def _value(event: _Event) -> str | int | bool | None:
     text: str = event.value
     is_plain, _ = event.implicit
     if not is_plain:
         return text
     if text in _WORDS:
         return _WORDS[text]
-    if _INTEGER.fullmatch(text):
-        return int(text)
-    return float(text) if _FLOAT.fullmatch(text) else text
+    return int(text) if _INTEGER.fullmatch(text) else text
 
 
-def _walk(node: Node) -> Iterator[Node]:
-    yield node
+def _walk(node: Node, depth: int) -> Iterator[tuple[int, Node]]:
+    """A node and everything in it, with their depths."""
+    yield depth, node
     if not isinstance(node, Scalar):
         for inner in node.items.values() if isinstance(node, Mapping) else node.items:
-            yield from _walk(inner)
+            yield from _walk(inner, depth + 1)
 
 
 def plain(node: Node) -> Any:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, Offset, Priority, SizeOrNothing
+from amalthea_uros.spec.values import WHOLE_NUMBER, Count, CountOrNone, Duration, Name, Offset, Priority, SizeOrNothing
 
 
 class Sporadic(Shorthand):
@@ -115,7 +115,7 @@ class Isr(Process):
 
     priority: Priority = 1
     """Priority among interrupt service routines."""
-    category: Literal[1, 2] = 2
+    category: Annotated[Literal[1, 2], WHOLE_NUMBER] = 2
     """OSEK category."""
 
 

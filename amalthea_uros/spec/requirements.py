@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -40,7 +40,7 @@ class Chain(Section):
     """Executor, callbacks, tasks, interrupt service routines and functions, with labels between them, from cause to effect."""
     sequence: list[Name] | None = Field(None, min_length=1)
     """Chains that follow each other; each starts with the last event of the previous one."""
-    parallel: list[list[Name]] | None = Field(None, min_length=2)
+    parallel: list[Annotated[list[Name], Field(min_length=1)]] | None = Field(None, min_length=2)
     """Paths from the same start to the same end."""
     completed: Count = 1
     """Number of parallel paths that must complete: 1 for alternatives, all of them for a join."""

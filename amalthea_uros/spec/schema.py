@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.section import EXTENSION
 
 #: The draft that editors support; pydantic writes a later one, of which this format needs only other keywords.
 _DRAFT = "http://json-schema.org/draft-07/schema#"
+#: Extensions, and YAML's merge key, which editors look at before it is merged.
+_OTHER_KEYS = f"^({EXTENSION}|<<$)"
 
 
 def json_schema() -> dict[str, Any]:
@@ -35,6 +38,8 @@ def _tidied(schema: Any) -> Any:
             found = kept[0] | found
         else:
             found["anyOf"] = kept
+    if found.get("additionalProperties") is False:
+        found["patternProperties"] = {_OTHER_KEYS: {}}
     if "$ref" in found and len(found) > 1:
         # Draft-07 ignores other keywords next to a reference.
         found["allOf"] = [{"$ref": found.pop("$ref")}]

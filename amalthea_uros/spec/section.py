@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, PrivateAttr, model_validator
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, PrivateAttr, field_validator, model_validator
 from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema
+from pydantic_core import CoreSchema, PydanticCustomError
 
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.spec.nodes import Mapping, Node, Sequence, Source
+
+#: How keys begin that are for other tools, or for anchors; they are ignored.
+EXTENSION = "x-"
 
 
 class Section(BaseModel):
@@ -18,6 +21,21 @@ class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True, protected_namespaces=())
 
     _where: tuple[Mapping, Source] | None = PrivateAttr(None)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _without_extensions(cls, value: Any) -> Any:
+        if not isinstance(value, dict):
+            return value
+        return {key: item for key, item in value.items() if not key.startswith(EXTENSION)}
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _is_given(cls, value: Any) -> Any:
+        # A key without a value is a mistake also where the key is optional.
+        if value is None:
+            raise PydanticCustomError("empty", "no value")
+        return value
 
     def location(self, key: str | None = None, index: int | None = None) -> Location | None:
         """Location of the section, of the value of a key, or of an item of that value; None if it was not read from a file.

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
+from math import isfinite
 from typing import Annotated, Any, TypeAlias
 
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema
@@ -13,6 +15,7 @@ from amalthea_uros import units
 #: In characters.
 MAX_NAME_LENGTH = 200
 _GREATEST_IDENTIFIER = 2**29 - 1
+_NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
 
 
 def problem(message: str) -> PydanticCustomError:
@@ -21,10 +24,15 @@ def problem(message: str) -> PydanticCustomError:
     return PydanticCustomError("value", message.replace("{", "{{").replace("}", "}}"))
 
 
+def unexpected(message: str) -> PydanticCustomError:
+    """The exception that a validator raises for a wrong value, which the message is to show."""
+    return PydanticCustomError("unexpected", message)
+
+
 def _quantity(parse: Callable[[str], Any], dimension: units.Dimension) -> Callable[[Any], Any]:
     def convert(value: Any) -> Any:
-        if isinstance(value, bool) or not isinstance(value, str | int | float):
-            raise problem(f"expected {dimension.article} such as {dimension.example!r}")
+        if isinstance(value, bool) or not isinstance(value, str | int):
+            raise unexpected(f"expected {dimension.article} such as {dimension.example!r}")
         try:
             return parse(str(value))
         except ValueError as error:
@@ -35,13 +43,13 @@ def _quantity(parse: Callable[[str], Any], dimension: units.Dimension) -> Callab
 
 def _positive(value: Any) -> Any:
     if value <= 0:
-        raise problem("must be greater than zero")
+        raise unexpected("must be greater than zero")
     return value
 
 
 def _not_negative(value: Any) -> Any:
     if value < 0:
-        raise problem("must not be negative")
+        raise unexpected("must not be negative")
     return value
 
 
@@ -52,8 +60,8 @@ def _text_schema(dimension: units.Dimension) -> WithJsonSchema:
 
 
 def _name(value: Any) -> Any:
-    if isinstance(value, bool) or not isinstance(value, str | int | float):
-        raise problem("expected a name")
+    if isinstance(value, bool) or not isinstance(value, str | int):
+        raise unexpected("expected a name")
     text = str(value)
     if not text.strip() or text != text.strip() or len(text) > MAX_NAME_LENGTH or not text.isprintable():
         allowed = f"1 to {MAX_NAME_LENGTH} printable characters without leading or trailing blanks"
@@ -61,14 +69,30 @@ def _name(value: Any) -> Any:
     return text
 
 
+def _number(value: Any) -> float:
+    # Decimals are text until here, so that a name such as 1.10 keeps its zero.
+    if isinstance(value, bool) or not (isinstance(value, int) or (isinstance(value, str) and _NUMBER.fullmatch(value))):
+        raise unexpected("expected a number such as 1.5")
+    number = float(value)
+    if not isfinite(number):
+        raise unexpected("out of range")
+    return number
+
+
+def _whole_number(value: Any) -> Any:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise unexpected("expected a whole number")
+    return value
+
+
 def _identifier(value: Any) -> Any:
     if isinstance(value, str) and value.startswith("0x"):
         try:
             value = int(value, 16)
         except ValueError:
-            raise problem("expected a hexadecimal number such as 0x120") from None
+            raise unexpected("expected a hexadecimal number such as 0x120") from None
     if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= _GREATEST_IDENTIFIER:
-        raise problem(f"expected an identifier of up to 29 bits, 0 to {_GREATEST_IDENTIFIER:#x}")
+        raise unexpected(f"expected an identifier of up to 29 bits, 0 to {_GREATEST_IDENTIFIER:#x}")
     return value
 
 
@@ -91,6 +115,10 @@ SizeOrNothing: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_not_negati
 BitRate: TypeAlias = Annotated[int, _BIT_RATE, AfterValidator(_positive), _text_schema(units.BIT_RATE)]
 #: Name of an object.
 Name: TypeAlias = Annotated[str, BeforeValidator(_name), WithJsonSchema({"type": "string", "minLength": 1})]
+#: A number above zero.
+Number: TypeAlias = Annotated[float, BeforeValidator(_number, json_schema_input_type=float), Field(gt=0)]
+#: Before a choice of whole numbers, for which `true` and "1" would do as well.
+WHOLE_NUMBER = BeforeValidator(_whole_number)
 #: A number of things.
 Count: TypeAlias = Annotated[int, Field(strict=True, ge=1, le=1_000_000)]
 #: A number of things, possibly zero.

@@ -3,6 +3,7 @@
 import pytest
 
 from amalthea_uros.errors import ReadError
+from amalthea_uros.services.build import describe
 from amalthea_uros.spec.read import read_description
 
 GOOD = """\
@@ -68,12 +69,20 @@ def test_the_good_one_is_good(tmp_path):
             "execution_time: 4",
             (10, 55, "YML012", "execution_time: '4' has no unit; write a time such as '10 ms'", ""),
         ),
-        ("execution_time: 4 us", "execution_time: 0 us", (10, 55, "YML012", "execution_time: must be greater than zero", "")),
-        ("execution_time: 4 us", "execution_time: -4 us", (10, 55, "YML012", "execution_time: must be greater than zero", "")),
+        (
+            "execution_time: 4 us",
+            "execution_time: 0 us",
+            (10, 55, "YML012", "execution_time: must be greater than zero, found '0 us'", ""),
+        ),
+        (
+            "execution_time: 4 us",
+            "execution_time: -4 us",
+            (10, 55, "YML012", "execution_time: must be greater than zero, found '-4 us'", ""),
+        ),
         (
             "execution_time: 4 us",
             "execution_time: [4 us]",
-            (10, 55, "YML012", "execution_time: expected a time such as '10 ms'", ""),
+            (10, 55, "YML012", "execution_time: expected a time such as '10 ms', found a list", ""),
         ),
         (
             "execution_time: 4 us",
@@ -128,6 +137,82 @@ def test_the_good_one_is_good(tmp_path):
             "nodes: 5\n  nods:\n",
             (7, 10, "YML012", "nodes: expected a list, found 5", "Write [a, b], or one item per line after '- '."),
         ),
+        ("single-core}", "generic, cores: -1}", (3, 38, "YML012", "cores: expected 1 or more, found -1", "")),
+        (
+            "single-core}",
+            "generic, cores: '1'}",
+            (
+                3,
+                38,
+                "YML012",
+                "cores: expected the number of cores, or a list of them, found '1'",
+                "Write 1, without quotes, sign or leading zeros.",
+            ),
+        ),
+        (
+            "execution_time: 12 us",
+            "execution_time: '1,5 us'",
+            (
+                5,
+                44,
+                "YML012",
+                "execution_time: '1,5 us' contains a comma; write decimals with a point and no separators for thousands",
+                "",
+            ),
+        ),
+        (
+            "execution_time: 12 us",
+            "execution_time: 1,5 us",
+            (5, 46, "YML010", "unknown key '5 us'", "A comma separates keys; write decimals with a point, e.g. 1.5 ms."),
+        ),
+        ("amuros: 1", "amuros: true", (1, 9, "YML012", "amuros: expected a whole number, found true", "")),
+        (
+            "amuros: 1",
+            "amuros: '1'",
+            (
+                1,
+                9,
+                "YML012",
+                "amuros: expected a whole number, found '1'",
+                "Write 1, without quotes, sign or leading zeros.",
+            ),
+        ),
+        (
+            "period: 1 ms, execution_time: 4 us",
+            "period: 1 ms, execution_time: 4 us, priority: 010",
+            (
+                10,
+                71,
+                "YML012",
+                "priority: expected a whole number, found '010'",
+                "Write 10, without quotes, sign or leading zeros.",
+            ),
+        ),
+        (
+            "execution_time: 4 us",
+            "execution_time: 4 us, deadline: ",
+            (10, 71, "YML012", "deadline: no value is given", "Give a value, or remove the key."),
+        ),
+        (
+            "execution_time: 4 us",
+            "execution_time: {min: 1 us, max: 2 us, distribution: beta, alpha: true, beta: 1e400}",
+            (10, 105, "YML012", "alpha: expected a number such as 1.5, found true", ""),
+        ),
+        (
+            "execution_time: 4 us",
+            "execution_time: {min: 1 us, max: 2 us, distribution: beta, alpha: 1, beta: 1e400}",
+            (10, 114, "YML012", "beta: out of range, found '1e400'", ""),
+        ),
+        (
+            "execution_time: 4 us",
+            "execution_time: 2024-01-01",
+            (10, 55, "YML012", "execution_time: '2024-01-01' is not a time such as '10 ms'", ""),
+        ),
+        (
+            "middleware:\n",
+            "middleware:\n  policy: osek\n",
+            (5, 11, "YML012", "policy: expected 'FixedPriorityPreemptive' or 'OSEK', found 'osek'", "Did you mean 'OSEK'?"),
+        ),
         ("amuros: 1", "amuros: 2", (1, 9, "YML012", "amuros: expected 1, found 2", "")),
     ],
 )
@@ -158,6 +243,10 @@ def test_all_mistakes_in_one_run(told):
         ("- a list\n", 1, "YML012", "expected a mapping, found a list"),
         ("a: [1\nb: 2\n", 2, "YML001", "not valid YAML"),
         ("a:\n\tb: 1\n", 2, "YML001", "tabs cannot be used for indentation"),
+        ("a:\n  b: 1\n\tc: 2\n", 3, "YML001", "tabs cannot be used for indentation"),
+        ("<?xml version='1.0'?><am:Amalthea/>", 1, "YML001", "this is an AMALTHEA model, not YAML"),
+        ("<!-- old --><page/>", 1, "YML001", "this is XML, not YAML"),
+        ("a: 1\nb: {<<: [x]}\n", 2, "YML001", "'<<' merges mappings, but its value is something else"),
         ("a: @b\n", 1, "YML001", "a value cannot start with '@' without quotes"),
         ("a: b: c\n", 1, "YML001", "not valid YAML"),
         ("a: 1\n--- \nb: 2\n", 2, "YML001", "several YAML documents"),
@@ -228,3 +317,102 @@ def test_places_of_values(tmp_path):
     # What is not stated stands where its section does.
     assert timer.location("offset") == timer.location()
     assert timer.location().text == GOOD.splitlines()[9]
+
+
+def test_a_chain_of_aliases_that_nests_deeply(told):
+    """Each alias adds a level, although the text itself is flat."""
+    levels = "".join(f"a{n}: &a{n} [*a{n - 1}]\n" for n in range(1, 800))
+    ((line, _, rule, message, _),) = told("a0: &a0 [x]\n" + levels)
+    # Level 1 is the document, level 2 the value of a0, level 3 its item: a38 is the first one that is 40 levels deep with its document.
+    assert (line, rule) == (39, "YML002")
+    assert "nested more than 40 levels deep" in message
+
+
+def test_merged_keys_and_extensions(tmp_path):
+    """Own keys win over merged ones, and earlier mappings over later ones (https://yaml.org/type/merge.html)."""
+    path = tmp_path / "app.yaml"
+    path.write_text(
+        GOOD
+        + """\
+x-slow: &slow {period: 100 ms, execution_time: 1 ms, offset: 3 ms}
+x-core: &core {period: 50 ms, core: Core_0, deadline: 7 ms}
+tasks:
+  - {name: T, <<: [*slow, *core], deadline: 9 ms, x-owner: {team: brakes}}
+"""
+    )
+    (task,) = read_description(path).tasks
+    milliseconds = 10**9
+    assert (task.period, task.offset, task.deadline) == (100 * milliseconds, 3 * milliseconds, 9 * milliseconds)
+    assert task.core == "Core_0"
+    # A merged value is where it is written.
+    assert task.location("period").line == 11
+
+
+def test_a_mistake_in_a_merged_mapping_is_reported_once(told):
+    tasks = "".join(f"  - {{name: T{n}, <<: *slow}}\n" for n in range(3))
+    text = GOOD + "x-slow: &slow {period: 1 s, execution_time: 1 ms, prio: 3}\ntasks:\n" + tasks
+    assert [(line, message) for line, _, _, message, _ in told(text)] == [(11, "unknown key 'prio'")]
+
+
+@pytest.mark.parametrize("name", ["1.10", "007", "1e3", ".inf", "2024-01-01"])
+def test_names_are_what_is_written(tmp_path, name):
+    path = tmp_path / "app.yaml"
+    path.write_text(changed("name: Timer", f"name: {name}"))
+    assert read_description(path).application.nodes[0].timers[0].name == name
+
+
+def test_no_path_of_a_chain_is_empty(told):
+    text = GOOD + "chains:\n  - {name: c, parallel: [[], [Timer]]}\n"
+    assert told(text) == [(12, 26, "YML012", "parallel: expected at least 1 item, found 0", "")]
+
+
+class TestTheRest:
+    """What is wrong besides keys and words that are not understood is reported in the same run, but not their consequences."""
+
+    @pytest.fixture
+    def all_told(self, tmp_path):
+        def tell(text):
+            path = tmp_path / "app.yaml"
+            path.write_text(text)
+            with pytest.raises(ReadError) as caught:
+                describe(path)
+            return [(finding.rule, finding.message) for finding in caught.value.findings]
+
+        return tell
+
+    UNDEFINED = "requirements:\n  - {process: Nothing, response_time: 1 ms}\n"
+
+    def test_an_unknown_section_and_a_wrong_word(self, all_told):
+        text = changed("middleware:\n", "middleware:\n  policy: RMS\n") + "note: hello\n" + self.UNDEFINED
+        assert all_told(text) == [
+            ("YML012", "policy: expected 'FixedPriorityPreemptive' or 'OSEK', found 'RMS'"),
+            ("YML010", "unknown key 'note'"),
+            ("APP001", "undefined process or runnable 'Nothing'"),
+        ]
+
+    def test_what_a_misspelled_section_defines_is_defined(self, all_told):
+        text = GOOD + "taskz:\n  - {name: T, period: 1 s, execution_time: 1 ms}\n  - {name: U, period: 3}\n"
+        assert all_told(text + "requirements:\n  - {process: T, response_time: 1 ms}\n") == [
+            ("YML010", "unknown key 'taskz'"),
+            ("YML012", "period: '3' has no unit; write a time such as '10 ms'"),
+        ]
+
+    def test_a_key_that_is_missing_because_it_is_misspelled(self, all_told):
+        text = GOOD + "tasks:\n  - {name: T, how_often: 1 s, execution_time: 1 ms}\n" + self.UNDEFINED
+        assert all_told(text) == [
+            ("YML010", "unknown key 'how_often'"),
+            ("APP001", "undefined process or runnable 'Nothing'"),
+        ]
+
+    def test_an_unknown_list_may_define_names(self, all_told):
+        assert all_told(GOOD + "things: [{name: Nothing}]\n" + self.UNDEFINED) == [("YML010", "unknown key 'things'")]
+
+    def test_a_duplicate_key(self, all_told):
+        assert all_told(GOOD + "name: other\n" + self.UNDEFINED) == [
+            ("YML003", "duplicate key 'name' (first defined on line 2)"),
+            ("APP001", "undefined process or runnable 'Nothing'"),
+        ]
+
+
+def test_a_decimal_comma_is_reported_once(told):
+    assert len(told(changed("execution_time: 12 us", "execution_time: 1,5 us"))) == 1

@@ -182,8 +182,11 @@ def test_identifiers_of_messages_decide_who_is_sent_first(identifiers, order, au
     ("identifiers", "finding"),
     [
         ("d_topic: 1", ("APP001", "undefined message 'd_topic'")),
-        ("a_topic: 0x20000000", ("YML012", "a_topic: expected an identifier of up to 29 bits, 0 to 0x1fffffff")),
-        ("a_topic: 0x12G", ("YML012", "a_topic: expected a hexadecimal number such as 0x120")),
+        (
+            "a_topic: 0x20000000",
+            ("YML012", "a_topic: expected an identifier of up to 29 bits, 0 to 0x1fffffff, found '0x20000000'"),
+        ),
+        ("a_topic: 0x12G", ("YML012", "a_topic: expected a hexadecimal number such as 0x120, found '0x12G'")),
         ("a_topic: 0x800", ("APP003", "the identifier 0x800 of 'a_topic' has more than 11 bits")),
     ],
 )

@@ -43,7 +43,7 @@ requirements:
         ("name: node", "name: node\n      core: Core_2", 9, "APP001", "undefined core 'Core_2'"),
         ("name: Plain, ", "name: Plain, core: Core_2, ", 15, "APP001", "undefined core 'Core_2'"),
         ("period: 10 ms, ", "", 15, "APP003", "'Plain' has no activation"),
-        ("period: 10 ms, ", "period: ~, ", 15, "APP003", "'Plain' has no activation"),
+        ("period: 10 ms, ", "period: ~, ", 15, "YML012", "period: no value is given"),
         (
             "period: 10 ms, ",
             "period: 10 ms, sporadic: 5 ms, ",

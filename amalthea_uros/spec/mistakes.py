@@ -1,0 +1,238 @@
+"""The errors of pydantic as findings: what is wrong, where, and what to do."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from difflib import get_close_matches
+from functools import cache
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+from pydantic_core import ErrorDetails
+
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Sequence, Source
+from amalthea_uros.spec.section import Section
+from amalthea_uros.units import shortened
+
+_WHOLE_NUMBER = re.compile(r"-?\d{1,30}", re.ASCII)
+#: What is left of "1,5 ms" after a comma that separates the entries of {...}.
+_AFTER_COMMA = re.compile(r"\d+ ?[^\W\d]+(/s)?")
+
+#: As in difflib.
+_SIMILAR = 0.6
+
+_LIST = "Write [a, b], or one item per line after '- '."
+_MAPPING = "Write key: value pairs."
+#: Types of errors -> message without what was found, and help.
+_SENTENCES = {
+    "unexpected": ("{message}", ""),
+    "model_type": ("expected a mapping", _MAPPING),
+    "model_attributes_type": ("expected a mapping", _MAPPING),
+    "dict_type": ("expected a mapping", _MAPPING),
+    "list_type": ("expected a list", _LIST),
+    "greater_than_equal": ("must be at least {ge}", ""),
+    "less_than_equal": ("must be at most {le}", ""),
+    "greater_than": ("must be greater than {gt:g}", ""),
+    "less_than": ("must be less than {lt:g}", ""),
+    "int_type": ("expected a whole number", ""),
+    "int_parsing_size": ("expected a smaller number", ""),
+    "string_type": ("expected a string", ""),
+    "literal_error": ("expected {expected}", ""),
+}
+
+
+class Mistake(NamedTuple):
+    """An error of pydantic in the nodes of a file.
+
+    Attributes
+    ----------
+    path : the nodes from the whole document to the erroneous one, or to the one that encloses it, if it is missing
+    """
+
+    details: ErrorDetails
+    path: tuple[Node, ...]
+
+    @classmethod
+    def of(cls, details: ErrorDetails, node: Node) -> Mistake:
+        """The error in a document."""
+        return cls(details, tuple(_path(details["loc"], node)))
+
+    @property
+    def kind(self) -> str:
+        """Type of the error."""
+        return self.details["type"]
+
+    @property
+    def key(self) -> str:
+        """The last part of the path that pydantic gives."""
+        return str(self.details["loc"][-1]) if self.details["loc"] else ""
+
+
+def finding_of(mistake: Mistake, source: Source, kind: type[Section]) -> Finding:
+    """The finding for an error in a section of some kind."""
+    value = mistake.path[-1]
+    match mistake.kind:
+        case "extra_forbidden":
+            message = f"unknown key {shortened(mistake.key)!r}"
+            return Finding("YML010", Severity.ERROR, message, source.location(_key_place(mistake)), _advice(mistake, kind))
+        case "missing":
+            return Finding("YML011", Severity.ERROR, f"missing key {mistake.key!r}", source.location(value.place))
+    message, help_text = _sentence(mistake.details, value)
+    return Finding("YML012", Severity.ERROR, f"{_owner(mistake)}{message}", source.location(value.place), help_text)
+
+
+def intended_key(mistake: Mistake, kind: type[Section], similarity: float = _SIMILAR) -> str | None:
+    """The key that an unknown key is probably a misspelling of."""
+    known = _keys(mistake.details["loc"][:-1], kind)
+    return _most_similar(mistake.key.replace("-", "_"), known, similarity)
+
+
+def intended_word(mistake: Mistake, similarity: float = _SIMILAR) -> str | None:
+    """The allowed word that a wrong word is probably a misspelling of."""
+    given = mistake.details["input"]
+    if not isinstance(given, str):
+        return None
+    expected = str(mistake.details["ctx"]["expected"]).replace(" or ", ", ").split(", ")
+    return _most_similar(given, [word.strip("'") for word in expected], similarity)
+
+
+def _most_similar(word: str, known: list[str], similarity: float) -> str | None:
+    folded = {name.lower(): name for name in known}
+    near = get_close_matches(word.lower(), folded, n=1, cutoff=similarity)
+    return folded[near[0]] if near else None
+
+
+def without_consequences(mistakes: list[Mistake]) -> list[Mistake]:
+    """The mistakes without those in the number before a decimal comma, of which the rest is an unknown key."""
+    cut_off = [
+        _before(mistake) for mistake in mistakes if mistake.kind == "extra_forbidden" and _AFTER_COMMA.fullmatch(mistake.key)
+    ]
+    return [mistake for mistake in mistakes if not any(mistake.path[-1] is node for node in cut_off)]
+
+
+def _before(mistake: Mistake) -> Node | None:
+    """The value before an unknown key."""
+    holder, unknown = mistake.path[-2:]
+    values = list(holder.items.values()) if isinstance(holder, Mapping) else []
+    return next((value for value, following in pairwise(values) if following is unknown), None)
+
+
+def _path(loc: tuple[int | str, ...], node: Node) -> Iterator[Node]:
+    """The nodes on the path to an error; parts that exist only in pydantic are skipped."""
+    yield node
+    for part in loc:
+        if isinstance(node, Mapping) and part in node.items:
+            node = node.items[str(part)]
+            yield node
+        elif isinstance(node, Sequence) and isinstance(part, int) and part < len(node.items):
+            node = node.items[part]
+            yield node
+
+
+def _key_place(mistake: Mistake) -> Place:
+    *_, holder, value = mistake.path
+    return holder.keys[mistake.key] if isinstance(holder, Mapping) else value.place
+
+
+def _owner(mistake: Mistake) -> str:
+    """The key that the erroneous value belongs to, as the start of a sentence."""
+    for part in reversed(mistake.details["loc"]):
+        if any(isinstance(node, Mapping) and part in node.items for node in mistake.path):
+            return f"{shortened(str(part))}: "
+    return ""
+
+
+def _sentence(details: ErrorDetails, node: Node) -> tuple[str, str]:
+    """Message and help of an error."""
+    context: dict[str, Any] = details.get("ctx", {})
+    match details["type"]:
+        case "empty":
+            return "no value is given", "Give a value, or remove the key."
+        case "too_short":
+            return f"expected at least {_items(context['min_length'])}, found {context['actual_length']}", ""
+        case "too_long":
+            return f"expected at most {_items(context['max_length'])}, found {context['actual_length']}", ""
+    template, help_text = _SENTENCES.get(details["type"], ("", ""))
+    if not template:
+        return details["msg"], ""
+    return f"{template.format(message=details['msg'], **context)}, found {_given(node)}", help_text or _correction(
+        details, node
+    )
+
+
+def _items(count: int) -> str:
+    return "1 item" if count == 1 else f"{count} items"
+
+
+def _given(node: Node) -> str:
+    """What the author wrote, for a message."""
+    match node:
+        case Mapping():
+            return "a mapping"
+        case Sequence():
+            return "a list"
+        case Scalar(value=None):
+            return "nothing"
+        case Scalar(value=bool() as value):
+            return str(value).lower()
+        case Scalar(value=value):
+            return shortened(repr(value))
+
+
+def _correction(details: ErrorDetails, node: Node) -> str:
+    """What was probably meant instead of a wrong value."""
+    if details["type"] == "literal_error":
+        word = intended_word(Mistake(details, (node,)))
+        return f"Did you mean {word!r}?" if word else ""
+    wants_number = "number" in details["msg"] or "integer" in details["msg"]
+    if wants_number and isinstance(node, Scalar) and isinstance(node.value, str) and _WHOLE_NUMBER.fullmatch(node.value):
+        return f"Write {int(node.value)}, without quotes, sign or leading zeros." if node.value else ""
+    return ""
+
+
+def _advice(mistake: Mistake, kind: type[Section]) -> str:
+    """What to do about an unknown key."""
+    if _AFTER_COMMA.fullmatch(mistake.key):
+        return "A comma separates keys; write decimals with a point, e.g. 1.5 ms."
+    intended = intended_key(mistake, kind)
+    if intended:
+        return f"Did you mean {intended!r}?"
+    known = _keys(mistake.details["loc"][:-1], kind)
+    return f"Known keys: {', '.join(known)}." if known else ""
+
+
+def _keys(loc: tuple[int | str, ...], kind: type[Section]) -> list[str]:
+    """The keys that the JSON schema allows at a place."""
+    schema = _schema(kind)
+    level = [schema]
+    for part in loc:
+        found = [inner for one in level for inner in _inner(one, part, schema)]
+        level = found or level
+    return [key for one in level for variant in _variants(one, schema) for key in variant.get("properties", ())]
+
+
+@cache
+def _schema(kind: type[Section]) -> dict[str, Any]:
+    return kind.model_json_schema(by_alias=True)
+
+
+def _variants(schema: dict[str, Any], whole: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """A schema and its alternatives."""
+    if "$ref" in schema:
+        yield from _variants(whole["$defs"][schema["$ref"].rpartition("/")[2]], whole)
+        return
+    yield schema
+    for inner in schema.get("anyOf", ()):
+        yield from _variants(inner, whole)
+
+
+def _inner(schema: dict[str, Any], part: int | str, whole: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    for variant in _variants(schema, whole):
+        if isinstance(part, int):
+            yield from filter(None, [variant.get("items")])
+        else:
+            inner = variant.get("properties", {}).get(part)
+            extra = variant.get("additionalProperties")
+            yield from filter(None, [inner or (extra if isinstance(extra, dict) else None)])
