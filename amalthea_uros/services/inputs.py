@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.services.paths import StrPath, is_description
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ class ModelInput:
     Attributes
     ----------
     model : the one that was read, or the one that was built from a description, whose objects know its lines
-    findings : problems found while reading or building
+    findings : problems found while reading or building, also those that comments accept
     system : the one that a description describes, None for AMALTHEA models
     """
 
@@ -38,7 +39,7 @@ class SystemInput:
     Attributes
     ----------
     model : the AMALTHEA model that it was extracted from, None for a description
-    findings : problems found while reading, and what could not be extracted
+    findings : problems found while reading, and what could not be extracted, except those that comments accept
     """
 
     system: System
@@ -57,7 +58,7 @@ def open_model(paths: Sequence[StrPath]) -> ModelInput:
         from amalthea_uros.services.build import build
 
         built = build(paths[0])
-        return ModelInput(model=built.model, findings=built.findings, system=built.assembly.system)
+        return ModelInput(model=built.model, findings=built.assembly.findings, system=built.assembly.system)
     from amalthea_uros.xmi.load import load
 
     model = load(*paths)
@@ -83,7 +84,7 @@ def open_system(paths: Sequence[StrPath], *, with_bus: bool = False) -> SystemIn
         system = assembly.system_with_bus() if with_bus else assembly.system
         if system is None:
             raise InvalidArgumentError(f"no CAN bus is described in {paths[0]}; set 'middleware.transport.can.bitrate'")
-        return SystemInput(system=system, model=None, findings=assembly.findings)
+        return SystemInput(system=system, model=None, findings=unsuppressed(assembly.findings))
     if with_bus:
         raise InvalidArgumentError("only an app.yaml describes the messages on a CAN bus; AMALTHEA models do not")
     from amalthea_uros.bridge.extract import extract
@@ -91,7 +92,8 @@ def open_system(paths: Sequence[StrPath], *, with_bus: bool = False) -> SystemIn
 
     model = load(*paths)
     extraction = extract(model)
-    return SystemInput(system=extraction.system, model=model, findings=(*model.findings, *extraction.findings))
+    findings = unsuppressed((*model.findings, *extraction.findings))
+    return SystemInput(system=extraction.system, model=model, findings=findings)
 
 
 def _is_one_description(paths: Sequence[StrPath]) -> bool:
