@@ -39,7 +39,7 @@ class CheckResult:
     presentation : the same as they are shown: one for each flaw, and one line about each of these tools
     fail_on : minimum severity at which the check fails
     is_readable : whether every file could be checked
-    rules : ids of the rules that were checked
+    rules : ids of the rules that were checked, none if no file could be
     """
 
     paths: tuple[Path, ...]
@@ -116,10 +116,11 @@ def check_files(
     rules = selection.rules()
     found: list[Finding] = []
     is_readable = True
-    checked = [path for path in files if not (only_amuros and is_other_yaml(path))]
-    for paths_of_model in by_model(checked, each):
+    is_checked = False
+    for paths_of_model in by_model((path for path in files if not (only_amuros and is_other_yaml(path))), each):
         try:
             found += _check_group(paths_of_model, rules)
+            is_checked = True
         except ReadError as error:
             found += error.findings
             is_readable &= not is_unreadable(error.findings)
@@ -132,7 +133,7 @@ def check_files(
         presentation=present(findings, _asked(selection, settings.targets)),
         fail_on=settings.fail_on or Severity.ERROR,
         is_readable=is_readable,
-        rules=tuple(rules) if checked else (),
+        rules=tuple(rules) if is_checked else (),
     )
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding
@@ -96,5 +97,22 @@ def open_system(paths: Sequence[StrPath], *, with_bus: bool = False) -> SystemIn
     return SystemInput(system=extraction.system, model=model, findings=findings)
 
 
+def refuse_descriptions(paths: Iterable[StrPath]) -> None:
+    """Refuse descriptions where only AMALTHEA models can be used.
+
+    Raises
+    ------
+    InvalidArgumentError : says how to build the model of a description.
+    """
+    for path in map(Path, paths):
+        if is_description(path):
+            command = f"amuros build {path} -o {path.with_suffix('.amxmi')}"
+            raise InvalidArgumentError(f"{path} is a description, not an AMALTHEA model; build it first: {command}")
+
+
 def _is_one_description(paths: Sequence[StrPath]) -> bool:
-    return len(paths) == 1 and is_description(paths[0])
+    """Whether the only path is a description; several paths are files of one AMALTHEA model."""
+    if len(paths) == 1 and is_description(paths[0]):
+        return True
+    refuse_descriptions(paths)
+    return False
