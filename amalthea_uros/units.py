@@ -181,7 +181,7 @@ _DIGITS = 4
 
 
 def rounded_time_text(value: Time | Fraction, rounding: Rounding) -> str:
-    """A time for tables: whole numbers of its unit as they are, others with four significant digits.
+    """A time for tables: whole numbers of its unit as they are, others with four significant digits, or without decimals.
 
     >>> rounded_time_text(20_029 * MICROSECOND, Rounding.UP), rounded_time_text(20_029 * MICROSECOND, Rounding.DOWN)
     ('20.03 ms', '20.02 ms')
@@ -192,7 +192,8 @@ def rounded_time_text(value: Time | Fraction, rounding: Rounding) -> str:
     size = next((size for _, size in _TIME_STEPS if abs(exact) >= size), PICOSECOND)
     if exact % size == 0:
         return time_text(value)
-    digits = Context(prec=_DIGITS, rounding=rounding, Emax=MAX_EMAX)
+    whole = len(str(abs(exact) // size))
+    digits = Context(prec=max(_DIGITS, whole), rounding=rounding, Emax=MAX_EMAX)
     number = digits.divide(Decimal((exact / size).numerator), Decimal((exact / size).denominator))
     return time_text(Fraction(number) * size)
 
