@@ -195,3 +195,28 @@ def test_sarif_links_rules_to_the_documentation_that_the_package_states(amuros, 
     monkeypatch.setattr(sarif, "metadata", lambda _name: stated)
     (rule,) = rules()
     assert rule["helpUri"] == "https://example.org/docs/check.md#TIM-STIMULUS"
+
+
+ITEA = "http://www.amalthea.itea2.org/model/1.3.0/sw"
+APP4MC = "http://app4mc.eclipse.org/amalthea/"
+
+
+@pytest.mark.parametrize("namespace", [ITEA, f"{APP4MC}0.7.0", f"{APP4MC}0.7.1", f"{APP4MC}0.7.2"])
+def test_a_file_with_a_sub_model_as_its_root_is_a_model(amuros, tmp_path, namespace):
+    path = tmp_path / "sw.amxmi"
+    start = f'<sw:SWModel xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:sw="{namespace}">'
+    path.write_text(f'{start}<tasks name="Control"/></sw:SWModel>')
+    assert "  Control  task" in amuros("info", path).stdout
+    assert "TIM-STIMULUS warning: " in amuros("check", path, "--select", "TIM").stdout
+    assert "  Control  ?" in amuros("analyze", path).stdout
+    assert amuros("migrate", path, "-o", tmp_path / "new.amxmi").code == 0
+    assert '<tasks name="Control"' in (tmp_path / "new.amxmi").read_text()
+
+
+@pytest.mark.parametrize("version", ["0.8.1", "0.9.5"])
+def test_later_versions_have_no_sub_models_as_roots(amuros, tmp_path, version):
+    path = tmp_path / "sw.amxmi"
+    path.write_text(f'<am:SWModel xmlns:am="{APP4MC}{version}"/>')
+    run = amuros("info", path)
+    assert run.code == 2
+    assert "help: Only models are migrated, whose root is AMALTHEA or Amalthea; up to 0.7.2 also sub-models" in run.stderr
