@@ -210,7 +210,7 @@ def test_a_file_with_a_sub_model_as_its_root_is_a_model(amuros, tmp_path, namesp
     assert "TIM-STIMULUS warning: " in amuros("check", path, "--select", "TIM").stdout
     assert "  Control  ?" in amuros("analyze", path).stdout
     assert amuros("migrate", path, "-o", tmp_path / "new.amxmi").code == 0
-    assert '<tasks name="Control"' in (tmp_path / "new.amxmi").read_text()
+    assert '<tasks xmi:id="Control?type=Task"' in (tmp_path / "new.amxmi").read_text()
 
 
 @pytest.mark.parametrize("version", ["0.8.1", "0.9.5"])
