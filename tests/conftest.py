@@ -2,9 +2,6 @@ import os
 
 from hypothesis import HealthCheck, Phase, settings
 
-# Tables would be fitted to the terminal in which the tests are started.
-os.environ.pop("COLUMNS", None)
-
 settings.register_profile(
     "default",
     deadline=None,

@@ -91,13 +91,18 @@ class Terminal:
 
 
 def _width(stream: IO[str]) -> int | None:
-    """The columns of a terminal, or those that the user states in `COLUMNS`; None: there is no limit."""
+    """The columns of a terminal, which the user can state in `COLUMNS`; None elsewhere.
+
+    For pipes and files, `COLUMNS` says nothing: Python's `readline` states it for all processes that a program starts.
+    """
+    if not stream.isatty():
+        return None
     stated = os.environ.get("COLUMNS", "")
     if stated.isascii() and stated.isdecimal() and int(stated) > 0:
         return int(stated)
     try:
         return os.get_terminal_size(stream.fileno()).columns or None
-    except (OSError, ValueError):  # not a terminal, or a stream in memory
+    except (OSError, ValueError):  # a terminal that does not know its size
         return None
 
 

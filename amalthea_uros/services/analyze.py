@@ -101,7 +101,7 @@ def analyze_files(
         system=system,
         settings=settings,
         analysis=analysis,
-        findings=(*opened.findings, *unsuppressed(analysis.findings)),
+        findings=unsuppressed((*opened.findings, *analysis.findings)),
         sensitivity=_sensitivity(analysis) if with_sensitivity else None,
         proposals=_proposals(analysis) if with_priorities else None,
         all_methods=all_methods,

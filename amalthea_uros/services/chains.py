@@ -9,6 +9,7 @@ from amalthea_uros.analyze.results import ChainResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require
 from amalthea_uros.services.paths import StrPath, is_description
@@ -54,7 +55,12 @@ def find_paths(model: StrPath, start: str, end: str) -> PathsResult:
         raise InvalidArgumentError(str(error)) from None
     chains = analyze_system(with_chains(system, found)).chains if found else ()
     return PathsResult(
-        model=Path(model), start=start, end=end, paths=tuple(found), chains=tuple(chains), findings=opened.findings
+        model=Path(model),
+        start=start,
+        end=end,
+        paths=tuple(found),
+        chains=tuple(chains),
+        findings=unsuppressed(opened.findings),
     )
 
 

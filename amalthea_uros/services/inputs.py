@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.services.paths import StrPath, is_description
 
 if TYPE_CHECKING:
@@ -40,7 +39,7 @@ class SystemInput:
     Attributes
     ----------
     model : the AMALTHEA model that it was extracted from, None for a description
-    findings : problems found while reading, and what could not be extracted, except those that comments accept
+    findings : problems found while reading, and what could not be extracted, also those that comments accept
     """
 
     system: System
@@ -85,7 +84,7 @@ def open_system(paths: Sequence[StrPath], *, with_bus: bool = False) -> SystemIn
         system = assembly.system_with_bus() if with_bus else assembly.system
         if system is None:
             raise InvalidArgumentError(f"no CAN bus is described in {paths[0]}; set 'middleware.transport.can.bitrate'")
-        return SystemInput(system=system, model=None, findings=unsuppressed(assembly.findings))
+        return SystemInput(system=system, model=None, findings=assembly.findings)
     if with_bus:
         raise InvalidArgumentError("only an app.yaml describes the messages on a CAN bus; AMALTHEA models do not")
     from amalthea_uros.bridge.extract import extract
@@ -93,8 +92,7 @@ def open_system(paths: Sequence[StrPath], *, with_bus: bool = False) -> SystemIn
 
     model = load(*paths)
     extraction = extract(model)
-    findings = unsuppressed((*model.findings, *extraction.findings))
-    return SystemInput(system=extraction.system, model=model, findings=findings)
+    return SystemInput(system=extraction.system, model=model, findings=(*model.findings, *extraction.findings))
 
 
 def refuse_descriptions(paths: Iterable[StrPath]) -> None:

@@ -202,7 +202,7 @@ def simulate_plan(plan: SimulationPlan, trace_paths: Iterable[StrPath] = (), *, 
         system=plan.system,
         options=plan.options,
         simulation=simulation,
-        findings=(*plan.findings, *unsuppressed(simulation.findings)),
+        findings=unsuppressed((*plan.findings, *simulation.findings)),
         differences=plan.differences,
         with_metrics=with_metrics,
     )
@@ -332,7 +332,7 @@ def simulate_campaign(
         options=options,
         outcomes=tuple(outcomes),
         planned=len(runs),
-        findings=opened.findings,
+        findings=unsuppressed(opened.findings),
         differences=differences,
     )
 
