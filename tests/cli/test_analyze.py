@@ -101,7 +101,7 @@ def test_a_missed_requirement(tmp_path):
     path.write_text(ADVANCED.read_text().replace("response_time: 1 ms", "response_time: 20 us"))
     run = amuros("analyze", path)
     assert run.returncode == 1
-    assert "at most 20 us      29 us  missed      -9 us" in run.stdout
+    assert "at most 20 us     29 us  missed      -9 us" in run.stdout
     # What is missed comes first.
     assert run.stdout.index("Control_Function  Core_0") < run.stdout.index("Executor_Task")
 
