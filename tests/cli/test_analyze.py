@@ -103,7 +103,7 @@ def test_a_missed_requirement(tmp_path):
     assert run.returncode == 1
     assert "at most 20 us     29 us  missed      -9 us" in run.stdout
     # What is missed comes first.
-    assert run.stdout.index("Control_Function  Core_0") < run.stdout.index("Executor_Task")
+    assert run.stdout.index("Executor_Task") < run.stdout.index("Control_Function  Core_0")
 
 
 def test_overload(tmp_path):
