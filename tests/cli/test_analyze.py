@@ -102,7 +102,7 @@ def test_a_missed_requirement(tmp_path):
     run = amuros("analyze", path)
     assert run.returncode == 1
     assert "at most 20 us     29 us  missed      -9 us" in run.stdout
-    # What is missed comes first.
+    # By priority, whatever is missed.
     assert run.stdout.index("Executor_Task") < run.stdout.index("Control_Function  Core_0")
 
 
