@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from decimal import MAX_EMAX, Context, Decimal
+from decimal import MAX_EMAX, ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from difflib import get_close_matches
+from enum import StrEnum
 from fractions import Fraction
 from math import ceil, floor
 from typing import NamedTuple, TypeAlias
@@ -152,6 +153,14 @@ _DATA_STEPS = tuple((unit, DATA_SIZE.units[unit]) for unit in ("GiB", "GB", "MiB
 _TWELVE_DIGITS = Context(prec=12, Emax=MAX_EMAX)
 
 
+class Rounding(StrEnum):
+    """How a value loses digits: a bound must stay one, so that upper bounds are rounded up, and lower ones down."""
+
+    UP = ROUND_CEILING
+    DOWN = ROUND_FLOOR
+    NEAREST = ROUND_HALF_EVEN
+
+
 def number_text(number: int | Fraction) -> str:
     """A number with at most twelve significant digits, also beyond the range of `float`: "2.5", "1e+20"."""
     quotient = _TWELVE_DIGITS.divide(Decimal(number.numerator), Decimal(number.denominator))
@@ -169,6 +178,28 @@ def _steps_text(value: int | Fraction, steps: tuple[tuple[str, int], ...]) -> st
 def time_text(value: Time | Fraction) -> str:
     """A time for people: "12 us", "16.65 us", "0 s"."""
     return _steps_text(value, _TIME_STEPS) if value else "0 s"
+
+
+#: Significant digits of times in tables.
+_DIGITS = 4
+
+
+def rounded_time_text(value: Time | Fraction, rounding: Rounding) -> str:
+    """A time for tables: whole numbers of its unit as they are, others with four significant digits, or without decimals.
+
+    >>> rounded_time_text(20_029 * MICROSECOND, Rounding.UP), rounded_time_text(20_029 * MICROSECOND, Rounding.DOWN)
+    ('20.03 ms', '20.02 ms')
+    >>> rounded_time_text(12_345 * SECOND, Rounding.UP)
+    '12345 s'
+    """
+    exact = Fraction(value)
+    size = next((size for _, size in _TIME_STEPS if abs(exact) >= size), PICOSECOND)
+    if exact % size == 0:
+        return time_text(value)
+    whole = len(str(abs(exact) // size))
+    digits = Context(prec=max(_DIGITS, whole), rounding=rounding, Emax=MAX_EMAX)
+    number = digits.divide(Decimal((exact / size).numerator), Decimal((exact / size).denominator))
+    return time_text(Fraction(number) * size)
 
 
 def frequency_text(value: Frequency) -> str:

@@ -124,8 +124,8 @@ def test_the_picture_shows_the_imports(tmp_path):
 @pytest.mark.parametrize(
     ("file", "rooms"),
     [
-        ("executor.amxmi", ["xmi", "bridge", "analyze"]),
-        ("bodas-test-advanced.yaml", ["spec", "uros", "analyze"]),
+        ("executor.amxmi", ["xmi", "bridge", "analyze", "findings"]),
+        ("bodas-test-advanced.yaml", ["spec", "uros", "analyze", "findings"]),
     ],
 )
 def test_from_a_file_to_a_response_time_each_room_is_entered_once(file, rooms):

@@ -120,3 +120,33 @@ def test_ticks_and_times_are_exact(ticks, megahertz):
     exact = units.time_of_ticks(ticks, frequency)
     assert exact * frequency == ticks * units.SECOND
     assert units.ticks_of_time(units.up(exact), frequency) >= ticks >= units.ticks_of_time(units.down(exact), frequency)
+
+
+UP, DOWN, NEAREST = units.Rounding.UP, units.Rounding.DOWN, units.Rounding.NEAREST
+
+
+@pytest.mark.parametrize(
+    ("time", "rounding", "text"),
+    [
+        ("50.2821 ms", UP, "50.29 ms"),
+        ("50.2821 ms", DOWN, "50.28 ms"),
+        ("50.2821 ms", NEAREST, "50.28 ms"),
+        ("-50.2821 ms", DOWN, "-50.29 ms"),
+        ("999.999 us", UP, "1 ms"),
+        ("1.016 ms", UP, "1.016 ms"),
+        # Whole numbers of the unit are exact, however many digits they have.
+        ("12345 s", DOWN, "12345 s"),
+        ("12345.5 s", DOWN, "12345 s"),
+        ("0 s", UP, "0 s"),
+    ],
+)
+def test_times_in_tables_have_four_digits(time, rounding, text):
+    assert units.rounded_time_text(units.parse_time(time), rounding) == text
+
+
+@given(st.integers(-(10**18), 10**18))
+def test_bounds_in_tables_remain_bounds(time):
+    down, up = (units.parse_time(units.rounded_time_text(time, rounding)) for rounding in (DOWN, UP))
+    assert down <= time <= up
+    # The last of four digits is at most a thousandth.
+    assert up - down <= abs(time) / 1000

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.cli.output import show_text
+from amalthea_uros.cli.output import show_findings, show_text
 from amalthea_uros.services.chains import add_path, chosen_path, find_paths
 
 
@@ -33,6 +33,7 @@ def command(model: Path, start: str, end: str, name: str | None, number: int, ou
     if (name is None) != (output is None):
         raise click.UsageError("--add CHAIN and -o FILE must be given together")
     result = find_paths(model, start, end)
+    show_findings(result.findings)
     if not result.paths:
         show_text(result)
         sys.exit(1)

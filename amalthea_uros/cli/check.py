@@ -3,39 +3,19 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
 import click
 
 from amalthea_uros.cli.output import Output, output_option, show_text, write_outputs
+from amalthea_uros.cli.several import Several, several
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.check import CheckResult, CheckStatistics, add_rules, check_files, write_baseline
 from amalthea_uros.services.settings import CheckSettings
 from amalthea_uros.validate.rule import Profile
 
-
-class _Several(click.ParamType[str]):
-    """One word, or several with commas between them."""
-
-    def __init__(self, name: str, allowed: Sequence[str] = ()) -> None:
-        self.name = name
-        self.allowed = allowed
-
-    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """Check the words."""
-        for word in value.split(","):
-            if self.allowed and word not in self.allowed:
-                self.fail(f"{word!r} is not one of {', '.join(self.allowed)}", param, ctx)
-        return value
-
-
-def _several(_context: click.Context, _parameter: click.Parameter, values: tuple[str, ...]) -> tuple[str, ...]:
-    return tuple(word for value in values for word in value.split(","))
-
-
-_PROFILES = _Several("PROFILE", tuple(map(str, Profile)))
-_RULES = _Several("RULE")
+_PROFILES = Several("PROFILE", tuple(map(str, Profile)))
+_RULES = Several("RULE")
 
 
 @click.command("check")
@@ -45,11 +25,23 @@ _RULES = _Several("RULE")
     "profiles",
     type=_PROFILES,
     multiple=True,
-    callback=_several,
+    callback=several,
     help=f"Only rules for a purpose: {', '.join(Profile)}. May be repeated, or given with commas.",
 )
-@click.option("--select", type=_RULES, multiple=True, callback=_several, help="Only these rules, e.g. 'TIM-*,INC-EC-CYCLE'.")
-@click.option("--ignore", type=_RULES, multiple=True, callback=_several, help="Not these rules.")
+@click.option(
+    "--select",
+    type=_RULES,
+    multiple=True,
+    callback=several,
+    help="Only these rules, by their ids or the first letters of these, e.g. TIM,INC-EC-CYCLE.",
+)
+@click.option(
+    "--ignore",
+    type=_RULES,
+    multiple=True,
+    callback=several,
+    help="Not these rules, nor other findings with these ids; e.g. INC-HW,XMI008.",
+)
 @click.option(
     "--rules",
     "rule_files",
@@ -66,6 +58,7 @@ _RULES = _Several("RULE")
 @click.option(
     "--each", is_flag=True, help="Check every .amxmi file as a model of its own; otherwise they are one model together."
 )
+@click.option("--only-amuros", is_flag=True, help="Skip YAML files without the key 'amuros', which are of other programs.")
 @click.option("--fix", is_flag=True, help="First repair what can be repaired in only one way.")
 @click.option("--statistics", is_flag=True, help="Show how often each rule fires instead of each finding.")
 @click.option("--baseline", type=click.Path(path_type=Path), metavar="FILE", help="Hide the findings that a baseline accepts.")
@@ -81,6 +74,7 @@ def command(
     rule_files: tuple[Path, ...],
     fail_on: str | None,
     each: bool,
+    only_amuros: bool,
     fix: bool,
     statistics: bool,
     baseline: Path | None,
@@ -105,7 +99,7 @@ def command(
         from amalthea_uros.services.fix import fix_files
 
         show_text(fix_files(paths, settings, each=each), on_error_stream=True)
-    result = check_files(paths, settings, each=each)
+    result = check_files(paths, settings, each=each, only_amuros=only_amuros)
     if new_baseline is not None:
         write_baseline(result, new_baseline)
     write_outputs(outputs, result, CheckStatistics(result) if statistics else None)

@@ -18,9 +18,9 @@ from amalthea_uros.services.diff import DiffResult, diff
 def command(old: Path, new: Path, outputs: tuple[Output, ...]) -> None:
     """Compare two models by meaning: only what a review has to look at.
 
-    OLD and NEW are files or folders with .amxmi files. Objects are compared by their names, in whatever file they are; order without
-    meaning, layout, ids and explicit defaults make no difference. Models of different AMALTHEA versions are migrated to the newest one
-    in memory. Exit code 1 if there are differences.
+    OLD and NEW are files, folders with .amxmi files, or an app.yaml, whose model is built in memory. Objects are compared by their
+    names, in whatever file they are; order without meaning, layout, ids and explicit defaults make no difference. Models of different
+    AMALTHEA versions are migrated to the newest one in memory. Exit code 1 if there are differences.
     """
     result = diff(old, new)
     show_findings(result.findings)

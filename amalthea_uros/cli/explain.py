@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from amalthea_uros.services.rules import find_kind
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import ModelRule, Rule
 
@@ -12,9 +13,7 @@ from amalthea_uros.validate.rule import ModelRule, Rule
 @click.argument("identifier", metavar="RULE")
 def command(identifier: str) -> None:
     """Explain a rule or another kind of finding: what it reports, why that matters, what to do, and an example."""
-    kind = registry.kind(identifier) or registry.kind(identifier.upper())
-    if kind is None:
-        raise click.BadParameter(f"unknown rule or finding {identifier!r}; `amuros rules` lists the rules")
+    kind = find_kind(identifier)
     profile = registry.profile_of(kind.id) if isinstance(kind, Rule) else None
     click.echo(f"{kind.id}: {kind.title} ({kind.severity}{f', profile {profile}' if profile else ''})\n")
     click.echo(f"{kind.rationale}\n{kind.remedy}")

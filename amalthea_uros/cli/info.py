@@ -13,14 +13,15 @@ from amalthea_uros.services.info import InfoResult, info
 
 
 @click.command("info")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL...")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL_OR_YAML...")
 @click.option("--schema", is_flag=True, help="Also validate each file against the XML schema of its version.")
 @output_option(InfoResult)
 def command(paths: tuple[Path, ...], schema: bool, outputs: tuple[Output, ...]) -> None:
     """Show the content of a model.
 
     This includes the version, cores with their clocks and schedulers, tasks and ISRs with their activations, event chains, and the
-    number of objects by class. MODEL is a file or a folder with .amxmi files; several make one model.
+    number of objects by class. MODEL_OR_YAML is an app.yaml, whose model is built in memory, a file, or a folder with .amxmi files;
+    several files make one model.
 
     Problems found while reading the files are reported on standard error. Exit code 1 if one of them is an error.
     """

@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 
+from amalthea_uros._internal.suggestions import did_you_mean
 from amalthea_uros._version import __version__
 
 #: Command -> its line in `amuros --help`; the module with the same name has the rest.
@@ -52,6 +53,8 @@ class LazyGroup(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import a command."""
         if cmd_name not in COMMANDS:
+            if advice := did_you_mean(cmd_name, COMMANDS):
+                ctx.fail(f"No such command {cmd_name!r}; {advice}")
             return None
         command: click.Command = import_module(f"amalthea_uros.cli.{cmd_name}").command
         return command
@@ -67,7 +70,7 @@ class LazyGroup(click.Group):
 def cli() -> None:
     """Build, check and analyze AMALTHEA timing models (Eclipse APP4MC .amxmi).
 
-    Exit codes: 0 success, 1 findings, differences or missed requirements, 2 wrong use or unreadable input.
+    Exit codes: 0 success, 1 findings, errors in an app.yaml, differences or missed requirements, 2 wrong use or unreadable input.
     """
 
 
@@ -108,10 +111,11 @@ def main() -> None:
             raise OSError(errno.EBADF, "it is closed")
         cli()
     except AmurosError as error:
+        from amalthea_uros.findings.unreadable import is_unreadable
         from amalthea_uros.report.terminal import Terminal
 
         Terminal(sys.stderr).findings(error.findings)
-        sys.exit(2)
+        sys.exit(2 if is_unreadable(error.findings) else 1)
     except InvalidArgumentError as error:
         click.UsageError(str(error)).show()
         sys.exit(2)

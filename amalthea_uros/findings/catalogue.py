@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from importlib import import_module
 
 from amalthea_uros.findings.kind import FindingKind
@@ -30,6 +31,11 @@ def kinds(family: str) -> tuple[FindingKind, ...]:
     """The kinds of findings of a family, by id."""
     found: tuple[FindingKind, ...] = import_module(f"amalthea_uros.findings.families.{family.lower()}").KINDS
     return found
+
+
+def ids() -> Iterator[str]:
+    """The ids of all kinds of findings that no rule reports."""
+    return (kind.id for family in FAMILIES for kind in kinds(family))
 
 
 def find(identifier: str) -> FindingKind | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from functools import lru_cache
 
 from amalthea_uros.diagnostics import Finding
@@ -14,6 +15,11 @@ def is_suppressed(finding: Finding) -> bool:
     """Whether the line of a finding has a comment such as `# amuros: ignore[INC-CO-KIND]`."""
     text = finding.location.text if finding.location is not None else None
     return text is not None and finding.rule in _ignored_in(text)
+
+
+def unsuppressed(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """The findings that no comment accepts."""
+    return tuple(finding for finding in findings if not is_suppressed(finding))
 
 
 @lru_cache

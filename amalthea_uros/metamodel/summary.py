@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 from amalthea_uros.metamodel.classes import (
     ISR,
     EventChain,
     EventChainItem,
+    Frequency,
     IntegerObject,
     InterProcessStimulus,
     ISRAllocation,
@@ -34,6 +36,7 @@ from amalthea_uros.metamodel.classes import (
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.metamodel.naming import name_of
+from amalthea_uros.units import FREQUENCY, frequency_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,9 +168,17 @@ def _core(core: ProcessingUnit, schedulers: tuple[str, ...]) -> CoreSummary:
         name=name_of(core),
         structure=name_of(core.container),
         definition=name_of(core.definition),
-        frequency=quantity(domain.default_value) if domain else "",
+        frequency=_frequency(domain.default_value) if domain else "",
         schedulers=schedulers,
     )
+
+
+def _frequency(value: Frequency | None) -> str:
+    """A frequency in the unit that all results use for it; as it is in the model without a known unit."""
+    unit = FREQUENCY.units.get(value.unit.value) if value is not None and value.unit is not None else None
+    if value is None or unit is None:
+        return quantity(value)
+    return frequency_text(Fraction(str(value.value or 0)) * unit)
 
 
 def quantity(value: Quantity | None) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from amalthea_uros.analyze.results import ChainResult, Quantity, Value
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.units import time_text
+from amalthea_uros.units import Rounding, rounded_time_text
 
 #: The headline quantities: `reaction` and `data age` are what the limits of these names are compared with.
 _COLUMNS = {
@@ -38,8 +38,16 @@ def cells(chain: ChainResult, columns: Iterable[str]) -> tuple[str, ...]:
 
 
 def value_text(value: Value | None) -> str:
-    """A latency, or a dash."""
-    return "-" if value is None or value.value is None else time_text(value.value)
+    """A latency that is still a bound when it has lost digits, or a dash."""
+    if value is None or value.value is None:
+        return "-"
+    return rounded_time_text(value.value, _rounding(value.quantity))
+
+
+def _rounding(quantity: Quantity) -> Rounding:
+    if quantity.is_mean:
+        return Rounding.NEAREST
+    return Rounding.UP if quantity.is_upper else Rounding.DOWN
 
 
 def quantity_text(quantity: Quantity) -> str:

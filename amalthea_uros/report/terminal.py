@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
+from itertools import zip_longest
 from typing import IO
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.report.table_layout import GAP, column_widths, folded, table_width, with_footnotes
 
 #: Longer source lines are shown in part; scheduler descriptions have a thousand characters.
 SNIPPET_WIDTH = 100
+
+#: Wider tables have footnotes where the width of the page is not known.
+WIDTH_ELSEWHERE = 120
 
 _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
 
@@ -19,6 +24,7 @@ class Terminal:
 
     def __init__(self, stream: IO[str]) -> None:
         self.stream = stream
+        self.width = _width(stream)
         self.coloured = stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
     def line(self, text: str = "") -> None:
@@ -58,19 +64,46 @@ class Terminal:
     def table(self, headings: Sequence[str], rows: Iterable[Sequence[object]], right: Sequence[int] = ()) -> None:
         """Write rows in columns that are as wide as needed.
 
+        Where a table is wider than the terminal, or than 120 characters elsewhere, long remarks become footnotes. Columns of text
+        that are still too wide for a terminal are folded; elsewhere they are not, so that programs find names in one piece.
+
         Parameters
         ----------
         right : columns that are aligned to the right
         """
         cells = [[str(cell) for cell in row] for row in rows]
-        widths = [max(map(len, column)) for column in zip(headings, *cells, strict=True)]
+        notes: list[str] = []
+        if table_width(headings, cells) > (self.width or WIDTH_ELSEWHERE):
+            cells, notes = with_footnotes(headings, cells)
+        if self.width is not None:
+            cells = folded(headings, cells, right, self.width)
+        widths = column_widths(headings, cells)
         for is_heading, row in [(True, list(headings)), *((False, row) for row in cells)]:
-            padded = [
-                cell.rjust(width) if i in right else cell.ljust(width)
-                for i, (cell, width) in enumerate(zip(row, widths, strict=True))
-            ]
-            text = "  ".join(padded).rstrip()
-            self.line("  " + (self.style(text, "2") if is_heading else text))
+            for line in zip_longest(*(cell.split("\n") for cell in row), fillvalue=""):
+                padded = [
+                    cell.rjust(width) if i in right else cell.ljust(width)
+                    for i, (cell, width) in enumerate(zip(line, widths, strict=True))
+                ]
+                text = (" " * GAP).join(padded).rstrip()
+                self.line(" " * GAP + (self.style(text, "2") if is_heading else text))
+        for number, note in enumerate(notes, start=1):
+            self.line(f"{' ' * GAP}[{number}] {note}")
+
+
+def _width(stream: IO[str]) -> int | None:
+    """The columns of a terminal, which the user can state in `COLUMNS`; None elsewhere.
+
+    For pipes and files, `COLUMNS` says nothing: Python's `readline` states it for all processes that a program starts.
+    """
+    if not stream.isatty():
+        return None
+    stated = os.environ.get("COLUMNS", "")
+    if stated.isascii() and stated.isdecimal() and int(stated) > 0:
+        return int(stated)
+    try:
+        return os.get_terminal_size(stream.fileno()).columns or None
+    except (OSError, ValueError):  # a terminal that does not know its size
+        return None
 
 
 def _excerpt(text: str, column: int) -> tuple[str, int]:

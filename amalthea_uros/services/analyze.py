@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require, require_settings
@@ -100,7 +101,7 @@ def analyze_files(
         system=system,
         settings=settings,
         analysis=analysis,
-        findings=(*opened.findings, *analysis.findings),
+        findings=unsuppressed((*opened.findings, *analysis.findings)),
         sensitivity=_sensitivity(analysis) if with_sensitivity else None,
         proposals=_proposals(analysis) if with_priorities else None,
         all_methods=all_methods,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
+from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.services.paths import StrPath
 from amalthea_uros.uros.assemble import Assembly, assemble
@@ -38,8 +39,8 @@ class BuildResult:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """Warnings and notes about the description."""
-        return self.assembly.findings
+        """Warnings and notes about the description, except those that comments in it accept."""
+        return unsuppressed(self.assembly.findings)
 
 
 def describe(path: StrPath, platform: str | None = None) -> Assembly:

@@ -7,12 +7,15 @@ from pathlib import Path
 
 from amalthea_uros.analyze.results import ChainResult
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.names import require
 from amalthea_uros.services.paths import StrPath, is_description
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.paths import Path as ProcessPath
-from amalthea_uros.timing.dataflow.paths import UnknownEndError, paths, with_chains
+from amalthea_uros.timing.dataflow.paths import paths, with_chains
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,6 +27,7 @@ class PathsResult:
     model : the file or folder that was read
     paths : the shortest first
     chains : the analysis of each path as a chain
+    findings : problems found while reading the file
     """
 
     model: Path
@@ -31,6 +35,7 @@ class PathsResult:
     end: str
     paths: tuple[ProcessPath, ...]
     chains: tuple[ChainResult, ...]
+    findings: tuple[Finding, ...]
 
 
 def find_paths(model: StrPath, start: str, end: str) -> PathsResult:
@@ -41,13 +46,22 @@ def find_paths(model: StrPath, start: str, end: str) -> PathsResult:
     ReadError : a file cannot be read, or something in a description is wrong.
     InvalidArgumentError : there is no process, runnable or label of a name.
     """
-    system = open_system([model]).system
+    opened = open_system([model])
+    system = opened.system
+    require("process, runnable or label", [start, end], {**system.processes, **system.runnables, **system.labels})
     try:
         found = paths(system, start, end)
-    except (UnknownEndError, UnresolvedError) as error:
+    except UnresolvedError as error:
         raise InvalidArgumentError(str(error)) from None
     chains = analyze_system(with_chains(system, found)).chains if found else ()
-    return PathsResult(model=Path(model), start=start, end=end, paths=tuple(found), chains=tuple(chains))
+    return PathsResult(
+        model=Path(model),
+        start=start,
+        end=end,
+        paths=tuple(found),
+        chains=tuple(chains),
+        findings=unsuppressed(opened.findings),
+    )
 
 
 def add_path(found: PathsResult, number: int, name: str, target: StrPath) -> None:

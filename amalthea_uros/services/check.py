@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
+from amalthea_uros._internal.suggestions import did_you_mean
 from amalthea_uros.diagnostics import Finding, Severity, by_place
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.findings.baseline import baseline_text, read_baseline
@@ -15,19 +16,17 @@ from amalthea_uros.findings.grouping import Group, group
 from amalthea_uros.findings.presentation import Presentation, present
 from amalthea_uros.findings.suppression import is_suppressed
 from amalthea_uros.findings.targets import TARGETS, Target
+from amalthea_uros.findings.unreadable import is_unreadable
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import open_model
-from amalthea_uros.services.paths import StrPath, as_paths, by_model
+from amalthea_uros.services.paths import StrPath, as_paths, by_model, is_other_yaml
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run, run_system
 from amalthea_uros.validate.rule import ModelRule, Profile, SystemRule
-from amalthea_uros.validate.selection import Selection
+from amalthea_uros.validate.selection import Selection, UnknownPatternError, select
 from amalthea_uros.validate.user_rules import rules_of_file
-
-#: Findings about a file that could not be checked at all.
-_UNREADABLE = ("XMI", "YML00")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,6 +39,7 @@ class CheckResult:
     presentation : the same as they are shown: one for each flaw, and one line about each of these tools
     fail_on : minimum severity at which the check fails
     is_readable : whether every file could be checked
+    rules : ids of the rules that were checked, none if no file could be
     """
 
     paths: tuple[Path, ...]
@@ -47,6 +47,7 @@ class CheckResult:
     presentation: Presentation
     fail_on: Severity
     is_readable: bool
+    rules: tuple[str, ...]
 
     @property
     def fails(self) -> bool:
@@ -84,12 +85,16 @@ def check(model: Model, rules: Iterable[str] | None = None) -> list[Finding]:
     chosen = list(registry.ids() if rules is None else rules)
     for identifier in chosen:
         if registry.profile_of(identifier) is None:
-            raise InvalidArgumentError(f"unknown rule {identifier!r}; `amuros rules` lists all rules")
+            raise unknown_rule(identifier, registry.ids())
     return sorted((finding for finding in _run(model, chosen) if not is_suppressed(finding)), key=by_place)
 
 
 def check_files(
-    paths: StrPath | Iterable[StrPath], settings: CheckSettings | None = None, *, each: bool = False
+    paths: StrPath | Iterable[StrPath],
+    settings: CheckSettings | None = None,
+    *,
+    each: bool = False,
+    only_amuros: bool = False,
 ) -> CheckResult:
     """Check an `app.yaml`, or AMALTHEA models; problems found while reading the files are also reported.
 
@@ -97,6 +102,7 @@ def check_files(
     ----------
     settings : what is not given is taken from the project of the first file
     each : every file is a model of its own; otherwise the AMALTHEA files are one model together
+    only_amuros : skip YAML files that do not describe an application, i.e. that have no key `amuros` at their top level
 
     Raises
     ------
@@ -110,12 +116,14 @@ def check_files(
     rules = selection.rules()
     found: list[Finding] = []
     is_readable = True
-    for paths_of_model in by_model(files, each):
+    is_checked = False
+    for paths_of_model in by_model((path for path in files if not (only_amuros and is_other_yaml(path))), each):
         try:
             found += _check_group(paths_of_model, rules)
+            is_checked = True
         except ReadError as error:
             found += error.findings
-            is_readable &= not any(finding.rule.startswith(_UNREADABLE) for finding in error.findings)
+            is_readable &= not is_unreadable(error.findings)
     findings = tuple(finding for finding in found if _is_shown(finding, selection, accepted))
     if len(findings) < len(found):
         findings = _without_repeated(findings, found)
@@ -125,6 +133,7 @@ def check_files(
         presentation=present(findings, _asked(selection, settings.targets)),
         fail_on=settings.fail_on or Severity.ERROR,
         is_readable=is_readable,
+        rules=tuple(rules) if is_checked else (),
     )
 
 
@@ -168,12 +177,16 @@ def selection_of(settings: CheckSettings) -> Selection:
     ------
     InvalidArgumentError : a pattern matches no rule.
     """
-    selection = Selection(
-        profiles=tuple(map(Profile, settings.profiles)), selected=tuple(settings.select), ignored=tuple(settings.ignore)
-    )
-    for pattern in selection.unknown():
-        raise InvalidArgumentError(f"unknown rule {pattern!r}; `amuros rules` lists all rules")
-    return selection
+    try:
+        return select(map(Profile, settings.profiles), settings.select, settings.ignore)
+    except UnknownPatternError as error:
+        raise unknown_rule(error.pattern, error.known) from None
+
+
+def unknown_rule(name: str, known: Iterable[str]) -> InvalidArgumentError:
+    """The error for the name of a rule, or the beginning of such names, that does not exist."""
+    advice = did_you_mean(name, known) or "`amuros rules` lists all rules"
+    return InvalidArgumentError(f"unknown rule {name!r}; {advice}")
 
 
 def _accepted(baseline: Path | None) -> Collection[str]:
@@ -185,7 +198,7 @@ def _accepted(baseline: Path | None) -> Collection[str]:
 
 def _is_shown(finding: Finding, selection: Selection, accepted: Collection[str]) -> bool:
     """Whether a finding is not suppressed in any way."""
-    return not (selection.is_ignored(finding.rule) or is_suppressed(finding) or fingerprint(finding) in accepted)
+    return not (finding.rule in selection.ignored or is_suppressed(finding) or fingerprint(finding) in accepted)
 
 
 def _without_repeated(findings: Sequence[Finding], found: Sequence[Finding]) -> tuple[Finding, ...]:

@@ -9,9 +9,9 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.difference.comparison import Change, difference
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import known_versions, newest_version
+from amalthea_uros.services.inputs import open_model
 from amalthea_uros.services.migrate import migrate
 from amalthea_uros.services.paths import StrPath
-from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.migrate.load import announcements
 
 #: What is said about a model that was migrated.
@@ -35,13 +35,15 @@ class DiffResult:
 
 
 def diff(old: Model | StrPath, new: Model | StrPath) -> DiffResult:
-    """Compare two models, or the files or folders that hold them; if their versions differ, both as models of the newest one.
+    """Compare two models, or the files, folders or descriptions that hold them.
+
+    If their versions differ, both are compared as models of the newest one.
 
     Raises
     ------
-    ReadError : a file cannot be read.
+    ReadError : a file cannot be read, or something in a description is wrong.
     """
-    models = [one if isinstance(one, Model) else load(one) for one in (old, new)]
+    models = [one if isinstance(one, Model) else open_model([one]).model for one in (old, new)]
     findings = [finding for model in models for finding in model.findings if finding.rule in _MIGRATION]
     if len({document.facts_version for model in models for document in model.documents}) > 1:
         for place, model in enumerate(models):

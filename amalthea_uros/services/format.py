@@ -9,6 +9,7 @@ from pathlib import Path
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.metamodel.versions import spelled
+from amalthea_uros.services.inputs import refuse_descriptions
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.xmi.load import load, model_files
 from amalthea_uros.xmi.save import save
@@ -56,10 +57,13 @@ def format_files(paths: StrPath | Iterable[StrPath], write: bool = True) -> Form
     Raises
     ------
     ReadError : a folder has no models.
+    InvalidArgumentError : a file is a description.
     """
+    files = as_paths(paths)
+    refuse_descriptions(files)
     changed: list[FormattedFile] = []
     findings: list[Finding] = []
-    for path in model_files(as_paths(paths)):
+    for path in model_files(files):
         try:
             changed += _format(path, write)
         except (ReadError, WriteError) as error:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.metamodel.summary import ModelSummary, summarise
+from amalthea_uros.services.inputs import open_model
 from amalthea_uros.services.paths import StrPath, as_paths
-from amalthea_uros.xmi.load import load
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,7 +26,7 @@ class InfoResult:
 
 
 def info(paths: StrPath | Iterable[StrPath], schema: bool = False) -> InfoResult:
-    """Summarise the model of some files.
+    """Summarise the model of some files, or of an `app.yaml`.
 
     Parameters
     ----------
@@ -33,12 +34,17 @@ def info(paths: StrPath | Iterable[StrPath], schema: bool = False) -> InfoResult
 
     Raises
     ------
-    ReadError : a file cannot be read.
+    ReadError : a file cannot be read, or something in a description is wrong.
     """
-    model = load(*as_paths(paths))
-    findings = list(model.findings)
+    files = as_paths(paths)
+    opened = open_model(files)
+    model, findings = opened.model, list(opened.findings)
     if schema:
         from amalthea_uros.xmi.schema_findings import schema_findings
 
         findings += (finding for document in model.documents for finding in schema_findings(document))
-    return InfoResult(summary=summarise(model), findings=tuple(findings))
+    summary = summarise(model)
+    if opened.system is not None:
+        built = tuple(replace(document, path=str(files[0])) for document in summary.documents)
+        summary = replace(summary, documents=built)
+    return InfoResult(summary=summary, findings=unsuppressed(findings))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding
@@ -22,7 +23,7 @@ class ModelInput:
     Attributes
     ----------
     model : the one that was read, or the one that was built from a description, whose objects know its lines
-    findings : problems found while reading or building
+    findings : problems found while reading or building, also those that comments accept
     system : the one that a description describes, None for AMALTHEA models
     """
 
@@ -38,7 +39,7 @@ class SystemInput:
     Attributes
     ----------
     model : the AMALTHEA model that it was extracted from, None for a description
-    findings : problems found while reading, and what could not be extracted
+    findings : problems found while reading, and what could not be extracted, also those that comments accept
     """
 
     system: System
@@ -57,7 +58,7 @@ def open_model(paths: Sequence[StrPath]) -> ModelInput:
         from amalthea_uros.services.build import build
 
         built = build(paths[0])
-        return ModelInput(model=built.model, findings=built.findings, system=built.assembly.system)
+        return ModelInput(model=built.model, findings=built.assembly.findings, system=built.assembly.system)
     from amalthea_uros.xmi.load import load
 
     model = load(*paths)
@@ -94,5 +95,22 @@ def open_system(paths: Sequence[StrPath], *, with_bus: bool = False) -> SystemIn
     return SystemInput(system=extraction.system, model=model, findings=(*model.findings, *extraction.findings))
 
 
+def refuse_descriptions(paths: Iterable[StrPath]) -> None:
+    """Refuse descriptions where only AMALTHEA models can be used.
+
+    Raises
+    ------
+    InvalidArgumentError : says how to build the model of a description.
+    """
+    for path in map(Path, paths):
+        if is_description(path):
+            command = f"amuros build {path} -o {path.with_suffix('.amxmi')}"
+            raise InvalidArgumentError(f"{path} is a description, not an AMALTHEA model; build it first: {command}")
+
+
 def _is_one_description(paths: Sequence[StrPath]) -> bool:
-    return len(paths) == 1 and is_description(paths[0])
+    """Whether the only path is a description; several paths are files of one AMALTHEA model."""
+    if len(paths) == 1 and is_description(paths[0]):
+        return True
+    refuse_descriptions(paths)
+    return False

@@ -12,6 +12,7 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import AmurosError, ReadError, WriteError
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import newest_version
+from amalthea_uros.services.inputs import refuse_descriptions
 from amalthea_uros.services.migrated_paths import Destination, given_files
 from amalthea_uros.services.migration import FileState, Kind, MigratedFile, MigrationChange
 from amalthea_uros.services.migration_writer import Writer
@@ -167,6 +168,7 @@ def migrate_files(
     """
     version = _required(to)
     given = as_paths(paths)
+    refuse_descriptions(given)
     goal = Destination.of(given, version, Path(target) if target is not None else None, in_place=in_place)
     with paused_garbage_collection():
         sets = _sets(given, version, goal.folders())

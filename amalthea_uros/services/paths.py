@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from os import PathLike
 from pathlib import Path
@@ -10,10 +11,21 @@ StrPath = str | PathLike[str]
 
 _DESCRIPTION_SUFFIXES = (".yaml", ".yml")
 
+#: The key of a description that says what the file is.
+_KEY = re.compile(rb"""^(?:\xef\xbb\xbf)?["']?amuros["']?[ \t]*:""", re.MULTILINE)
+
 
 def is_description(path: StrPath) -> bool:
     """Whether a file is an `app.yaml`, by its name."""
     return Path(path).suffix in _DESCRIPTION_SUFFIXES
+
+
+def is_other_yaml(path: Path) -> bool:
+    """Whether a YAML file can be read, but has no key `amuros` at its top level, so that it is of some other program."""
+    try:
+        return is_description(path) and _KEY.search(path.read_bytes()) is None
+    except OSError:
+        return False
 
 
 def as_paths(paths: StrPath | Iterable[StrPath]) -> tuple[Path, ...]:

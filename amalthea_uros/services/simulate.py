@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.campaign.run import Outcome, Record, Run, plan_runs
 from amalthea_uros.services.campaign.sending import system_bytes, system_from
@@ -201,7 +202,7 @@ def simulate_plan(plan: SimulationPlan, trace_paths: Iterable[StrPath] = (), *, 
         system=plan.system,
         options=plan.options,
         simulation=simulation,
-        findings=(*plan.findings, *simulation.findings),
+        findings=unsuppressed((*plan.findings, *simulation.findings)),
         differences=plan.differences,
         with_metrics=with_metrics,
     )
@@ -331,7 +332,7 @@ def simulate_campaign(
         options=options,
         outcomes=tuple(outcomes),
         planned=len(runs),
-        findings=opened.findings,
+        findings=unsuppressed(opened.findings),
         differences=differences,
     )
 

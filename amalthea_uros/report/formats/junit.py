@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import IO, TYPE_CHECKING
 
-from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.diagnostics import Finding, Severity, worst
 from amalthea_uros.report.findings import joined, profile_name
+from amalthea_uros.report.wording import counted
 
 if TYPE_CHECKING:
     from amalthea_uros.services.check import CheckResult
@@ -14,21 +15,20 @@ RENDERS = ("CheckResult",)
 
 
 def write(result: CheckResult, stream: IO[str]) -> None:
-    """Write a test case for each rule that fired; it fails if a finding is more than information."""
+    """Write a test case for each rule that was checked or has findings; it fails if one of them is more than information."""
     from xml.etree import ElementTree
 
-    by_rule: dict[str, list[Finding]] = {}
+    by_rule: dict[str, list[Finding]] = {rule: [] for rule in result.rules}
     for finding in (entry.finding for entry in result.presentation.entries() if entry.counts):
         by_rule.setdefault(finding.rule, []).append(finding)
     failing = {rule for rule, found in by_rule.items() if any(f.severity is not Severity.INFO for f in found)}
     suites = ElementTree.Element("testsuites")
     suite = ElementTree.SubElement(suites, "testsuite", name=f"amuros check {joined(result.paths)}")
-    suite.attrib |= {"tests": str(max(1, len(by_rule))), "failures": str(len(failing)), "errors": "0"}
-    for rule, found in by_rule.items() or {"no findings": []}.items():
+    suite.attrib |= {"tests": str(len(by_rule)), "failures": str(len(failing)), "errors": "0"}
+    for rule, found in by_rule.items():
         case = ElementTree.SubElement(suite, "testcase", classname=f"amuros.{profile_name(rule)}", name=rule)
         if rule in failing:
-            message = f"{len(found)} finding{'s' if len(found) > 1 else ''}"
-            text = ElementTree.SubElement(case, "failure", message=message, type=str(found[0].severity))
+            text = ElementTree.SubElement(case, "failure", message=counted(len(found), "finding"), type=str(worst(found)))
         elif found:
             text = ElementTree.SubElement(case, "system-out")
         else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -28,8 +29,10 @@ def write(result: CheckResult, stream: IO[str]) -> None:
     """Write one run, with the rules that fired and where."""
     entries = result.presentation.entries()
     used = sorted({entry.finding.rule for entry in entries})
+    base = documentation()
+    driver = {"name": "amuros", "version": __version__, **({"informationUri": base} if base else {})}
     run = {
-        "tool": {"driver": {"name": "amuros", "version": __version__, "rules": [_rule(rule) for rule in used]}},
+        "tool": {"driver": {**driver, "rules": [_rule(rule, base) for rule in used]}},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {_ROOT: {"uri": Path.cwd().as_uri() + "/"}},
         "results": [_result(entry, used.index(entry.finding.rule)) for entry in entries],
@@ -39,17 +42,33 @@ def write(result: CheckResult, stream: IO[str]) -> None:
     stream.write("\n")
 
 
-def _rule(identifier: str) -> dict[str, Any]:
+def documentation() -> str | None:
+    """The address of the pages in `docs/` that the metadata of the package states as its documentation; None if there is none.
+
+    The addresses of rules must be absolute (SARIF 2.1.0, 3.49.12), so that paths in the repository are of no use.
+    """
+    try:
+        stated = metadata("amuros").get_all("Project-URL") or []
+    except PackageNotFoundError:
+        return None
+    addresses = dict(url.split(", ", 1) for url in stated)
+    return f"{addresses['Documentation'].rstrip('/')}/" if "Documentation" in addresses else None
+
+
+def _rule(identifier: str, base: str | None) -> dict[str, Any]:
     from amalthea_uros.validate import registry
+    from amalthea_uros.validate.rule import Rule
 
     kind = registry.kind(identifier)
     if kind is None:
         return {"id": identifier}
+    page = "check.md" if isinstance(kind, Rule) else "findings.md"
     return {
         "id": kind.id,
         "shortDescription": {"text": kind.title},
         "fullDescription": {"text": kind.rationale},
-        "help": {"text": kind.remedy},
+        "help": {"text": f"{kind.remedy} `amuros explain {identifier}` shows more."},
+        **({"helpUri": f"{base}{page}#{quote(identifier)}"} if base else {}),
         "defaultConfiguration": {"level": _LEVELS[kind.severity]},
         "properties": {"tags": [profile_name(identifier)]},
     }

@@ -39,5 +39,5 @@ def content(result: BuildResult) -> dict[str, Any]:
         "pools": [
             {"option": p.option, "needed": p.needed, "available": p.available, "stated": p.configured} for p in assembly.pools
         ],
-        "findings": [finding_json(finding) for finding in assembly.findings],
+        "findings": [finding_json(finding) for finding in result.findings],
     }

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
-from math import ceil
+from math import ceil, floor, inf
 
 from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.verdicts import Verdict
@@ -12,14 +13,14 @@ from amalthea_uros.report.latencies import write_chains
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text.metrics import write_callbacks, write_metrics
 from amalthea_uros.services.analyze import AnalysisResult
-from amalthea_uros.units import Time, frequency_text, time_text
+from amalthea_uros.units import Rounding, Time, frequency_text, rounded_time_text, time_text
 
 BAR = 20
 _BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET, None)
 
 
 def write(result: AnalysisResult, terminal: Terminal) -> None:
-    """Write tables of loads, response times, chains and requirements, worst first, with methods, assumptions and the verdict."""
+    """Write tables of loads, response times, chains and requirements, with methods, assumptions and the verdict."""
     analysis = result.analysis
     _processors(terminal, analysis)
     _processes(terminal, analysis)
@@ -49,24 +50,30 @@ def _processors(terminal: Terminal, analysis: Analysis) -> None:
     if not used:
         return
     terminal.line(terminal.style("Load", "1"))
-    rows = []
-    for processor in used:
-        clock = frequency_text(processor.frequency) if processor.frequency else "?"
-        rows.append(
-            (processor.name, clock, _percent(processor.best), _percent(processor.mean), _worst(processor), _bar(processor))
+    rows = [
+        (
+            processor.name,
+            frequency_text(processor.frequency) if processor.frequency else "?",
+            _percent(processor.best, floor),
+            _percent(processor.mean, round),
+            _worst(processor),
+            _bar(processor),
         )
+        for processor in used
+    ]
     terminal.table(("core", "clock", "best", "mean", "worst", ""), rows, right=(1, 2, 3, 4))
 
 
-def _percent(load: Fraction | None) -> str:
-    return "?" if load is None else f"{float(load):.3%}"
+def _percent(load: Fraction | None, rounding: Callable[[Fraction], int]) -> str:
+    """A load in percent with three decimals; bounds are rounded so that they remain bounds."""
+    return "?" if load is None else f"{rounding(load * 100_000) / 1000:.3f}%"
 
 
 def _worst(processor: ProcessorResult) -> str:
     """The worst load, or the part of it that is known."""
     if processor.worst is not None or not processor.at_least:
-        return _percent(processor.worst)
-    return f"at least {_percent(processor.at_least)}"
+        return _percent(processor.worst, ceil)
+    return f"at least {_percent(processor.at_least, floor)}"
 
 
 def _bar(processor: ProcessorResult) -> str:
@@ -78,7 +85,7 @@ def _bar(processor: ProcessorResult) -> str:
 
 def _processes(terminal: Terminal, analysis: Analysis) -> None:
     terminal.heading("Response times")
-    ordered = sorted(analysis.processes, key=_urgency)
+    ordered = sorted(analysis.processes, key=_rank)
     rows = []
     for process in ordered:
         response = process.response
@@ -87,10 +94,10 @@ def _processes(terminal: Terminal, analysis: Analysis) -> None:
                 process.name,
                 process.processor or "?",
                 "?" if process.priority is None else f"{'ISR ' if process.is_isr else ''}{process.priority}",
-                _time(process.wcet),
-                _time(response.best if response else None),
-                _time(response.worst if response else None),
-                f"{'period ' if process.is_implicit else ''}{_time(process.deadline, '-')}",
+                _time(process.wcet, Rounding.UP),
+                _time(response.best if response else None, Rounding.DOWN),
+                _time(response.worst if response else None, Rounding.UP),
+                _deadline(process),
                 process.failure or process.verdict or "-",
                 process.reason or (str(response.claim) if response else ""),
             )
@@ -99,17 +106,20 @@ def _processes(terminal: Terminal, analysis: Analysis) -> None:
     terminal.table(headings, rows, right=(2, 3, 4, 5, 6))
 
 
-def _urgency(process: ProcessResult) -> tuple[int, float]:
-    """Bad verdicts first, then those that use up most of their deadline."""
-    response = process.response
-    use = 0.0
-    if response is not None and response.worst is not None and process.deadline:
-        use = response.worst / process.deadline
-    return (_BADNESS.index(process.verdict), -use)
+def _rank(process: ProcessResult) -> tuple[bool, str, bool, float]:
+    """Sorts by core, and there by priority: what preempts others comes before them; unknown cores and priorities come last."""
+    priority = -inf if process.priority is None else process.priority
+    return (process.processor is None, process.processor or "", not process.is_isr, -priority)
 
 
-def _time(value: Time | None, missing: str = "?") -> str:
-    return missing if value is None else time_text(value)
+def _time(value: Time | None, rounding: Rounding) -> str:
+    return "?" if value is None else rounded_time_text(value, rounding)
+
+
+def _deadline(process: ProcessResult) -> str:
+    if process.deadline is None:
+        return "-"
+    return f"{'period ' if process.is_implicit else ''}{time_text(process.deadline)}"
 
 
 def _requirements(terminal: Terminal, analysis: Analysis) -> None:
@@ -142,12 +152,14 @@ def _value(requirement: RequirementResult) -> str:
     """The maximum or minimum that is limited: its safe end, or both ends if it lies between them and the verdict is not met."""
     lower, upper = requirement.lower, requirement.upper
     if lower == upper or requirement.verdict is Verdict.MET or lower is None or upper is None:
-        return _time(requirement.value)
-    return f"{time_text(lower)} to {time_text(upper)}"
+        return _time(requirement.value, Rounding.UP if requirement.is_upper else Rounding.DOWN)
+    return f"{rounded_time_text(lower, Rounding.DOWN)} to {rounded_time_text(upper, Rounding.UP)}"
 
 
 def _margin(requirement: RequirementResult) -> str:
-    return "" if requirement.margin is None or requirement.verdict is Verdict.UNKNOWN else time_text(requirement.margin)
+    if requirement.margin is None or requirement.verdict is Verdict.UNKNOWN:
+        return ""
+    return rounded_time_text(requirement.margin, Rounding.DOWN)
 
 
 def _methods(terminal: Terminal, analysis: Analysis) -> None:

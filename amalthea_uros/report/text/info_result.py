@@ -17,12 +17,13 @@ def write(result: InfoResult, terminal: Terminal) -> None:
     """Write tables of documents, cores, processes, chains and classes."""
     summary = result.summary
     for document in summary.documents:
-        size = f"{document.characters / 1000:,.1f} kB" + (", zipped" if document.compressed else "")
+        size = f", {document.characters / 1000:,.1f} kB" if document.characters else ", built in memory"
+        size += ", zipped" if document.compressed else ""
         path = terminal.style(document.path, "1")
         version = spelled(document.version)
         if document.migrated_from is not None:
             version = f"{spelled(document.migrated_from)}, migrated to {document.version} in memory"
-        terminal.line(f"{path}: {version}, {document.objects:,} objects, {size}")
+        terminal.line(f"{path}: {version}, {counted(document.objects, 'object')}{size}")
     if summary.unresolved:
         terminal.line(f"  {counted(summary.unresolved, 'unresolved reference')}")
     _cores(terminal, summary)
@@ -72,7 +73,8 @@ def _chains(terminal: Terminal, summary: ModelSummary) -> None:
 
 
 def _counts(terminal: Terminal, summary: ModelSummary) -> None:
-    terminal.heading(f"Objects ({sum(summary.counts.values()):,} of {len(summary.counts)} classes)")
+    classes = f"{len(summary.counts)} {'class' if len(summary.counts) == 1 else 'classes'}"
+    terminal.heading(f"Objects ({sum(summary.counts.values()):,} of {classes})")
     shown = list(summary.counts.items())
     rest = shown[MOST_CLASSES:] if len(shown) > MOST_CLASSES + 1 else []
     rows = [(f"{count:,}", name) for name, count in shown[: len(shown) - len(rest)]]

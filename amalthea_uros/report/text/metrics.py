@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from amalthea_uros.analyze.results import CallbackResult, JobMetric, Metric, ProcessResult
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 
 def write_metrics(terminal: Terminal, processes: Sequence[ProcessResult]) -> None:
@@ -19,7 +19,8 @@ def write_metrics(terminal: Terminal, processes: Sequence[ProcessResult]) -> Non
 
 
 def _row(name: JobMetric, metric: Metric) -> tuple[str, ...]:
-    return (name.replace("_", " "), _time(metric.min), _mean(metric.mean), _time(metric.max), str(metric.claim))
+    ends = _time(metric.min, Rounding.DOWN), _mean(metric.mean), _time(metric.max, Rounding.UP)
+    return (name.replace("_", " "), *ends, str(metric.claim))
 
 
 def write_callbacks(terminal: Terminal, callbacks: Sequence[CallbackResult]) -> None:
@@ -31,9 +32,9 @@ def write_callbacks(terminal: Terminal, callbacks: Sequence[CallbackResult]) -> 
         (
             callback.name,
             callback.process,
-            _time(callback.response.best if callback.response else None),
+            _time(callback.response.best if callback.response else None, Rounding.DOWN),
             _mean(callback.metrics[JobMetric.RESPONSE_TIME].mean if callback.response else None),
-            _time(callback.response.worst if callback.response else None),
+            _time(callback.response.worst if callback.response else None, Rounding.UP),
             "-" if callback.deadline is None else time_text(callback.deadline),
             callback.reason or (str(callback.response.claim) if callback.response else ""),
         )
@@ -42,9 +43,9 @@ def write_callbacks(terminal: Terminal, callbacks: Sequence[CallbackResult]) -> 
     terminal.table(("callback", "process", "best", "mean", "worst", "deadline", ""), rows, right=(2, 3, 4, 5))
 
 
-def _time(value: Time | None) -> str:
-    return "?" if value is None else time_text(value)
+def _time(value: Time | None, rounding: Rounding) -> str:
+    return "?" if value is None else rounded_time_text(value, rounding)
 
 
 def _mean(value: Fraction | None) -> str:
-    return "-" if value is None else time_text(round(value))
+    return "-" if value is None else rounded_time_text(round(value), Rounding.NEAREST)

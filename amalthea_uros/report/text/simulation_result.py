@@ -19,13 +19,13 @@ from amalthea_uros.simulate.results import (
     Simulation,
 )
 from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.units import NANOSECOND, time_text
+from amalthea_uros.units import NANOSECOND, Rounding, rounded_time_text, time_text
 
 _BADNESS = (ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED, ObservedVerdict.OK, None)
 
 
 def write(result: SimulationShown, terminal: Terminal) -> None:
-    """Write tables of loads, response times, chains and requirements, worst first, with assumptions and what was observed."""
+    """Write tables of loads, response times, chains and requirements, with assumptions and what was observed."""
     simulation = result.simulation
     run = f"{duration_text(simulation.duration)}, seed {simulation.seed}, mode {simulation.mode}"
     terminal.line(f"{terminal.style('Simulation', '1')} of {joined(result.paths)}: {run}")
@@ -69,20 +69,22 @@ def _processes(terminal: Terminal, simulation: Simulation) -> None:
             _verdict(process.verdict),
             process.reason,
         )
-        for process in sorted(simulation.processes, key=_urgency)
+        for process in sorted(simulation.processes, key=_place)
     ]
     headings = ("process", "core", "jobs", "load", "min", "mean", "max", "deadline", "lost", "verdict", "")
     terminal.table(headings, rows, right=range(2, 9))
 
 
-def _urgency(process: ProcessObservation) -> tuple[int, Fraction]:
-    """Bad verdicts first, then those that use up most of their deadline."""
-    use = process.response_time.max / process.deadline if process.response_time and process.deadline else Fraction(0)
-    return (_BADNESS.index(process.verdict), -use)
+def _place(process: ProcessObservation) -> tuple[bool, str, bool]:
+    """Sorts by core, interrupt service routines first; those without a core of their own come last."""
+    return (process.core is None, process.core or "", not process.is_isr)
 
 
 def _min_mean_max(found: MetricObservation | None) -> tuple[str, ...]:
-    return ("-",) * 3 if found is None else tuple(time_text(round(value)) for value in (found.min, found.mean, found.max))
+    if found is None:
+        return ("-",) * 3
+    ends = ((found.min, Rounding.DOWN), (found.mean, Rounding.NEAREST), (found.max, Rounding.UP))
+    return tuple(rounded_time_text(value, rounding) for value, rounding in ends)
 
 
 def _deadline(process: ProcessObservation) -> str:
@@ -173,14 +175,20 @@ def _requirements(terminal: Terminal, simulation: Simulation) -> None:
             requirement.name,
             f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity,
             limit_text(requirement),
-            value_text(requirement, requirement.value),
+            _rounded(requirement, requirement.value, Rounding.UP if requirement.is_upper else Rounding.DOWN),
             _verdict(requirement.verdict),
-            value_text(requirement, requirement.margin) if requirement.margin is not None else "",
+            "" if requirement.margin is None else _rounded(requirement, requirement.margin, Rounding.DOWN),
             _remark(requirement),
         )
         for requirement in sorted(simulation.requirements, key=lambda each: _BADNESS.index(each.verdict))
     ]
     terminal.table(("requirement", "what", "limit", "observed", "verdict", "margin", ""), rows, right=(3, 5))
+
+
+def _rounded(requirement: RequirementObservation, value: Fraction | None, rounding: Rounding) -> str:
+    if value is None or not requirement.is_time:
+        return value_text(requirement, value)
+    return rounded_time_text(value, rounding)
 
 
 def _remark(requirement: RequirementObservation) -> str:

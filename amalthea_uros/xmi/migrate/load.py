@@ -185,7 +185,8 @@ def _fragment(tree: Tree, models: ModelSet, target: str) -> Sequence[Finding]:
     origin = tree.root.origin
     message = f"not a whole model: the root element is a {models.origins.labels[origin][0]}"
     help_text = (
-        "Only models and sub-models are migrated; the roots of these are AMALTHEA or Amalthea, SWModel, HWModel and so on."
+        "Only models are migrated, whose root is AMALTHEA or Amalthea; up to 0.7.2 also sub-models, with the roots SWModel, HWModel "
+        "and so on."
     )
     return [Finding("XMI005", Severity.ERROR, message, models.origins.location(origin), help_text)]
 

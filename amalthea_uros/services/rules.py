@@ -1,0 +1,70 @@
+"""The rules of `amuros check`, and kinds of findings by their ids."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from amalthea_uros._internal.suggestions import did_you_mean
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.findings import catalogue
+from amalthea_uros.findings.kind import FindingKind
+from amalthea_uros.services.check import unknown_rule
+from amalthea_uros.validate import registry
+from amalthea_uros.validate.rule import Profile, Rule
+from amalthea_uros.validate.selection import UnknownPatternError, select
+
+
+@dataclass(frozen=True, slots=True)
+class RulesResult:
+    """Rules in the order of their profiles."""
+
+    rules: tuple[Rule, ...]
+
+
+def find_rules(
+    patterns: Iterable[str] = (),
+    *,
+    profiles: Iterable[Profile] = (),
+    severities: Iterable[Severity] = (),
+    text: str = "",
+) -> RulesResult:
+    """The rules that meet all of some conditions.
+
+    Parameters
+    ----------
+    patterns : ids, or the first letters of ids
+    text : part of what a rule says, in any case
+
+    Raises
+    ------
+    InvalidArgumentError : a pattern matches no rule.
+    """
+    try:
+        selection = select(profiles, patterns, ())
+    except UnknownPatternError as error:
+        raise unknown_rule(error.pattern, error.known) from None
+    wanted = frozenset(severities) or frozenset(Severity)
+    rules = map(registry.rule, selection.rules())
+    return RulesResult(tuple(rule for rule in rules if rule.severity in wanted and text.casefold() in _words(rule)))
+
+
+def _words(rule: Rule) -> str:
+    return " ".join((rule.id, rule.title, rule.rationale, rule.remedy)).casefold()
+
+
+def find_kind(identifier: str) -> FindingKind:
+    """A rule or another kind of finding by its id, in any case.
+
+    Raises
+    ------
+    InvalidArgumentError : there is none.
+    """
+    known = [*registry.ids(), *catalogue.ids()]
+    found = next((one for one in known if one.casefold() == identifier.casefold()), None)
+    kind = registry.kind(found) if found is not None else None
+    if kind is None:
+        advice = did_you_mean(identifier, known) or "`amuros rules` lists the rules"
+        raise InvalidArgumentError(f"unknown rule or finding {identifier!r}; {advice}")
+    return kind

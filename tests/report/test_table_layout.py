@@ -1,0 +1,97 @@
+"""Tables fit the terminal, and nothing of them is lost."""
+
+from io import StringIO
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from amalthea_uros.report.terminal import WIDTH_ELSEWHERE, Terminal
+
+REASON = "depends on 'Sensor', which could not be analysed because of a missing execution time"
+
+
+class Screen(StringIO):
+    def isatty(self):
+        return True
+
+
+def written(headings, rows, right=(), stream_class=Screen):
+    stream = stream_class()
+    Terminal(stream).table(headings, rows, right)
+    return stream.getvalue().splitlines()
+
+
+@pytest.fixture
+def columns(monkeypatch):
+    return lambda number: monkeypatch.setenv("COLUMNS", str(number))
+
+
+@pytest.fixture(autouse=True)
+def _plain(monkeypatch):
+    monkeypatch.delenv("COLUMNS", raising=False)
+    monkeypatch.setenv("NO_COLOR", "1")
+
+
+def test_a_table_that_fits_is_as_it_is():
+    assert written(("task", "worst", ""), [("A", "1 ms", "exact"), ("Long", "12 ms", "bound")], right=(1,)) == [
+        "  task  worst",
+        "  A      1 ms  exact",
+        "  Long  12 ms  bound",
+    ]
+
+
+def test_long_remarks_become_footnotes_and_equal_ones_share_theirs(columns):
+    columns(80)
+    rows = [("A", "?", REASON), ("B", "1 ms", "exact"), ("C", "?", REASON), ("D", "?", f"{REASON}, too")]
+    assert written(("task", "worst", ""), rows, right=(1,)) == [
+        "  task  worst",
+        "  A         ?  [1]",
+        "  B      1 ms  exact",
+        "  C         ?  [1]",
+        "  D         ?  [2]",
+        f"  [1] {REASON}",
+        f"  [2] {REASON}, too",
+    ]
+
+
+def test_footnotes_also_where_no_terminal_is_but_only_in_wide_tables(columns):
+    # It is stated for terminals only: other programs may have left it.
+    columns(40)
+    row = ("A", "x" * 60, REASON)
+    assert len(REASON) < WIDTH_ELSEWHERE < 60 + len(REASON)
+    assert written(("task", "activated", ""), [row], stream_class=StringIO)[-1] == f"  [1] {REASON}"
+    assert written(("task", "activated", ""), [("A", "x", REASON)], stream_class=StringIO)[-1] == f"  A     x          {REASON}"
+
+
+def test_text_is_folded_on_terminals_and_nowhere_else(columns):
+    headings, rows = ("task", "activated", "worst"), [("A", "3 times every 50 ms, 4 times every 500 ms", "1 ms")]
+    long_name = [("A" * 200, "every 1 ms", "1 ms")]
+    columns(40)
+    assert any("A" * 200 in line for line in written(headings, long_name, right=(2,), stream_class=StringIO))
+    assert written(headings, rows, right=(2,)) == [
+        "  task  activated               worst",
+        "  A     3 times every 50 ms, 4   1 ms",
+        "        times every 500 ms",
+    ]
+
+
+@pytest.mark.parametrize("stated", ["", "0", "-1", "wide", "²"])
+def test_a_width_that_is_none_is_not_taken(stated, columns):
+    columns(stated)
+    assert Terminal(Screen()).width is None
+
+
+words = st.text("ab _", max_size=60).map(lambda text: " ".join(text.split()))
+
+
+@given(st.lists(st.tuples(words, words, st.integers(0, 10**6).map(str)), max_size=8), st.integers(40, 150))
+def test_a_table_with_room_for_its_numbers_is_never_wider_than_the_terminal(rows, width):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("COLUMNS", str(width))
+        patch.setenv("NO_COLOR", "1")
+        lines = written(("name", "activated", "number"), rows, right=(2,))
+    assert max(map(len, lines)) <= width
+    # All letters of all cells are still there.
+    shown, given_ = "".join(lines[1:]), "".join("".join(row) for row in rows)
+    assert sorted(shown.replace(" ", "")) == sorted(given_.replace(" ", ""))
