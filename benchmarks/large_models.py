@@ -38,15 +38,15 @@ def main() -> None:
     parser.add_argument("--repeat", type=int, default=3, help="measurements (3)")
     options = parser.parse_args()
     with TemporaryDirectory() as folder:
-        models = [(size, *_models(size, Path(folder))) for size in options.sizes]
+        models = [(size, *write_models(size, Path(folder))) for size in options.sizes]
         for what in ("load", "check", "analyze", "diff"):
-            per_megabyte = [_report(what, size, model, other, options.repeat) for size, model, other in models]
+            per_megabyte = [report(what, size, model, other, options.repeat) for size, model, other in models]
             growth = per_megabyte[-1] / per_megabyte[0]
             verdict = "met" if growth <= _TARGET else "missed"
             print(f"{what}: time per MB grows by a factor of {growth:.2f}, target {_TARGET:g}: {verdict}")
 
 
-def _models(megabytes: int, folder: Path) -> tuple[Path, Path]:
+def write_models(megabytes: int, folder: Path) -> tuple[Path, Path]:
     """A model, and the same one with other execution times."""
     model, other = folder / f"{megabytes}.amxmi", folder / f"{megabytes}-changed.amxmi"
     # In a process of its own: a process starts with the largest memory of the one that starts it.
@@ -57,9 +57,9 @@ def _models(megabytes: int, folder: Path) -> tuple[Path, Path]:
     return model, other
 
 
-def _report(what: str, megabytes: int, model: Path, other: Path, repeat: int) -> float:
+def report(what: str, megabytes: int, model: Path, other: Path, repeat: int) -> float:
     """Print the least CPU time and the largest memory of some runs; returns the time per megabyte."""
-    runs = [_measured(what, model, other) for _ in range(repeat)]
+    runs = [measured(what, model, other) for _ in range(repeat)]
     seconds, memory = min(run[0] for run in runs), max(run[1] for run in runs)
     print(
         f"{what}, {megabytes} MB: {seconds:.2f} s CPU with imports, {seconds / megabytes:.3f} s per MB; "
@@ -69,7 +69,7 @@ def _report(what: str, megabytes: int, model: Path, other: Path, repeat: int) ->
     return seconds / megabytes
 
 
-def _measured(what: str, model: Path, other: Path) -> tuple[float, float]:
+def measured(what: str, model: Path, other: Path) -> tuple[float, float]:
     """CPU seconds and megabytes of a process."""
     command = [sys.executable, "-c", _MEASURE, what, str(model), str(other)]
     output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
