@@ -7,7 +7,8 @@ point is found if there is one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_offsets import tightened
@@ -46,13 +47,15 @@ def solve(context: TimingContext) -> Solution:
 def _iterate(solution: Solution, diverging: set[str]) -> set[str]:
     """Find response times that are consistent with the activations; returns the processes that do not converge."""
     responses: dict[str, Response] = {}
+    on_cores: dict[str, _CoreRound] = {}
     work = 0
     for number in range(MAX_ROUNDS):
         previous = responses
         solution.event_models = _event_models(solution, diverging, previous)
         responses = {}
         for core in solution.context.system.cores:
-            responses |= responses_on(core, solution)
+            on_cores[core] = _round_on(core, solution, on_cores.get(core))
+            responses |= on_cores[core].responses
         if responses == previous:
             solution.responses = responses
             return set()
@@ -60,6 +63,22 @@ def _iterate(solution: Solution, diverging: set[str]) -> set[str]:
         if number and work > MAX_JOBS:
             break
     return {name for name, response in responses.items() if response != previous.get(name)}
+
+
+@dataclass(frozen=True, slots=True)
+class _CoreRound:
+    """The response times on a core, and the activations that they follow from; None for those that are unknown."""
+
+    activations: Sequence[EventModel | None]
+    responses: Mapping[str, Response]
+
+
+def _round_on(core: str, solution: Solution, previous: _CoreRound | None) -> _CoreRound:
+    """The response times on a core; those of the previous round if its activations have not changed."""
+    activations = [solution.event_models.get(scheduled.name) for scheduled in solution.context.on_core(core)]
+    if previous is not None and activations == previous.activations:
+        return previous
+    return _CoreRound(activations, responses_on(core, solution))
 
 
 def _event_models(solution: Solution, diverging: set[str], responses: Mapping[str, Response]) -> dict[str, EventModel]:

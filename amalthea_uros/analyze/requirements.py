@@ -42,11 +42,14 @@ def evaluate_requirements(
 ) -> Iterator[RequirementResult]:
     """The verdict on each time limit; other limits are not evaluated, so that their verdict is unknown."""
     by_name = {process.name: process for process in processes}
+    by_runnable: dict[str | None, list[CallbackResult]] = {}
+    for callback in callbacks:
+        by_runnable.setdefault(callback.name, []).append(callback)
     for requirement in system.constraints.requirements:
         limit = requirement.limit
         if isinstance(limit, TimeLimit):
             process = by_name.get(requirement.process or "")
-            calls = [callback for callback in callbacks if callback.name == requirement.runnable]
+            calls = by_runnable.get(requirement.runnable, ())
             result = _judged(requirement, limit, [process] if process is not None else calls)
             note_implausible(result, requirement, notes)
             yield result

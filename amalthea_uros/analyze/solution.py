@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -9,6 +10,7 @@ from amalthea_uros.analyze.results import Response
 from amalthea_uros.perf.software import Task
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.scheduling import Rank, ScheduledProcess
 from amalthea_uros.units import Time
 
 
@@ -58,10 +60,25 @@ class Solution:
     def follows_losses(self, name: str) -> bool:
         """Whether another process of at least its rank on its core may lose activations."""
         scheduled = self.context.scheduled.get(name)
-        others = [self.context.scheduled[other] for other in self.losing if other != name]
-        return scheduled is not None and any(other.core == scheduled.core and other.rank >= scheduled.rank for other in others)
+        if scheduled is None:
+            return False
+        # The highest of the others is one of the two highest.
+        highest = self._losing_on.get(scheduled.core, ())[:2]
+        return any(other.name != name and other.rank >= scheduled.rank for other in highest)
+
+    @cached_property
+    def _losing_on(self) -> Mapping[str, Sequence[ScheduledProcess]]:
+        """The losing tasks of each core, highest rank first."""
+        found: dict[str, list[ScheduledProcess]] = {}
+        for scheduled in sorted((self.context.scheduled[name] for name in self.losing), key=_rank, reverse=True):
+            found.setdefault(scheduled.core, []).append(scheduled)
+        return found
 
     def bcet(self, name: str) -> Time:
         """Best-case execution time of a process, in picoseconds; 0 if it is unknown."""
         demand = self.context.demands.get(name)
         return 0 if demand is None else demand.best // self.context.time_base(name)
+
+
+def _rank(scheduled: ScheduledProcess) -> Rank:
+    return scheduled.rank

@@ -171,7 +171,11 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
     """The load of each core; unknown if the demand or activation of a process that can run on it is unknown."""
     context = solution.context
     allowed = allocated_cores(context.system)
-    known = {core for core in context.system.cores if _is_load_known(core, allowed, solution)}
+    possible: dict[str, list[str]] = {}
+    for name, cores in allowed.items():
+        for core in cores:
+            possible.setdefault(core, []).append(name)
+    known = {core for core in context.system.cores if _is_load_known(core, possible.get(core, ()), solution)}
     shares: Mapping[str, Mapping[str, Fraction]] = {}
     if len(known) < len(context.system.cores):
         shares = known_loads(allowed, activation_rates(context.system, context.activations), context.demand_model)
@@ -187,13 +191,13 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
         )
 
 
-def _is_load_known(core: str, allowed: Mapping[str, frozenset[str]], solution: Solution) -> bool:
+def _is_load_known(core: str, possible: Iterable[str], solution: Solution) -> bool:
     """Whether all processes that can run on a core run nowhere else, and their demand and activations are known."""
     context = solution.context
     if (core, True) in context.unanalysable_cores or (core, False) in context.unanalysable_cores:
         return False
     here = {scheduled.name for scheduled in context.on_core(core)}
-    return all(name in here for name, cores in allowed.items() if core in cores) and all(map(solution.is_known, here))
+    return here.issuperset(possible) and all(map(solution.is_known, here))
 
 
 def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction, Fraction]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeVar
@@ -158,15 +158,28 @@ class TimingContext:
         server = self.servers.get(scheduled.server or "") if scheduled is not None else None
         return server is not None and server.scheduler.policy in LENDING_SERVERS
 
-    def on_core(self, core: str) -> list[ScheduledProcess]:
+    def on_core(self, core: str) -> Sequence[ScheduledProcess]:
         """The processes of a core."""
-        return [scheduled for scheduled in self.scheduled.values() if scheduled.core == core]
+        return self._on_cores.get(core, ())
 
-    def served(self, core: str, server: str | None) -> list[ScheduledProcess | Server]:
+    @cached_property
+    def _on_cores(self) -> Mapping[str, Sequence[ScheduledProcess]]:
+        found: dict[str, list[ScheduledProcess]] = {}
+        for scheduled in self.scheduled.values():
+            found.setdefault(scheduled.core, []).append(scheduled)
+        return found
+
+    def served(self, core: str, server: str | None) -> Sequence[ScheduledProcess | Server]:
         """Processes and servers on a core itself or in the budget of a server, highest rank first."""
+        return self._served.get((core, server), ())
+
+    @cached_property
+    def _served(self) -> Mapping[tuple[str, str | None], Sequence[ScheduledProcess | Server]]:
+        found: dict[tuple[str, str | None], list[ScheduledProcess | Server]] = {}
         everything: list[ScheduledProcess | Server] = [*self.scheduled.values(), *self.servers.values()]
-        found = [item for item in everything if item.core == core and item.server == server]
-        return sorted(found, key=lambda item: item.rank, reverse=True)
+        for item in everything:
+            found.setdefault((item.core, item.server), []).append(item)
+        return {key: sorted(items, key=lambda item: item.rank, reverse=True) for key, items in found.items()}
 
     def mark_unknown(self, name: str, reason: str) -> None:
         """Record why the response time of a process is unknown."""

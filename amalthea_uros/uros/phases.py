@@ -50,7 +50,7 @@ class ExecutorPhases:
         phase = self.stated.get(source)
         first = None if phase is None else (phase - self.executor.offset) // self.period + 1
         # Who waits for all waits for the latest one.
-        jitter = self.jitters.get(source, max(self.jitters.values(), default=0))
+        jitter = self.jitters[source] if source in self.jitters else max(self.jitters.values(), default=0)
         return call_counter(interval, self.period, source, first, jitter)
 
     def check(self, callback: Callback, counted: bool, notes: Notes) -> None:

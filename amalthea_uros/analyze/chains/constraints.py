@@ -8,7 +8,7 @@ that caused it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import permutations
 
 from amalthea_uros._internal.failures import failure
@@ -18,7 +18,7 @@ from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.implausible_limits import note_implausible
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, RequirementResult, Value
 from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
-from amalthea_uros.perf.activities import AccessKind, Call, LabelAccess
+from amalthea_uros.perf.activities import Call, LabelAccess
 from amalthea_uros.perf.constraints import (
     ChainEnd,
     ChainSynchronization,
@@ -35,7 +35,6 @@ from amalthea_uros.perf.events import LabelChange, LabelEvent
 from amalthea_uros.perf.named import Named
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.routes import routes
 from amalthea_uros.timing.event_models import EventModel, Periodic, is_strictly_periodic
 from amalthea_uros.timing.releases import known_releases
@@ -142,19 +141,18 @@ class ConstraintEvaluator:
         """The age of the data written by the runnable at each read of them."""
         written = LabelEvent(name="write", label=constraint.label, change=LabelChange.WRITE, runnable=constraint.runnable)
         (occurrence, *_) = self.evaluation.context.dataflow.events.of(written)
+        reading = LabelEvent(name="read", label=constraint.label, change=LabelChange.READ)
         readers = {
             position.process.name
-            for process in self.evaluation.context.system.processes
-            for position in self.evaluation.context.dataflow.events.positions(process)
-            if _reads(position, constraint.label) and process != occurrence.process.name
+            for position in self.evaluation.context.dataflow.events.raising(reading)
+            if isinstance(position.activity, LabelAccess) and position.process.name != occurrence.process.name
         }
         releases = known_releases(occurrence.process, self.evaluation.context.system)
         cycle = releases.period if releases is not None else None
         latest = _cycles(constraint.latest, constraint.latest_cycle, cycle)
         earliest = _cycles(constraint.earliest, constraint.earliest_cycle, cycle)
         for name in sorted(readers):
-            read = LabelEvent(name="read", label=constraint.label, change=LabelChange.READ, process=name)
-            ends = _Latencies(self.evaluation.pair(written, read), *_AGE)
+            ends = _Latencies(self.evaluation.pair(written, replace(reading, process=name)), *_AGE)
             what = f"{constraint.label} in {name}"
             if latest is not None:
                 yield _result(constraint, what, "data age", latest, ends.of_maximum)
@@ -303,8 +301,3 @@ def _longest(events: EventModel, count: int) -> Time | None:
     if isinstance(events, Periodic) and is_strictly_periodic(events):
         return count * events.period + events.jitter
     return None if events.max_interarrival is None else count * events.max_interarrival
-
-
-def _reads(position: ActivityPosition, label: str) -> bool:
-    access = position.activity
-    return isinstance(access, LabelAccess) and access.label == label and access.kind is AccessKind.READ

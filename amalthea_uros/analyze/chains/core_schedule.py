@@ -53,7 +53,8 @@ class CoreSchedules:
         ----------
         with_slices : whether the execution slices of jobs are needed
         """
-        key = (core, with_slices)
+        # One with slices serves for both.
+        key = (core, with_slices or (core, True) in self._found)
         if key not in self._found:
             self._found[key] = self._new(core, with_slices)
         return self._found[key]

@@ -30,7 +30,7 @@ class ChainEvaluator:
     solution: Solution
     timing: StageTiming = field(init=False)
     controllers: Mapping[str, str] = field(init=False)
-    unknown_phases: tuple[Occurrence, ...] = field(init=False)
+    _unknown_phases: Mapping[Occurrence, int] = field(init=False)
 
     @property
     def context(self) -> TimingContext:
@@ -40,7 +40,7 @@ class ChainEvaluator:
     def __post_init__(self) -> None:
         self.timing = StageTiming(self.solution)
         self.controllers = controller_of_core(self.context.system)
-        self.unknown_phases = unknown_phases(self.context.system)
+        self._unknown_phases = {each: number for number, each in enumerate(unknown_phases(self.context.system))}
 
     def chain(self, chain: EventChain) -> ChainResult:
         """The latencies of a chain. If its evaluation fails, that is a finding, and the chain is unknown."""
@@ -86,7 +86,7 @@ class ChainEvaluator:
 
     def occurrences(self, chain: EventChain) -> tuple[Occurrence, ...]:
         """What comes from outside with an unknown phase and is taken by the jobs of a chain; nothing if it cannot be evaluated."""
-        unknown, events_by_name = self.unknown_phases, self.context.system.events_by_name
+        unknown, events_by_name = self._unknown_phases, self.context.system.events_by_name
         if not unknown:
             return ()
         try:
@@ -99,7 +99,7 @@ class ChainEvaluator:
             }
         except (UnfoldError, UnresolvedError):
             return ()
-        return tuple(occurrence for occurrence in unknown if occurrence in found)
+        return tuple(sorted(filter(unknown.__contains__, found), key=unknown.__getitem__))
 
     def _evaluated(self, ways: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
         """The values of each way through a chain, and the reasons."""
@@ -146,9 +146,12 @@ class ChainEvaluator:
                 f"the chain {chain.name!r} does not start or end with {event!r}, but a part of it does; {event!r} is ignored"
             )
             notes.warning("CHN005", message, chain)
-        for event, guess in self.context.dataflow.events.guesses.items():
+        guesses = self.context.dataflow.events.guesses
+        for event, guess in guesses.items():
             message = f"no activity in the model raises the event {event!r}; it is assumed to occur {guess}"
             notes.warning("CHN004", message, self.context.system.events_by_name[event])
+        # They are reported now; each chain would report those of all chains before it again.
+        guesses.clear()
         for route in found:
             for link, first, then in zip(route.links, route.events, route.events[1:], strict=False):
                 if link.kind in GAPS:

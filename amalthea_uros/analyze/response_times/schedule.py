@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
-from math import lcm
+from math import inf, lcm
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -161,11 +161,9 @@ def response_times(tasks: Sequence[PeriodicTask]) -> list[Response] | None:
         return None
     worst = schedule(tasks, until, MultiframeDemand.worst_of)
     best = schedule(tasks, until, MultiframeDemand.best_of)
-    certain = [
-        all(other.demand.is_certain for other in tasks if other.priority >= task.priority)  # lower ones have no effect
-        for task in tasks
-    ]
-    return [_response(task, w, b, c) for task, w, b, c in zip(tasks, worst, best, certain, strict=True)]
+    # Only tasks of at least the same priority have an effect.
+    uncertain = max((task.priority for task in tasks if not task.demand.is_certain), default=-inf)
+    return [_response(task, w, b, task.priority > uncertain) for task, w, b in zip(tasks, worst, best, strict=True)]
 
 
 def _response(task: PeriodicTask, worst: Jobs, best: Jobs, is_certain: bool) -> Response:

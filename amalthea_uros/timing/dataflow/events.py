@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import TypeAlias
@@ -98,7 +98,9 @@ class EventLocator:
     guesses: dict[str, str] = field(default_factory=dict)
     sites: CallSites = field(init=False)
     _positions: dict[str, list[ActivityPosition]] = field(default_factory=dict)
+    _too_complex: dict[str, str] = field(default_factory=dict)
     _by_accessed: dict[str, dict[_Accessed, list[ActivityPosition]]] = field(default_factory=dict)
+    _accessing_processes: dict[_Accessed, list[str]] | None = None
 
     def __post_init__(self) -> None:
         self.sites = CallSites(self.system)
@@ -110,10 +112,13 @@ class EventLocator:
         ------
         UnresolvedError : it executes too many activities.
         """
+        if process in self._too_complex:
+            raise UnresolvedError(self._too_complex[process])
         if process not in self._positions:
             try:
                 self._positions[process] = positions(self.system.processes[process], self.system, self.sites)
             except TooComplexError as error:
+                self._too_complex[process] = str(error)
                 raise UnresolvedError(str(error)) from None
         return self._positions[process]
 
@@ -130,14 +135,26 @@ class EventLocator:
         UnresolvedError : a process in which it could occur executes too many activities.
         """
         process = None if isinstance(event, CustomEvent) else getattr(event, "process", None)
-        within = self.system.processes if process is None else [process] if process in self.system.processes else []
-        return [position for name in within for position in self.raising_in(name, event)]
-
-    def raising_in(self, process: str, event: Event) -> list[ActivityPosition]:
-        """The positions in the jobs of a process of the activities that raise an event; raises as `positions`."""
+        if process is not None and process not in self.system.processes:
+            return []
         accessed = _accessed_by(event)
-        found = self.positions(process) if accessed is None else self._accessing(process).get(accessed, ())
+        if accessed is None:
+            found = self.all_positions() if process is None else iter(self.positions(process))
+        else:
+            within = self._processes_accessing(accessed) if process is None else (process,)
+            found = (position for name in within for position in self._accessing(name).get(accessed, ()))
         return [position for position in found if raises(position, event)]
+
+    def _processes_accessing(self, accessed: _Accessed) -> Sequence[str]:
+        """The processes with an activity that accesses an object; raises as `positions`."""
+        if self._accessing_processes is None:
+            by_process = {name: self._accessing(name) for name in self.system.processes}
+            found: dict[_Accessed, list[str]] = {}
+            for name, own in by_process.items():
+                for each in own:
+                    found.setdefault(each, []).append(name)
+            self._accessing_processes = found
+        return self._accessing_processes.get(accessed, ())
 
     def _accessing(self, process: str) -> dict[_Accessed, list[ActivityPosition]]:
         """The positions of a process by what their activities access."""
@@ -187,9 +204,9 @@ class EventLocator:
             return []
         is_read = event.change in (LabelChange.READ, ModeChange.READ, ChannelChange.RECEIVE, SemaphoreChange.LOCK)
         side = "at the start" if is_read else "at the end"
-        calls = [
-            p for p in self._within(event.process) if isinstance(p.activity, Call) and p.activity.runnable == event.runnable
-        ]
+        calls = []
+        if event.runnable is not None:
+            calls = self.raising(RunnableEvent(name=event.name, runnable=event.runnable, process=event.process))
         if calls:
             self.guesses[event.name] = f"{side} of {event.runnable!r}"
             when = JobPhase.BEFORE if is_read else JobPhase.AFTER
@@ -204,11 +221,6 @@ class EventLocator:
         if name is None:
             raise UnresolvedError("an event has no process")
         return [self.system.processes[name]] if name in self.system.processes else []
-
-    def _within(self, process: str | None) -> Iterable[ActivityPosition]:
-        if process is None:
-            return self.all_positions()
-        return self.positions(process) if process in self.system.processes else ()
 
 
 _PROCESS_PHASES = {

@@ -92,6 +92,7 @@ class Dataflow:
     events: EventLocator = field(init=False)
     _named: dict[tuple[str, NamesOf], _Accesses] = field(default_factory=dict)
     _fired: dict[str, list[Firing]] | None = None
+    _fired_at: dict[str, list[ActivityPosition]] | None = None
 
     def __post_init__(self) -> None:
         self.system = with_direct_calls(self.system)
@@ -170,8 +171,12 @@ class Dataflow:
 
     def fired_at(self, stimulus: str) -> list[ActivityPosition]:
         """The positions at which processes fire a stimulus."""
-        found = (each for process in self.system.processes for each in self.firings(process))
-        return [firing.position for firing in found if firing.stimulus == stimulus]
+        if self._fired_at is None:
+            self._fired_at = {}
+            for process in self.system.processes:
+                for firing in self.firings(process):
+                    self._fired_at.setdefault(firing.stimulus, []).append(firing.position)
+        return self._fired_at.get(stimulus, [])
 
     def _stimuli(self, process: str) -> tuple[str, ...]:
         return self.system.processes[process].stimuli
@@ -179,17 +184,20 @@ class Dataflow:
     def firings(self, process: str) -> list[Firing]:
         """The stimuli that a process fires, in order, by triggers and by the events that it raises."""
         if self._fired is None:
-            reactions = self._reactions()
-            self._fired = {name: self._find_triggers(name, reactions) for name in self.system.processes}
+            self._fired = self._find_firings()
         return self._fired[process]
 
-    def _find_triggers(self, process: str, reactions: Iterable[tuple[str, Event]]) -> list[Firing]:
-        everything = self.events.positions(process)
-        found = [Firing(p.activity.stimulus, p) for p in everything if isinstance(p.activity, Trigger)]
-        for stimulus, event in reactions:
+    def _find_firings(self) -> dict[str, list[Firing]]:
+        """What each process fires, in order."""
+        found: dict[str, list[Firing]] = {name: [] for name in self.system.processes}
+        for position in self.events.all_positions():
+            if isinstance(position.activity, Trigger):
+                found[position.process.name].append(Firing(position.activity.stimulus, position))
+        for stimulus, event in self._reactions():
             is_before = _is_start(event)
-            found += (Firing(stimulus, position, is_before) for position in self.events.raising_in(process, event))
-        return sorted(found, key=lambda firing: firing.position.number)
+            for position in self.events.raising(event):
+                found[position.process.name].append(Firing(stimulus, position, is_before))
+        return {name: sorted(own, key=lambda firing: firing.position.number) for name, own in found.items()}
 
     def _reactions(self) -> list[tuple[str, Event]]:
         """The stimuli that react to events."""

@@ -1,0 +1,215 @@
+"""An analysis takes work in proportion to the system: twice the system, about twice the steps.
+
+The steps are counted as lines that are executed, so that nothing depends on the machine.
+"""
+
+import sys
+from fractions import Fraction
+
+import pytest
+from hand_made_systems import READ, US, WRITE, access, ticks
+
+from amalthea_uros.analyze import propagation
+from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
+from amalthea_uros.analyze.propagation import solve
+from amalthea_uros.analyze.requirements import evaluate_requirements
+from amalthea_uros.analyze.response_times import schedule
+from amalthea_uros.analyze.results import Results
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.activities import Call, RaiseEvent, Trigger
+from amalthea_uros.perf.constraints import Constraints, DataAgeConstraint, Requirement, TimeLimit, TimeMetric
+from amalthea_uros.perf.events import CustomEvent, EventChain, Events, LabelChange, LabelEvent, Segment, Sequence
+from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
+from amalthea_uros.perf.mapping import Mapping, TaskAllocation
+from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
+from amalthea_uros.perf.software import Label, Runnable, Software, Task
+from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic, Stimuli
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.dataflow import events as dataflow_events
+from amalthea_uros.timing.dataflow.events import EventLocator, UnresolvedError
+from amalthea_uros.timing.notes import Notes
+
+#: Tasks on a core.
+HERE = 4
+
+
+def steps(work) -> int:
+    """The number of lines of Python that some work executes; a loop on one line counts in each round."""
+    count = 0
+
+    def trace(_frame, event, _argument):
+        nonlocal count
+        count += event == "line"
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        work()
+    finally:
+        sys.settrace(before)
+    return count
+
+
+def system(bodies, period=1000, stimuli=None, **parts):
+    """A task for each body, a runnable with the same name; each core has some of them."""
+    tasks = [f"t{number}" for number in range(len(bodies))]
+    cores = [f"c{number}" for number in range(-(-len(bodies) // HERE))]
+    stimuli = stimuli or [Periodic(name=name, period=period * US) for name in tasks]
+    return System(
+        hardware=Hardware(
+            clocks=(Clock(name="clock", frequency=Fraction(10**6)),),
+            structures=(Structure(name="ECU", cores=tuple(Core(name=core, clock="clock") for core in cores)),),
+        ),
+        os=Os(
+            systems=(
+                OperatingSystem(
+                    name="OS", schedulers=tuple(Scheduler(name=core, policy=Policy.OSEK, cores=(core,)) for core in cores)
+                ),
+            )
+        ),
+        stimuli=Stimuli(stimuli=tuple(stimuli)),
+        software=Software(
+            tasks=tuple(Task(name=name, stimuli=(name,), activities=(Call(runnable=name),)) for name in tasks),
+            runnables=tuple(Runnable(name=name, activities=tuple(body)) for name, body in zip(tasks, bodies, strict=True)),
+            labels=tuple(Label(name=name) for name in tasks),
+        ),
+        mapping=Mapping(
+            tasks=tuple(
+                TaskAllocation(task=name, scheduler=cores[number // HERE], priority=1 + number % HERE)
+                for number, name in enumerate(tasks)
+            )
+        ),
+        **parts,
+    )
+
+
+def data_ages(number):
+    """Each task reads what the one before has written, not later than in time."""
+    bodies = [[access(f"t{max(0, n - 1)}", READ), ticks(9), access(f"t{n}", WRITE)] for n in range(number)]
+    ages = [DataAgeConstraint(name=f"t{n}", runnable=f"t{n}", label=f"t{n}", latest=9000 * US) for n in range(number)]
+    return system(bodies, constraints=Constraints(data_ages=tuple(ages)))
+
+
+def event_stimuli(number):
+    """Every second task is activated by an event of the one before."""
+    bodies = [[ticks(9), RaiseEvent(event=f"e{n}")] if n % 2 == 0 else [ticks(9)] for n in range(number)]
+    stimuli = [
+        EventTriggered(name=f"t{n}", events=(f"e{n - 1}",)) if n % 2 else Periodic(name=f"t{n}", period=1000 * US)
+        for n in range(number)
+    ]
+    return system(bodies, stimuli=stimuli, events=Events(events=tuple(CustomEvent(name=f"e{n}") for n in range(0, number, 2))))
+
+
+def losses(number):
+    """The lower tasks of all cores lose activations."""
+    return system([[ticks(45)] for _ in range(number)], period=100)
+
+
+def guesses(number):
+    """Chains whose events no activity raises."""
+    events = [LabelEvent(name=f"e{n}", label="x", runnable=f"t{n}", change=LabelChange.WRITE) for n in range(number)]
+    chains = [
+        EventChain(
+            name=f"e{n}",
+            stimulus=f"e{n - 1}",
+            response=f"e{n}",
+            items=Sequence((Segment(stimulus=f"e{n - 1}", response=f"e{n}"),)),
+        )
+        for n in range(1, number)
+    ]
+    return system([[ticks(9)] for _ in range(number)], events=Events(events=tuple(events), chains=tuple(chains)))
+
+
+def limits(number):
+    """Each runnable has a limit."""
+    limit = TimeLimit(metric=TimeMetric.RESPONSE_TIME, value=500 * US)
+    requirements = tuple(Requirement(name=f"t{n}", runnable=f"t{n}", limit=limit) for n in range(number))
+    return system([[ticks(9)] for _ in range(number)], constraints=Constraints(requirements=requirements))
+
+
+@pytest.mark.parametrize("build", [data_ages, event_stimuli, guesses])
+def test_twice_the_system_takes_twice_the_steps(build):
+    small, large = build(40), build(80)
+    analyze_system(build(8))  # what is imported or compiled once does not count
+    assert steps(lambda: analyze_system(large)) <= 2.2 * steps(lambda: analyze_system(small))
+
+
+def test_losses_of_other_tasks_are_found_by_core():
+    def take(number):
+        solution = solve(TimingContext.of(losses(number)))
+        assert len(solution.losing) >= number // 2
+        return steps(lambda: [solution.follows_losses(name) for name in solution.context.scheduled])
+
+    assert take(160) <= 2.2 * take(80)
+
+
+def test_the_callbacks_of_a_requirement_are_found_by_name():
+    def take(number):
+        limited, notes = limits(number), Notes()
+        callbacks = list(analyze_system(limited).callbacks)
+        assert len(callbacks) == number
+        return steps(lambda: list(evaluate_requirements(limited, Results(), callbacks, notes)))
+
+    assert take(160) <= 2.2 * take(80)
+
+
+def test_the_certainty_of_a_schedule_is_found_in_one_look():
+    def tasks(number):
+        return [
+            schedule.PeriodicTask(
+                name=str(n), period=1000, offset=0, demand=schedule.MultiframeDemand.constant(1), priority=number - n
+            )
+            for n in range(number)
+        ]
+
+    def take(number):
+        of_schedule = steps(lambda: schedule.schedule(tasks(number), 2000, schedule.MultiframeDemand.worst_of))
+        return steps(lambda: schedule.response_times(tasks(number))) - 2 * of_schedule
+
+    take(8)
+    assert take(400) <= 2.2 * take(200)
+
+
+def test_activities_that_are_too_many_are_walked_once(monkeypatch):
+    walks = []
+
+    def counted(process, *context):
+        walks.append(process.name)
+        return positions(process, *context)
+
+    positions = dataflow_events.positions
+    monkeypatch.setattr(dataflow_events, "positions", counted)
+    nested = tuple(Runnable(name=f"r{n}", activities=(Call(runnable=f"r{n + 1}"),)) for n in range(200))
+    deep = Task(name="deep", activities=(Call(runnable="r0"),))
+    locator = EventLocator(System(software=Software(tasks=(deep,), runnables=nested)))
+    for _ in range(3):
+        with pytest.raises(UnresolvedError, match="too deeply nested"):
+            locator.positions("deep")
+    assert walks == ["deep"]
+
+
+def test_a_core_is_analysed_again_only_if_its_activations_have_changed(monkeypatch):
+    # From the second round on the response times on the first core delay the activations on the next two.
+    bodies = [[ticks(9), Trigger(stimulus=f"t{n + HERE}")] if n in (0, HERE) else [ticks(9)] for n in range(4 * HERE)]
+    triggered = (HERE, 2 * HERE)
+    stimuli = [
+        InterProcess(name=f"t{n}") if n in triggered else Periodic(name=f"t{n}", period=1000 * US) for n in range(4 * HERE)
+    ]
+    cores = []
+
+    def counted(core, solution):
+        cores.append(core)
+        return responses_on(core, solution)
+
+    responses_on = propagation.responses_on
+    monkeypatch.setattr(propagation, "responses_on", counted)
+    solve(TimingContext.of(system(bodies, stimuli=stimuli)))
+    assert cores.count("c0") == cores.count("c3") == 1
+    assert cores.count("c1") == cores.count("c2") == 2
+
+
+def test_a_schedule_with_slices_is_used_without_them():
+    schedules = CoreSchedules(solve(TimingContext.of(system([[ticks(9)] for _ in range(HERE)]))))
+    assert schedules.of("c0", with_slices=True) is schedules.of("c0", with_slices=False) is not None
