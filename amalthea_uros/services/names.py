@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 
+from amalthea_uros._internal.similar import similar
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import ALL_LABELS
@@ -45,7 +45,7 @@ def require_labels(names: Iterable[str], system: System) -> None:
 def _advice(kind: str, name: str, existing: list[str]) -> str:
     if not existing:
         return f"the model has no {kind}"
-    if near := get_close_matches(name, existing, n=3):
+    if near := similar(name, existing, count=3):
         return f"did you mean {' or '.join(map(repr, near))}?"
     return f"known: {listed(existing)}"
 
