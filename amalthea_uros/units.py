@@ -34,6 +34,8 @@ HOUR: Time = 3600 * SECOND
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S*)\s*", re.ASCII)
 _LONGEST_NUMBER = 40
+#: Longer texts are no quantities; to match them could take a time that grows with the square of the length.
+_LONGEST_QUANTITY = 200
 #: Quantities fit into 64 bits, so that arrays can hold them: times up to 106 days.
 _LIMIT = 2**63
 
@@ -93,7 +95,7 @@ def parse(text: str, dimension: Dimension) -> Fraction:
     ------
     ValueError : no number, no unit, an unknown unit, out of range, or not a whole number of the internal unit.
     """
-    match = _QUANTITY.fullmatch(text)
+    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST_QUANTITY else None
     if match is None or len(match[1]) > _LONGEST_NUMBER:
         raise ValueError(f"{shortened(text)!r} is not {dimension.article} such as {dimension.example!r}")
     number, unit = match.groups()

@@ -23,6 +23,7 @@ class PathsResult:
     ----------
     model : the file or folder that was read
     paths : the shortest first
+    are_all : whether there are no other paths
     chains : the analysis of each path as a chain
     """
 
@@ -30,6 +31,7 @@ class PathsResult:
     start: str
     end: str
     paths: tuple[ProcessPath, ...]
+    are_all: bool
     chains: tuple[ChainResult, ...]
 
 
@@ -46,8 +48,8 @@ def find_paths(model: StrPath, start: str, end: str) -> PathsResult:
         found = paths(system, start, end)
     except (UnknownEndError, UnresolvedError) as error:
         raise InvalidArgumentError(str(error)) from None
-    chains = analyze_system(with_chains(system, found)).chains if found else ()
-    return PathsResult(model=Path(model), start=start, end=end, paths=tuple(found), chains=tuple(chains))
+    chains = analyze_system(with_chains(system, found.found)).chains if found.found else ()
+    return PathsResult(model=Path(model), start=start, end=end, paths=found.found, are_all=found.are_all, chains=tuple(chains))
 
 
 def add_path(found: PathsResult, number: int, name: str, target: StrPath) -> None:

@@ -117,6 +117,7 @@ from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.resources import Resources, constant
 from amalthea_uros.simulate.program.watches import Source, Watches
 from amalthea_uros.simulate.sampling.streams import Stream
+from amalthea_uros.timing.counters import reached
 from amalthea_uros.timing.critical_sections import spinlocks_of, waits_actively
 from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH
 from amalthea_uros.timing.memory import count_of
@@ -232,6 +233,8 @@ class _Body:
     def compile(self, scheduler: Scheduler | None) -> Code:
         process, model = self.process, self.resources.context.demand_model
         assert process is not None
+        if reached(process.activities, model.sites.sizes) > MAX_OPERATIONS:
+            raise _too_many_activities()
         entry, exit_ = model.overheads.of_isr(process, self.core) if isinstance(process, Isr) else (None, None)
         copies = model.copies(process, self.core) if model.settings.memory is Memory.IMPLICIT else []
         self._add_all(self.hooks.start)
@@ -287,7 +290,7 @@ class _Body:
             self.number += 1
             number = self.number
             if len(self.code.operations) > MAX_OPERATIONS:
-                raise NotSimulatedError(f"it executes more than {MAX_OPERATIONS:,} activities")
+                raise _too_many_activities()
             # Only the service of the operating system knows whether an occurrence counts.
             is_counted = getattr(activity, "counter", None) is not None
             if is_counted:
@@ -626,3 +629,7 @@ class _Body:
         reason = obstacle(activity, self.resources.executing)
         if reason:
             raise NotSimulatedError(reason)
+
+
+def _too_many_activities() -> NotSimulatedError:
+    return NotSimulatedError(f"it executes more than {MAX_OPERATIONS:,} activities")
