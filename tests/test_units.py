@@ -120,3 +120,13 @@ def test_ticks_and_times_are_exact(ticks, megahertz):
     exact = units.time_of_ticks(ticks, frequency)
     assert exact * frequency == ticks * units.SECOND
     assert units.ticks_of_time(units.up(exact), frequency) >= ticks >= units.ticks_of_time(units.down(exact), frequency)
+
+
+@pytest.mark.parametrize(
+    "text", ["9" * 200_000, "9" * 100_000 + " ms", " " * 100_000 + "1 ms" + " " * 100_000, "1" + "m" * 200_000]
+)
+def test_very_long_texts_are_refused_at_once(text):
+    # To match them with the expression took a time that grows with the square of their length.
+    with pytest.raises(ValueError, match="is not a time such as") as error:
+        units.parse_time(text)
+    assert len(str(error.value)) < 100

@@ -95,7 +95,7 @@ class ContainmentList(ReferenceList[E]):
         for value in values:
             self.append(value)
 
-    def place_of(self, value: Element) -> int | None:
+    def place_of(self, value: E) -> int | None:
         """The index of a part; None if it is not one. Asking for all parts takes time in proportion to their number."""
         # The reader makes lists without their constructor, so that there are no places at first.
         place = getattr(self, "_places", _NO_PLACES).get(value)
