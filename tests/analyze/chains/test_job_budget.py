@@ -3,8 +3,7 @@
 from test_chain_systems import END, START, at, read, system, ticks, write
 
 from amalthea_uros import analyze_system
-from amalthea_uros.analyze.chains import evaluator
-from amalthea_uros.analyze.chains.job_chains import JobBudget
+from amalthea_uros.analyze.chains import evaluator, job_chains
 from amalthea_uros.analyze.results import Claim
 from amalthea_uros.analyze.sensitivity import max_growth
 
@@ -14,7 +13,7 @@ EVENTS = [at("A", START), at("B", END)]
 
 def test_without_job_chains_there_are_safe_bounds(monkeypatch):
     exact = analyze_system(system(TASKS, EVENTS))
-    monkeypatch.setattr(evaluator, "JobBudget", lambda: JobBudget(jobs=10))
+    monkeypatch.setattr(job_chains, "job_count", lambda *_: job_chains.MAX_JOBS + 1)
     bounded = analyze_system(system(TASKS, EVENTS))
     (before,), (after,) = exact.chains, bounded.chains
     times = {value.quantity: value.value for value in before.values}
@@ -32,6 +31,6 @@ def test_the_sensitivity_evaluates_no_chains_of_which_nothing_is_demanded(monkey
     analysis = analyze_system(system(TASKS, EVENTS))
     evaluated = []
     monkeypatch.setattr(evaluator.ChainEvaluator, "chain", lambda _, chain: evaluated.append(chain.name))
-    # B has to end 1 us + 1 us after its release at the latest in the first 7 us: with a factor of 3.5, at 7.
+    # A takes 1 of 7 us; B ends after both: with a factor of 3.5 the first job of B ends with the period of A.
     assert max_growth(analysis) >= 3
     assert not evaluated
