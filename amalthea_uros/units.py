@@ -9,11 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from decimal import MAX_EMAX, Context, Decimal
+from difflib import get_close_matches
 from fractions import Fraction
 from math import ceil, floor
 from typing import NamedTuple, TypeAlias
 
-from amalthea_uros._internal.similar import similar
 
 #: Picoseconds.
 Time: TypeAlias = int
@@ -113,7 +113,7 @@ def parse(text: str, dimension: Dimension) -> Fraction:
 
 def _advice(unit: str, dimension: Dimension) -> str:
     folded = {known.lower(): known for known in dimension.units}
-    near = folded.get(unit.lower()) or next(iter(similar(unit, dimension.units)), None)
+    near = folded.get(unit.lower()) or next(iter(get_close_matches(unit, dimension.units, n=1)), None)
     return f", did you mean {near!r}?" if near else f"; known units: {', '.join(dimension.units)}"
 
 
