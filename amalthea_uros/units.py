@@ -14,7 +14,6 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import NamedTuple, TypeAlias
 
-
 #: Picoseconds.
 Time: TypeAlias = int
 #: Hertz.
