@@ -190,10 +190,10 @@ def _advice(name: str) -> str:
         return ""
     if name[:1].isupper() and name in import_module(f"{__name__}.am").__all__:
         return f"; the AMALTHEA class is {__name__}.am.{name}"
-    from difflib import get_close_matches
+    from amalthea_uros._internal.similar import did_you_mean
 
-    near = get_close_matches(name, __all__, n=1)
-    return f"; did you mean {near[0]!r}?" if near else ""
+    near = did_you_mean(name, __all__)
+    return f"; {near}" if near else ""
 
 
 def __dir__() -> list[str]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from decimal import MAX_EMAX, ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
-from difflib import get_close_matches
 from enum import StrEnum
 from fractions import Fraction
 from math import ceil, floor
@@ -35,6 +34,8 @@ _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:[^\s\d.,:+-]\S*)?)\s*", re.ASCII)
 _COMMA = re.compile(r"\s*[+-]?\d+(?:,\d+)+(?:\.\d*)?\s*[^\s\d]*\s*", re.ASCII)
 _LONGEST_NUMBER = 40
+#: Longer texts are no quantities; to match them could take a time that grows with the square of the length.
+_LONGEST_QUANTITY = 200
 #: Quantities fit into 64 bits, so that arrays can hold them: times up to 106 days.
 _LIMIT = 2**63
 
@@ -95,9 +96,10 @@ def parse(text: str, dimension: Dimension) -> Fraction:
     ------
     ValueError : no number, no unit, an unknown unit, out of range, or not a whole number of the internal unit.
     """
-    if _COMMA.fullmatch(text):
+    is_short = len(text) <= _LONGEST_QUANTITY
+    if is_short and _COMMA.fullmatch(text):
         raise ValueError(f"{shortened(text)!r} contains a comma; write decimals with a point and no separators for thousands")
-    match = _QUANTITY.fullmatch(text)
+    match = _QUANTITY.fullmatch(text) if is_short else None
     if match is None or len(match[1]) > _LONGEST_NUMBER:
         raise ValueError(f"{shortened(text)!r} is not {dimension.article} such as {dimension.example!r}")
     number, unit = match.groups()
@@ -114,6 +116,8 @@ def parse(text: str, dimension: Dimension) -> Fraction:
 
 
 def _advice(unit: str, dimension: Dimension) -> str:
+    from difflib import get_close_matches  # only after a mistake
+
     folded = {known.lower(): known for known in dimension.units}
     near = folded.get(unit.lower()) or next(iter(get_close_matches(unit, dimension.units, n=1)), None)
     return f", did you mean {near!r}?" if near else f"; known units: {', '.join(dimension.units)}"

@@ -150,3 +150,13 @@ def test_bounds_in_tables_remain_bounds(time):
     assert down <= time <= up
     # The last of four digits is at most a thousandth.
     assert up - down <= abs(time) / 1000
+
+
+@pytest.mark.parametrize(
+    "text", ["9" * 200_000, "9" * 100_000 + " ms", " " * 100_000 + "1 ms" + " " * 100_000, "1" + "m" * 200_000]
+)
+def test_very_long_texts_are_refused_at_once(text):
+    # To match them with the expression took a time that grows with the square of their length.
+    with pytest.raises(ValueError, match="is not a time such as") as error:
+        units.parse_time(text)
+    assert len(str(error.value)) < 100

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import Protocol, SupportsIndex, TypeVar, overload
+
+from amalthea_uros._internal.similar import did_you_mean
 
 
 class HasName(Protocol):
@@ -37,8 +38,7 @@ class Results(tuple[N, ...]):
             return super().__getitem__(key)
         found = next((result for result in self if result.name == key), None)
         if found is None:
-            near = get_close_matches(key, self.names, n=3)
-            advice = f"did you mean {', '.join(map(repr, near))}?" if near else f"known: {', '.join(self.names) or 'none'}"
+            advice = did_you_mean(key, self.names) or f"known: {', '.join(self.names) or 'none'}"
             raise KeyError(f"no result named {key!r}; {advice}")
         return found
 

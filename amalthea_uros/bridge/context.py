@@ -111,15 +111,17 @@ class Extracting:
     def name(self) -> None:
         """Give every referable object a name that is unique within its kind."""
         taken: set[tuple[Kind, str]] = set()
+        #: The next number to try for a name, so that thousands of equal names are numbered in linear time.
+        numbers: dict[tuple[Kind, str], int] = {}
         for kind, element in self._named():
             own = element.__dict__.get("name") or f"unnamed_{type(element).__name__}"
             found = own
             if (kind, found) in taken:
                 found = element.qualified_name if "/" in element.qualified_name else own
-                count = 2
                 while (kind, found) in taken:
-                    found = f"{own}_{count}"
-                    count += 1
+                    number = numbers.get((kind, own), 2)
+                    found = f"{own}_{number}"
+                    numbers[kind, own] = number + 1
                 message = f"duplicate name {own!r}: this {type(element).__name__} is called {found!r} in the results"
                 self.note("EXT002", message, element)
             taken.add((kind, found))

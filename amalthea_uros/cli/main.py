@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from amalthea_uros._internal.suggestions import did_you_mean
+from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros._version import __version__
 
 #: Command -> its line in `amuros --help`; the module with the same name has the rest.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Self, SupportsIndex, TypeVar
 
 if TYPE_CHECKING:
@@ -10,6 +11,7 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Document
 
 E = TypeVar("E", bound="Element")
+_NO_PLACES: Mapping[Element, int] = MappingProxyType({})
 
 _set = object.__setattr__
 
@@ -86,12 +88,21 @@ class ReferenceList(list[E]):
 class ContainmentList(ReferenceList[E]):
     """Parts of one object, in order. Adding an object makes the owner its container."""
 
-    __slots__ = ()
+    __slots__ = ("_places",)
 
     def __init__(self, owner: Element, values: Iterable[E] = ()) -> None:
         super().__init__(owner)
         for value in values:
             self.append(value)
+
+    def place_of(self, value: E) -> int | None:
+        """The index of a part; None if it is not one. Asking for all parts takes time in proportion to their number."""
+        # The reader makes lists without their constructor, so that there are no places at first.
+        place = getattr(self, "_places", _NO_PLACES).get(value)
+        if place is None or place >= len(self) or self[place] is not value:
+            self._places = {part: index for index, part in enumerate(self)}
+            place = self._places.get(value)
+        return place
 
     def append(self, value: E) -> None:
         attach(self._owner, value)

@@ -16,9 +16,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, ClassVar, Self, SupportsIndex, TypeVar, dataclass_transform
 
+from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.metamodel.containment import ReferenceList, attach, detach, mark_modified
 from amalthea_uros.metamodel.features import containments_of, features_of
 
@@ -255,6 +255,5 @@ def references_of(element: Element) -> Iterator[tuple[str, Any]]:
 
 
 def _unknown_feature(cls: type[Element], name: str) -> str:
-    near = get_close_matches(name, features_of(cls), n=1)
-    hint = f", did you mean {near[0]!r}?" if near else ""
-    return f"{cls.__name__} has no feature {name!r}{hint}"
+    near = did_you_mean(name, features_of(cls))
+    return f"{cls.__name__} has no feature {name!r}{f', {near}' if near else ''}"

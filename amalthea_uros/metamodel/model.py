@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from difflib import get_close_matches
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
+from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.diagnostics import Finding, Location
 from amalthea_uros.metamodel.changes import Changes
 from amalthea_uros.metamodel.classes.base import Amalthea
@@ -163,9 +163,8 @@ class Model:
         found = self.find(cls, name)
         if found is None:
             names = [n for n, elements in self._by_name.items() if any(isinstance(e, cls) for e in elements)]
-            near = get_close_matches(name, names, n=3)
-            hint = f", did you mean {', '.join(map(repr, near))}?" if near else ""
-            raise KeyError(f"no {cls.__name__} named {name!r}{hint}")
+            near = did_you_mean(name, names)
+            raise KeyError(f"no {cls.__name__} named {name!r}{f', {near}' if near else ''}")
         return found
 
     def references_to(self, target: Element) -> list[Reference]:

@@ -111,10 +111,8 @@ def _step(holder: Element, part: Element) -> str:
         held = holder.__dict__.get(feature.name)
         if held is part:
             return feature.xml_name
-        if feature.many and held:
-            for index, element in enumerate(held):
-                if element is part:
-                    return f"{feature.xml_name}[{index}]"
+        if feature.many and held and (index := held.place_of(part)) is not None:
+            return f"{feature.xml_name}[{index}]"
     raise ValueError(f"{part!r} is not a part of {holder!r}")
 
 

@@ -147,12 +147,18 @@ class Source:
             self._lines[number] = self.text[starts[number - 1] : end].rstrip("\r\n")
         return self._lines[number]
 
+    @cached_property
+    def _attribute_offsets(self) -> dict[int, dict[str, int]]:
+        return {}
+
     def attribute_offset(self, start: int, name: str) -> int:
         """Offset of an attribute of the tag that starts at `start`; of the tag itself if it has no such attribute."""
-        for attribute in attributes_of_tag(self.text, start):
-            if attribute["name"] == name:
-                return attribute.start("name")
-        return start
+        # A tag is read once, because it may have thousands of attributes with findings.
+        offsets = self._attribute_offsets.get(start)
+        if offsets is None:
+            found = {attribute["name"]: attribute.start("name") for attribute in attributes_of_tag(self.text, start)}
+            offsets = self._attribute_offsets[start] = found
+        return offsets.get(name, start)
 
     @property
     def newline(self) -> str:

@@ -26,6 +26,7 @@ class PathsResult:
     ----------
     model : the file or folder that was read
     paths : the shortest first
+    are_all : whether there are no other paths
     chains : the analysis of each path as a chain
     findings : problems found while reading the file
     """
@@ -34,6 +35,7 @@ class PathsResult:
     start: str
     end: str
     paths: tuple[ProcessPath, ...]
+    are_all: bool
     chains: tuple[ChainResult, ...]
     findings: tuple[Finding, ...]
 
@@ -53,12 +55,13 @@ def find_paths(model: StrPath, start: str, end: str) -> PathsResult:
         found = paths(system, start, end)
     except UnresolvedError as error:
         raise InvalidArgumentError(str(error)) from None
-    chains = analyze_system(with_chains(system, found)).chains if found else ()
+    chains = analyze_system(with_chains(system, found.found)).chains if found.found else ()
     return PathsResult(
         model=Path(model),
         start=start,
         end=end,
-        paths=tuple(found),
+        paths=found.found,
+        are_all=found.are_all,
         chains=tuple(chains),
         findings=unsuppressed(opened.findings),
     )

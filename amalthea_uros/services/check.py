@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
-from amalthea_uros._internal.suggestions import did_you_mean
+from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.diagnostics import Finding, Severity, by_place
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.findings.baseline import baseline_text, read_baseline

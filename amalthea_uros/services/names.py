@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from amalthea_uros._internal.suggestions import did_you_mean
+from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import ALL_LABELS

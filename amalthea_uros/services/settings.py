@@ -5,11 +5,11 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 from amalthea_uros._internal.files import is_file, resolved
+from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings.targets import TARGETS
@@ -103,7 +103,7 @@ class _Reader:
         if not isinstance(table, dict):
             raise self.wrong("must be a table")
         if unknown := sorted(table.keys() - _READERS.keys()):
-            near = get_close_matches(unknown[0], _READERS, n=1)
+            near = similar(unknown[0], _READERS)
             advice = f"Did you mean {near[0]!r}?" if near else f"Known settings: {', '.join(_READERS)}."
             raise self.wrong(f"unknown setting {unknown[0]!r}", advice)
         found: dict[str, Any] = {_field(key): _READERS[key](self, key, value) for key, value in table.items()}

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from difflib import get_close_matches
 from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 from pydantic_core import ErrorDetails
 
+from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Sequence, Source
 from amalthea_uros.spec.section import Section
@@ -86,7 +86,7 @@ def finding_of(mistake: Mistake, source: Source, kind: type[Section]) -> Finding
 def intended_key(mistake: Mistake, kind: type[Section], similarity: float = _SIMILAR) -> str | None:
     """The key that an unknown key is probably a misspelling of."""
     known = _keys(mistake.details["loc"][:-1], kind)
-    return _most_similar(mistake.key.replace("-", "_"), known, similarity)
+    return next(iter(similar(mistake.key.replace("-", "_"), known, cutoff=similarity)), None)
 
 
 def intended_word(mistake: Mistake, similarity: float = _SIMILAR) -> str | None:
@@ -95,13 +95,7 @@ def intended_word(mistake: Mistake, similarity: float = _SIMILAR) -> str | None:
     if not isinstance(given, str):
         return None
     expected = str(mistake.details["ctx"]["expected"]).replace(" or ", ", ").split(", ")
-    return _most_similar(given, [word.strip("'") for word in expected], similarity)
-
-
-def _most_similar(word: str, known: list[str], similarity: float) -> str | None:
-    folded = {name.lower(): name for name in known}
-    near = get_close_matches(word.lower(), folded, n=1, cutoff=similarity)
-    return folded[near[0]] if near else None
+    return next(iter(similar(given, [word.strip("'") for word in expected], cutoff=similarity)), None)
 
 
 def without_consequences(mistakes: list[Mistake]) -> list[Mistake]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from pathlib import Path
 
 from amalthea_uros._internal.resources import PLATFORMS
+from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.hardware import Hardware, Platform
@@ -52,7 +52,7 @@ def _file(stated: Hardware, name: str, folder: Path) -> Path:
         known = known_platforms()
         if name in known:
             return PLATFORMS / f"{name}.yaml"
-        near = get_close_matches(name, known, n=1)
+        near = similar(name, known)
         message = f"unknown platform {name!r}"
         advice = (
             f"Did you mean {near[0]!r}?" if near else f"Known platforms: {', '.join(known)}; or give a file, e.g. ./mine.yaml."

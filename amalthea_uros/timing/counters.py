@@ -7,13 +7,23 @@ What every n-th execution of a runnable executes is therefore in known jobs of a
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import gcd
 from typing import TypeAlias
 
-from amalthea_uros.perf.activities import WITH_PARTS, Activity, Call, Group, SenderReceiverAccess, ServerCall, inner_activities
+from amalthea_uros._internal.graphs import bottom_up
+from amalthea_uros.perf.activities import (
+    WITH_PARTS,
+    Activity,
+    Call,
+    Group,
+    SenderReceiverAccess,
+    ServerCall,
+    inner_activities,
+    walk,
+)
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 
@@ -129,6 +139,21 @@ class CallSites:
         return of_one_in(inner, every.index(site) + 1, len(every))
 
     @cached_property
+    def sizes(self) -> Mapping[str, int]:
+        """The activities that an execution of each runnable reaches, with those of called runnables at each call.
+
+        Each runnable is counted once, because the number can double with each level of calls. In a circle of calls, at least one
+        call counts as one activity.
+        """
+        found: dict[str, int] = {}
+        runnables = self.system.runnables
+        for name in bottom_up(
+            runnables, lambda name: (called for called in _called(runnables[name].activities) if called in runnables)
+        ):
+            found[name] = reached(runnables[name].activities, found)
+        return found
+
+    @cached_property
     def _of_calls(self) -> dict[int, list[_Site]]:
         """By the identity of the call; equal calls are different places."""
         found: dict[int, list[_Site]] = {}
@@ -176,6 +201,16 @@ class CallSites:
     def _is_once(self, call: Call) -> bool:
         runnable = self.system.runnables.get(call.runnable)
         return call.times is None and (runnable is None or runnable.condition is None)
+
+
+def reached(activities: tuple[Activity, ...], sizes: Mapping[str, int]) -> int:
+    """The activities that one execution of some activities reaches, with those of called runnables at each call."""
+    here = list(walk(activities))
+    return len(here) + sum(sizes.get(activity.runnable, 0) for activity in here if isinstance(activity, Call))
+
+
+def _called(activities: tuple[Activity, ...]) -> Iterator[str]:
+    return (activity.runnable for activity in walk(activities) if isinstance(activity, Call))
 
 
 def _is_uncounted(site: _Site) -> bool:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 
+from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import AccessKind, LabelAccess, walk
 from amalthea_uros.perf.mapping import Placement
@@ -58,11 +58,12 @@ def check_misspelled_labels(description: Description, runnables: Mapping[str, Ru
                 readers.setdefault(access.label, runnable.origin)
             else:
                 written.add(access.label)
+    suggestions = Suggestions()
     unread = written - readers.keys() - description.labels.keys()
     for name, origin in readers.items():
         if name in written or name in description.labels:
             continue
-        near = get_close_matches(name, unread, n=1, cutoff=0.8)
+        near = suggestions.nearest(name, unread, cutoff=0.8)
         if near:
-            message = f"label {name!r} is read but never written, and {near[0]!r} is written but never read"
-            notes.warning("APP008", message, origin, f"Did you mean {near[0]!r}? If not, define both under 'labels'.")
+            message = f"label {name!r} is read but never written, and {near!r} is written but never read"
+            notes.warning("APP008", message, origin, f"Did you mean {near!r}? If not, define both under 'labels'.")

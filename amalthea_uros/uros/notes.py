@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 
+from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Location, Severity
 
 _LONGEST_LIST = 12
@@ -23,6 +23,7 @@ class Notes:
     def __init__(self) -> None:
         self.findings: list[Finding] = []
         self._known: set[Finding] = set()
+        self._suggestions = Suggestions()
 
     def _add(self, finding: Finding) -> None:
         if finding not in self._known:
@@ -50,7 +51,19 @@ class Notes:
         owner : what the name would have to be defined in, e.g. "node 'n'"; "" for the file
         """
         scope = f" in {owner}" if owner else ""
-        self.error("APP001", f"undefined {kind} {name!r}{scope}", location, _suggestion(kind, name, sorted(set(defined))))
+        self.error("APP001", f"undefined {kind} {name!r}{scope}", location, self._suggestion(kind, name, defined))
+
+    def _suggestion(self, kind: str, name: str, defined: Iterable[str]) -> str:
+        if self._suggestions.comparisons <= 0:
+            return "Define it, or correct the name."
+        known = sorted(set(defined))
+        if not known:
+            return f"Define it: there is no {kind} yet."
+        near = self._suggestions.nearest(name, known)
+        if near:
+            return f"Did you mean {near!r}?"
+        more = f" and {len(known) - _LONGEST_LIST} more" if len(known) > _LONGEST_LIST else ""
+        return f"Use one of: {', '.join(known[:_LONGEST_LIST])}{more}."
 
     def duplicate(self, kind: str, name: str, location: Location | None, first: Location | None) -> None:
         """Add an error about a name that is defined twice.
@@ -71,13 +84,3 @@ class Notes:
 def first_defined(first: Location | None) -> str:
     """A reference to the first definition, to be appended to a message."""
     return f" (first defined on line {first.line})" if first and first.line else ""
-
-
-def _suggestion(kind: str, name: str, defined: list[str]) -> str:
-    if not defined:
-        return f"Define it: there is no {kind} yet."
-    near = get_close_matches(name, defined, n=1)
-    if near:
-        return f"Did you mean {near[0]!r}?"
-    more = f" and {len(defined) - _LONGEST_LIST} more" if len(defined) > _LONGEST_LIST else ""
-    return f"Use one of: {', '.join(defined[:_LONGEST_LIST])}{more}."

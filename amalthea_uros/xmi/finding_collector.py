@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from difflib import get_close_matches
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
+from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.metamodel.source import Source
 
@@ -36,15 +36,16 @@ class FindingCollector:
 
     def __init__(self) -> None:
         self._findings: dict[tuple[str, str], CollectedFinding] = {}
+        self._suggestions = Suggestions()
 
-    def add(self, finding: CollectedFinding, name: str = "", known_names: Iterable[str] = ()) -> None:
+    def add(self, finding: CollectedFinding, name: str = "", known_names: Collection[str] = ()) -> None:
         """Add a problem; if it is about an unknown name, the most similar known one is suggested."""
         known = self._findings.get((finding.rule, finding.message))
         if known is not None:
             known.count += 1
             return
         if name:
-            finding.help = did_you_mean(name, known_names) + finding.help
+            finding.help = self._suggestions.advice(name, known_names) + finding.help
         self._findings[finding.rule, finding.message] = finding
 
     def __iter__(self) -> Iterator[CollectedFinding]:
@@ -56,9 +57,3 @@ def location(path: Path, source: Source, byte_offset: int, attribute: str = "") 
     offset = source.character_offset(byte_offset)
     line, column = source.position(source.attribute_offset(offset, attribute) if attribute else offset)
     return Location(path, line, column, source.line(line))
-
-
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """A suggestion, "" if no known name is similar."""
-    near = get_close_matches(name, list(known), n=1)
-    return f"Did you mean {near[0]!r}? " if near else ""

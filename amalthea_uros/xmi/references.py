@@ -7,12 +7,12 @@ text, so that nothing is lost and everything else can continue.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote
 
+from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.classes import CallArgument, Namespace
 from amalthea_uros.metamodel.containment import ReferenceList
@@ -23,8 +23,8 @@ from amalthea_uros.xmi.finding_collector import location
 from amalthea_uros.xmi.plan import FeaturePlan, plans
 from amalthea_uros.xmi.reader import PendingReference, ReadResult
 
-#: After so many comparisons no more similar names are searched, because that would take longer than reading.
-MAX_COMPARISONS = 20_000
+#: Of objects with the same name, so many are listed.
+MAX_PLACES = 12
 
 _set = object.__setattr__
 
@@ -73,6 +73,13 @@ class Use(NamedTuple):
     is_href: bool
 
 
+class _Match(NamedTuple):
+    """What a text means, and the id of the problem with it, "" if there is none."""
+
+    target: Element | None
+    problem: str
+
+
 class _Resolver:
     def __init__(self, results: Sequence[ReadResult], linked: Mapping[str, Element]) -> None:
         self.results = results
@@ -85,10 +92,13 @@ class _Resolver:
         self.names: dict[Element, str] = {}
         self.proxies: dict[tuple[str, type[Element]], Element] = {}
         self.problems: dict[tuple[str, str], list[Use]] = {}
-        self.comparisons = 0
+        #: What the texts that are no unique names mean, each looked up once, because thousands of objects may have the same name.
+        self.matches: dict[tuple[Document, str, type[Element]], _Match] = {}
+        self.suggestions = Suggestions()
 
     def index(self, elements: Iterable[Element]) -> None:
         """Enter objects under their unique names."""
+        self.matches.clear()
         by_id, names, in_namespace, suffixes = self.by_id, self.names, self.in_namespace, self.suffixes
         for element in elements:
             cls = type(element)
@@ -124,19 +134,29 @@ class _Resolver:
     def find(self, use: Use, text: str) -> Element:
         """The target of a reference that is not exactly the unique name of one fitting object."""
         document, holder, feature, _ = use
-        candidates = self.candidates(document, text)
-        fitting = [element for element in candidates if isinstance(element, feature.target)]
-        if not fitting:
-            self.problem("XMI023" if candidates else "XMI020", text, use)
+        key = (document, text, feature.target)
+        match = self.matches.get(key)
+        if match is None:
+            match = self.matches[key] = self.match(*key)
+        if match.problem:
+            self.problem(match.problem, text, use)
+        target = match.target
+        if target is None:
             return self.proxy(text, feature)
-        if len(fitting) > 1:
-            self.problem("XMI021", text, use)
-        target = next((element for element in fitting if element.document is document), fitting[0])
         canonical = self.names[target]
         if canonical != text:
             self.problem("XMI024", text, use)
             document.spellings[holder, f"{feature.xml_name} {text}"] = Spelling(text, canonical)
         return target
+
+    def match(self, document: Document, text: str, target: type[Element]) -> _Match:
+        """The object of a class that a text in a document means."""
+        candidates = self.candidates(document, text)
+        fitting = [element for element in candidates if isinstance(element, target)]
+        if not fitting:
+            return _Match(None, "XMI023" if candidates else "XMI020")
+        found = next((element for element in fitting if element.document is document), fitting[0])
+        return _Match(found, "XMI021" if len(fitting) > 1 else "")
 
     def problem(self, rule: str, text: str, use: Use) -> None:
         self.problems.setdefault((rule, text), []).append(use)
@@ -231,11 +251,13 @@ class _Resolver:
                 "Correct the reference, or add the object.",
             )
         if rule == "XMI021":
-            places = [self.place(element) for element in self.candidates(self.results[0].document, text)]
+            candidates = self.candidates(self.results[0].document, text)
+            places = [self.place(element) for element in candidates[:MAX_PLACES]]
+            more = f" and {len(candidates) - MAX_PLACES:,} more" if len(candidates) > MAX_PLACES else ""
             return (
                 Severity.WARNING,
-                f"ambiguous reference: {where}, and {len(places)} objects match",
-                f"The first one is used. Rename all but one of them: {', '.join(places)}.",
+                f"ambiguous reference: {where}, and {len(candidates)} objects match",
+                f"The first one is used. Rename all but one of them: {', '.join(places)}{more}.",
             )
         if rule == "XMI023":
             return (
@@ -252,9 +274,7 @@ class _Resolver:
 
     def near(self, text: str) -> str:
         """A suggestion of the object that may be meant, "" if there is none."""
-        self.comparisons += len(self.by_id)
-        near = get_close_matches(text, self.by_id, n=1, cutoff=0.8) if self.comparisons < MAX_COMPARISONS else []
-        return f"Did you mean {near[0]!r}? " if near else ""
+        return self.suggestions.advice(text, self.by_id, cutoff=0.8)
 
     def place(self, element: Element) -> str:
         document = element.document

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache, partial
 from typing import TYPE_CHECKING, cast
 
 from lxml import etree
 
 from amalthea_uros._internal.resources import resource_folder
+from amalthea_uros._internal.similar import similar
 from amalthea_uros.metamodel.factfile import Kind
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, Facts, facts, spelled, supported_versions
 
@@ -168,7 +168,7 @@ def _quoted(names: Sequence[str]) -> str:
 
 def _nearest(name: str, allowed: Sequence[str]) -> str | None:
     """Advice: the most similar name, or all that are allowed."""
-    close = get_close_matches(name, allowed, n=1)
+    close = similar(name, allowed)
     if close:
         return f'did you mean "{close[0]}"?'
     return f"allowed: {_quoted(sorted(allowed))}" if allowed else None

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from amalthea_uros._internal.failures import failure
+from amalthea_uros.analyze.chains.job_chains import TOO_MANY_JOBS, JobBudget
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
@@ -28,6 +29,7 @@ class ChainEvaluator:
     """Evaluates the chains of a system."""
 
     solution: Solution
+    budget: JobBudget = field(default_factory=JobBudget)
     timing: StageTiming = field(init=False)
     controllers: Mapping[str, str] = field(init=False)
     _unknown_phases: Mapping[Occurrence, int] = field(init=False)
@@ -68,6 +70,8 @@ class ChainEvaluator:
         if any(_reads_explicitly(stage) for route in every for stage in self._stages(route)):
             self.context.notes.assume("an explicit read sees what is written at the same instant")
         found = self._evaluated(ways)
+        if self.budget.is_exceeded:
+            self.context.notes.assume(f"{TOO_MANY_JOBS}; the chains without them have bounds of other methods")
         all_values = _combine(unfolded, found.values)
         tightest = _tightest(all_values)
         has_bound = any(value.quantity is Quantity.MAX_REDUCED_REACTION_TIME for value in tightest)
@@ -111,8 +115,9 @@ class ChainEvaluator:
                 found.reason = str(error)
                 found.values[events] = []
                 continue
-            found.values[events] = _worst_of([list(method.values()) for method in methods])
-            found.why = found.why or methods[0].why
+            values = [list(method.values()) for method in methods]
+            found.values[events] = _worst_of(values)
+            found.why = found.why or methods[0].why(values[0])
             found.why_unbounded = found.why_unbounded or next((m.why_unbounded for m in methods if m.why_unbounded), "")
         return found
 
@@ -188,7 +193,7 @@ class ChainEvaluator:
                 parts.append([])
             parts[-1].append(self.timing.group(group, follower))
             before = controller
-        return RouteLatencies(parts, self.timing.unit, is_certain=route.is_timed)
+        return RouteLatencies(parts, self.timing.unit, is_certain=route.is_timed, budget=self.budget)
 
     def _controller(self, stage: Stage) -> str:
         scheduled = self.context.scheduled.get(stage.process.name)

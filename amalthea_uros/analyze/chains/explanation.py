@@ -12,7 +12,7 @@ import numpy as np
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import terms
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator, route_text
-from amalthea_uros.analyze.chains.job_chains import backward, build_job_chains, forward
+from amalthea_uros.analyze.chains.job_chains import JobBudget, backward, forward
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, reach
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
@@ -289,7 +289,9 @@ def _worst_path(part: Sequence[TimedStage], quantity: Quantity) -> _Path | None:
     """The job chain with the greatest latency; None if there are no job chains."""
     bounds = [timed.read_write for timed in part if timed.read_write is not None]
     chain = [each.pessimistic for each in bounds]
-    found = build_job_chains(chain, max(each.steady_state_start for each in bounds)) if len(bounds) == len(part) else None
+    if len(bounds) < len(part):
+        return None
+    found = JobBudget().build(chain, max(each.steady_state_start for each in bounds))
     if found is None:
         return None
     until = int(max(found.ends.max(), found.next_writes.max())) + 2 * reach(chain)

@@ -23,8 +23,31 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
 
 SOURCE = "Günzel and others 2021, 2023"
-#: Job chains are not built for more jobs; other methods give bounds.
+#: The job chains of all chains of a system together have at most so many jobs; for the others, other methods give bounds.
 MAX_JOBS = 10_000_000
+TOO_MANY_JOBS = f"the job chains of all chains together would have more than {MAX_JOBS:,} jobs"
+
+
+@dataclass(slots=True)
+class JobBudget:
+    """How many jobs the job chains of a system may still have.
+
+    Attributes
+    ----------
+    is_exceeded : whether job chains were not built because of that
+    """
+
+    jobs: int = MAX_JOBS
+    is_exceeded: bool = False
+
+    def build(self, chain: Sequence[ReadWriteTimes], steady_state_start: Time) -> JobChains | None:
+        """The job chains of one cycle; None if they would have too many jobs."""
+        jobs = job_count(chain, steady_state_start)
+        if jobs > self.jobs:
+            self.is_exceeded = True
+            return None
+        self.jobs -= jobs
+        return build_job_chains(chain, steady_state_start)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,20 +126,30 @@ class JobChains:
         return self.writes - self.starts
 
 
-def build_job_chains(chain: Sequence[ReadWriteTimes], steady_state_start: Time) -> JobChains | None:
-    """The job chains of one cycle; None if there are too many jobs.
+def job_count(chain: Sequence[ReadWriteTimes], steady_state_start: Time) -> int:
+    """The number of jobs of which the job chains of one cycle are made."""
+    _, until = _window(chain, steady_state_start)
+    return sum(len(task.releases) * (until // task.until) for task in chain)
+
+
+def _window(chain: Sequence[ReadWriteTimes], steady_state_start: Time) -> tuple[Time, Time]:
+    """The start of the cycle, and the end of the jobs that are needed for it."""
+    cycle, length = lcm(*(task.cycle for task in chain)), reach(chain)
+    # The cycle starts late enough that chains which end in it, or shortly before it, start in the steady state.
+    start = steady_state_start + 2 * length
+    return start, start + cycle + 2 * length
+
+
+def build_job_chains(chain: Sequence[ReadWriteTimes], steady_state_start: Time) -> JobChains:
+    """The job chains of one cycle.
 
     Parameters
     ----------
     chain : the tasks of the chain, in order
     steady_state_start : time from which the jobs of all tasks repeat
     """
+    start, until = _window(chain, steady_state_start)
     cycle, length = lcm(*(task.cycle for task in chain)), reach(chain)
-    # The cycle starts late enough that chains which end in it, or shortly before it, start in the steady state.
-    start = steady_state_start + 2 * length
-    until = start + cycle + 2 * length
-    if sum(len(task.releases) * (until // task.until) for task in chain) > MAX_JOBS:
-        return None
     whole = [task.extended(until) for task in chain]
     first, last = whole[0], whole[-1]
     begin = _jobs_in(first, start, start + cycle)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -18,7 +18,7 @@ from amalthea_uros.units import Time
 _Make = Callable[[Quantity, "Time | float"], Value]
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.chains.job_chains import JobChains
+    from amalthea_uros.analyze.chains.job_chains import JobBudget, JobChains
 
 EXACT = "job chains over the hyperperiod"
 BOUNDED = "job chains with earliest reads and latest writes"
@@ -34,15 +34,16 @@ class RouteLatencies:
     parts : the stages on each controller, in order
     unit : time units per picosecond
     is_certain : whether all events are connected by links of known time
+    budget : for the job chains of all routes
     """
 
     parts: Sequence[Sequence[TimedStage]]
     unit: int
     is_certain: bool
+    budget: JobBudget
 
-    @property
-    def why(self) -> str:
-        """Why the tightest values are exact, or only bounds."""
+    def why(self, values: Iterable[Value]) -> str:
+        """Why the tightest of the values are exact, or only bounds."""
         everything = [timed for part in self.parts for timed in part]
         reason = next((timed.reason for timed in everything if timed.reason), "")
         if reason:
@@ -51,6 +52,8 @@ class RouteLatencies:
             return "bounds: the clocks of the controllers are not synchronized"
         if not self.is_certain:
             return "bounds: the time at which an event of the chain causes the next one is unknown"
+        if not any(value.source == job_chains.SOURCE for value in values):
+            return f"bounds: {job_chains.TOO_MANY_JOBS}"
         varying = next((timed.task.name for timed in everything if not timed.is_exact), None)
         if varying is not None:
             return f"bounds: the read and write times of {varying!r} can vary"
@@ -75,7 +78,7 @@ class RouteLatencies:
     # By job chains
 
     def _of_job_chains(self) -> Iterator[Value]:
-        found = [_job_chains(part, pessimistic=True) for part in self.parts]
+        found = [self._job_chains(part, pessimistic=True) for part in self.parts]
         if len(found) == 1 and found[0] is not None:
             yield from self._of_single_clock(found[0])
         elif None not in found:
@@ -108,7 +111,7 @@ class RouteLatencies:
 
     def _minima(self, value: _Make) -> Iterator[Value]:
         """Lower bounds by latest reads and earliest writes."""
-        chains = _job_chains(self.parts[0], pessimistic=False)
+        chains = self._job_chains(self.parts[0], pessimistic=False)
         if chains is None:
             return
         for quantity, times in (
@@ -118,6 +121,13 @@ class RouteLatencies:
             # With a long time between reading and writing, no job of the cycle has to pass anything on.
             if times.size:
                 yield value(quantity, max(0, int(times.min())))
+
+    def _job_chains(self, part: Sequence[TimedStage], pessimistic: bool) -> JobChains | None:
+        bounds = [timed.read_write for timed in part if timed.read_write is not None]
+        chain = [each.pessimistic if pessimistic else each.optimistic for each in bounds]
+        if len(bounds) < len(part) or not all(len(task.releases) for task in chain):
+            return None
+        return self.budget.build(chain, max(each.steady_state_start for each in bounds))
 
     def _summed(self, found: Sequence[JobChains]) -> Iterator[Value]:
         """The sum over controllers without a common clock (theorem 5.8 of RTAS 2021)."""
@@ -178,11 +188,3 @@ class RouteLatencies:
         if len({task.offset for task in tasks}) == 1:
             age = bi.reduced_data_age(tasks)
             yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, age, "grid of releases", bi.SOURCE)
-
-
-def _job_chains(part: Sequence[TimedStage], pessimistic: bool) -> JobChains | None:
-    bounds = [timed.read_write for timed in part if timed.read_write is not None]
-    chain = [each.pessimistic if pessimistic else each.optimistic for each in bounds]
-    if len(bounds) < len(part) or not all(len(task.releases) for task in chain):
-        return None
-    return job_chains.build_job_chains(chain, max(each.steady_state_start for each in bounds))

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import reduce
 from typing import Any
 
+from amalthea_uros._internal.similar import similar
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.changes.change import Change
@@ -79,7 +79,7 @@ def _keys(system: System, name: str, key: str) -> Iterator[Key[Any]]:
     found = [kind.keys[key] for kind in kinds if key in kind.keys]
     if not found:
         existing = list(dict.fromkeys(each for kind in kinds for each in kind.keys))
-        near = get_close_matches(key, existing, n=1)
+        near = similar(key, existing)
         advice = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(existing)}"
         raise InvalidArgumentError(f"the {' or '.join(kind.name for kind in kinds)} {name!r} has no {key!r}; {advice}")
     return iter(found)

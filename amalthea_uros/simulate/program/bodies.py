@@ -37,6 +37,7 @@ def process_code(parts: Parts, process: Process, core: str, hooks: Hooks, schedu
 
 def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> Code:
     model = body.context.demand_model
+    body.require_limited(process.activities)
     entry, exit_ = model.overheads.of_isr(process, body.core) if isinstance(process, Isr) else (None, None)
     copies = model.copies(process, body.core) if model.settings.memory is Memory.IMPLICIT else []
     body.add_all(body.hooks.start)

@@ -23,6 +23,7 @@ from amalthea_uros.simulate.program.resources import Resources, constant
 from amalthea_uros.simulate.program.watches import Source
 from amalthea_uros.simulate.sampling.streams import Stream
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.counters import reached
 from amalthea_uros.timing.multiframe import Frame
 from amalthea_uros.timing.settings import Memory
 
@@ -77,12 +78,17 @@ class Body:
 
     # Activities.
 
+    def require_limited(self, activities: tuple[Activity, ...]) -> None:
+        """Refuse activities that are too many with all that they call, before they are expanded."""
+        if reached(activities, self.context.demand_model.sites.sizes) > MAX_OPERATIONS:
+            raise _too_many_activities()
+
     def activities(self, activities: Sequence[Activity]) -> None:
         """Append activities; they are numbered as in `timing.dataflow.positions`."""
         for activity in activities:
             self.number += 1
             if len(self.code.operations) > MAX_OPERATIONS:
-                raise NotSimulatedError(f"it executes more than {MAX_OPERATIONS:,} activities")
+                raise _too_many_activities()
             self._numbered(activity, self.number)
 
     def _numbered(self, activity: Activity, number: int) -> None:
@@ -188,3 +194,7 @@ class Body:
             number = self.parts.watches.number(source)
             if number is not None:
                 self.code.add(OBSERVE, number)
+
+
+def _too_many_activities() -> NotSimulatedError:
+    return NotSimulatedError(f"it executes more than {MAX_OPERATIONS:,} activities")

@@ -15,8 +15,9 @@ from amalthea_uros.perf.events import ChainReference, EventChain, EventSet, Para
 from amalthea_uros.perf.events import Sequence as InSequence
 from amalthea_uros.perf.system import System
 
-#: A chain with more routes is not evaluated.
+#: A chain with more routes, or with more events in all its branches, is not evaluated.
 MAX_ROUTES = 256
+MAX_EVENTS = 10_000
 
 
 class UnfoldError(Exception):
@@ -51,12 +52,47 @@ def unfold(chain: EventChain, system: System) -> tuple[Unfolded, tuple[str, ...]
     UnfoldError : it is part of itself, refers to something missing, or has less than two events.
     """
     unfolding = _Unfolding(system)
-    found = unfolding.item(chain, (chain.name,))
+    for part in _parts_first(chain, system):
+        unfolding.unfolded[part.name] = unfolding.item(part)
+    found = unfolding.unfolded[chain.name]
     if routes(found) > MAX_ROUTES:
         raise UnfoldError(f"it has more than {MAX_ROUTES} routes")
     if any(len(events) < 2 for events in sequences(found)):
         raise UnfoldError("it has no stimulus or no response, and no segment that defines one")
-    return found, tuple(unfolding.left_out)
+    return found, tuple(dict.fromkeys(unfolding.left_out))
+
+
+def _parts_first(chain: EventChain, system: System) -> list[EventChain]:
+    """A chain after all chains that it refers to, each once: chains that refer to the next one twice are unfolded in linear time."""
+    found: dict[str, EventChain] = {}
+    path: dict[str, Iterator[str]] = {chain.name: _references(chain)}
+    chains = {**system.chains, chain.name: chain}
+    while path:
+        name, references = next(reversed(path.items()))
+        reference = next((other for other in references if other not in found), None)
+        if reference is None:
+            path.popitem()
+            found[name] = chains[name]
+        elif reference in path:
+            above = list(path)
+            cycle = " -> ".join((*above[above.index(reference) :], reference))
+            raise UnfoldError(f"it contains itself: {cycle}")
+        elif reference not in chains:
+            raise UnfoldError(f"its part {reference!r} is not defined in the model")
+        else:
+            path[reference] = _references(chains[reference])
+    return list(found.values())
+
+
+def _references(chain: EventChain) -> Iterator[str]:
+    """The names of the chains that a chain and the segments within it refer to, in order."""
+    pending: list[ChainReference | EventChain | Segment] = [chain]
+    while pending:
+        item = pending.pop()
+        if isinstance(item, ChainReference):
+            yield item.chain
+        elif item.items is not None:
+            pending.extend(reversed(item.items.items))
 
 
 def routes(unfolded: Unfolded) -> int:
@@ -68,17 +104,23 @@ def routes(unfolded: Unfolded) -> int:
     return product
 
 
+def _size(unfolded: Unfolded) -> int:
+    """The number of events, forks and branches in all branches of a chain."""
+    return 1 + sum(1 if isinstance(part, str) else 1 + sum(map(_size, part.branches)) for part in unfolded)
+
+
 @dataclass(frozen=True, slots=True)
 class _Unfolding:
     system: System
     left_out: list[str] = field(default_factory=list)
+    unfolded: dict[str, Unfolded] = field(default_factory=dict)
 
-    def item(self, item: EventChain | Segment, above: tuple[str, ...]) -> Unfolded:
+    def item(self, item: EventChain | Segment) -> Unfolded:
         match item.items:
             case InSequence(items=items):
-                inner: Unfolded = tuple(part for each in items for part in self._part(each, above))
+                inner: Unfolded = tuple(part for each in self._parts(items) for part in each)
             case Parallel(items=items, completed=completed) if items:
-                branches = tuple(self._part(each, above) for each in items)
+                branches = tuple(self._parts(items))
                 inner = (Fork(branches, min(max(completed, 1), len(branches))),)
             case _:
                 inner = ()
@@ -98,16 +140,14 @@ class _Unfolding:
             inner = inner[:-1]
         return inner
 
-    def _part(self, item: ChainReference | Segment, above: tuple[str, ...]) -> Unfolded:
-        if isinstance(item, Segment):
-            return self.item(item, above)
-        if item.chain in above:
-            cycle = " -> ".join((*above[above.index(item.chain) :], item.chain))
-            raise UnfoldError(f"it contains itself: {cycle}")
-        chain = self.system.chains.get(item.chain)
-        if chain is None:
-            raise UnfoldError(f"its part {item.chain!r} is not defined in the model")
-        return self.item(chain, (*above, chain.name))
+    def _parts(self, items: Iterable[ChainReference | Segment]) -> Iterator[Unfolded]:
+        size = 0
+        for item in items:
+            part = self.item(item) if isinstance(item, Segment) else self.unfolded[item.chain]
+            size += _size(part)
+            if size > MAX_EVENTS:
+                raise UnfoldError(f"it has more than {MAX_EVENTS:,} events in all its branches")
+            yield part
 
     def _event(self, name: str | None) -> Unfolded:
         if name is None:

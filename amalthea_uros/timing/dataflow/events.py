@@ -97,8 +97,8 @@ class EventLocator:
     system: System
     guesses: dict[str, str] = field(default_factory=dict)
     sites: CallSites = field(init=False)
-    _positions: dict[str, list[ActivityPosition]] = field(default_factory=dict)
-    _too_complex: dict[str, str] = field(default_factory=dict)
+    #: The text says why there are none.
+    _positions: dict[str, list[ActivityPosition] | str] = field(default_factory=dict)
     _by_accessed: dict[str, dict[_Accessed, list[ActivityPosition]]] = field(default_factory=dict)
     _accessing_processes: dict[_Accessed, list[str]] | None = None
 
@@ -112,15 +112,16 @@ class EventLocator:
         ------
         UnresolvedError : it executes too many activities.
         """
-        if process in self._too_complex:
-            raise UnresolvedError(self._too_complex[process])
-        if process not in self._positions:
+        found = self._positions.get(process)
+        if found is None:
             try:
-                self._positions[process] = positions(self.system.processes[process], self.system, self.sites)
+                found = positions(self.system.processes[process], self.system, self.sites)
             except TooComplexError as error:
-                self._too_complex[process] = str(error)
-                raise UnresolvedError(str(error)) from None
-        return self._positions[process]
+                found = str(error)
+            self._positions[process] = found
+        if isinstance(found, str):
+            raise UnresolvedError(found)
+        return found
 
     def all_positions(self) -> Iterator[ActivityPosition]:
         """Everything that the jobs of all processes do; raises as `positions`."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise, product
 
@@ -18,15 +18,17 @@ from amalthea_uros.perf.events import (
     RunnableChange,
     RunnableEvent,
     Segment,
-    Sequence,
 )
+from amalthea_uros.perf.events import Sequence as InSequence
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.links import Dataflow, LinkKind, NamesOf, reads, writes
 from amalthea_uros.timing.dataflow.routes import is_linked
 
-#: More paths, or longer ones, are not listed.
+#: More paths, or longer ones, are not listed; between each two ends, no more than that are looked for.
 MAX_PATHS = 100
 MAX_PROCESSES = 12
+#: More ways through processes are not examined.
+MAX_WAYS = 10_000
 
 
 class UnknownEndError(Exception):
@@ -51,7 +53,7 @@ class Path:
     def chain(self, name: str) -> tuple[EventChain, tuple[Event, ...]]:
         """The path as an event chain, and its events."""
         segments = tuple(Segment(stimulus=one.name, response=then.name) for one, then in pairwise(self.events))
-        items = Sequence(segments) if len(segments) > 1 else None
+        items = InSequence(segments) if len(segments) > 1 else None
         return EventChain(name=name, stimulus=self.events[0].name, response=self.events[-1].name, items=items), self.events
 
 
@@ -63,8 +65,21 @@ def _end(process: str, runnable: str | None, is_start: bool) -> Event:
     return RunnableEvent(name=f"{process}_{runnable}_{edge}", runnable=runnable, change=edge, process=process)
 
 
-def paths(system: System, start: str, end: str) -> list[Path]:
-    """The ways from one process, runnable or label to another one, the shortest first.
+@dataclass(frozen=True, slots=True)
+class Paths:
+    """Paths from one end to another, the shortest first.
+
+    Attributes
+    ----------
+    are_all : whether there are no others of up to `MAX_PROCESSES` processes
+    """
+
+    found: tuple[Path, ...]
+    are_all: bool
+
+
+def paths(system: System, start: str, end: str) -> Paths:
+    """The ways from one process, runnable or label to another one.
 
     Raises
     ------
@@ -73,22 +88,28 @@ def paths(system: System, start: str, end: str) -> list[Path]:
     """
     dataflow = Dataflow(system)
     graph = _graph(dataflow)
-    found = []
+    found: dict[Path, None] = {}
+    ways, are_all = 0, True
     for first, first_runnable in _ends(start, dataflow, writes):
         begin = _end(first, first_runnable, is_start=True)
         returning = list(_returning(first, first_runnable, dataflow))
         for last, last_runnable in _ends(end, dataflow, reads):
             finish = _end(last, last_runnable, is_start=False)
-            for nodes in _ways(graph, first, last):
+            for number, nodes in enumerate(_ways(graph, first, last)):
+                if number == MAX_PATHS or ways == MAX_WAYS:
+                    are_all = False
+                    break
+                ways += 1
                 links = tuple(tuple(sorted(graph.edges[edge]["links"])) for edge in pairwise(nodes))
                 rest = (*(_end(process, None, is_start=False) for process in nodes[1:-1]), finish)
                 if events := _connected(begin, rest, dataflow):
-                    found.append(Path(tuple(nodes), links, (begin, *events)))
+                    found[Path(tuple(nodes), links, (begin, *events))] = None
                 for channel, taken_by in returning:
                     taken = _end(first, taken_by, is_start=False)
                     if events := _connected(taken, rest, dataflow):
-                        found.append(Path((first, *nodes), ((channel,), *links), (begin, taken, *events)))
-    return sorted(dict.fromkeys(found), key=lambda path: (len(path.processes), path.processes))[:MAX_PATHS]
+                        found[Path((first, *nodes), ((channel,), *links), (begin, taken, *events))] = None
+    shortest_first = sorted(found, key=lambda path: (len(path.processes), path.processes))
+    return Paths(tuple(shortest_first[:MAX_PATHS]), are_all and len(found) <= MAX_PATHS)
 
 
 def _returning(process: str, runnable: str | None, dataflow: Dataflow) -> Iterator[tuple[str, str]]:
@@ -115,13 +136,39 @@ def _connected(first: Event, rest: tuple[Event, ...], dataflow: Dataflow) -> tup
 
 
 def _ways(graph: nx.DiGraph, first: str, last: str) -> Iterator[list[str]]:
+    """The ways from one process to another that pass no process twice.
+
+    A way is continued only where the end can be reached without passing a process again, so that the time from each way to the next
+    one is polynomial, also where most continuations lead nowhere (as in J. Y. Yen, "Finding the K shortest loopless paths in a
+    network", Management Science 17(11), 1971).
+    """
+    way = [first]
+    pending = [_continuations(graph, way, last)]
     if first == last:
-        yield [first]
+        yield way
         return
-    for number, nodes in enumerate(nx.all_simple_paths(graph, first, last, cutoff=MAX_PROCESSES)):
-        if number == MAX_PATHS:
-            return
-        yield nodes
+    while pending:
+        following = next(pending[-1], None)
+        if following is None:
+            pending.pop()
+            way.pop()
+        elif following == last:
+            yield [*way, last]
+        else:
+            way.append(following)
+            pending.append(_continuations(graph, way, last))
+
+
+def _continuations(graph: nx.DiGraph, way: Sequence[str], last: str) -> Iterator[str]:
+    """The processes after a way from which the end can be reached with no more than the allowed number of links."""
+    links_left = MAX_PROCESSES - len(way)
+    passed, reaching, outermost = set(way), {last}, [last]
+    for _ in range(links_left):
+        outermost = list(
+            dict.fromkeys(p for name in outermost for p in graph.pred[name] if p not in passed and p not in reaching)
+        )
+        reaching.update(outermost)
+    return (name for name in graph.succ[way[-1]] if name in reaching and name not in passed)
 
 
 def _ends(name: str, dataflow: Dataflow, accesses: NamesOf) -> list[tuple[str, str | None]]:
@@ -131,7 +178,8 @@ def _ends(name: str, dataflow: Dataflow, accesses: NamesOf) -> list[tuple[str, s
         return [(name, None)]
     everywhere = dataflow.events.all_positions()
     if name in system.runnables:
-        return [(p.process.name, name) for p in everywhere if isinstance(p.activity, Call) and p.activity.runnable == name]
+        calling = (p.process.name for p in everywhere if isinstance(p.activity, Call) and p.activity.runnable == name)
+        return [(process, name) for process in dict.fromkeys(calling)]
     if name in system.labels:
         return list(dict.fromkeys((p.process.name, None) for p in everywhere if name in accesses(p)))
     raise UnknownEndError(f"there is no process, runnable or label {name!r}")
@@ -148,7 +196,7 @@ def _graph(dataflow: Dataflow) -> nx.DiGraph:
     return graph
 
 
-def with_chains(system: System, found: list[Path]) -> System:
+def with_chains(system: System, found: Iterable[Path]) -> System:
     """The system with these paths as its chains, named by their numbers."""
     events: dict[str, Event] = dict(system.events_by_name)
     chains = []

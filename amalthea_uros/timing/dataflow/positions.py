@@ -21,7 +21,7 @@ from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.perf.software import Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.counters import ALWAYS, CallSites, UncountableError
+from amalthea_uros.timing.counters import ALWAYS, CallSites, UncountableError, reached
 
 #: Processes with more activities, or deeper calls, are not analysed.
 MAX_POSITIONS = 200_000
@@ -76,6 +76,8 @@ def positions(process: Process, system: System, sites: CallSites) -> list[Activi
     ------
     TooComplexError : it has more than `MAX_POSITIONS` activities, or calls nested deeper than `MAX_CALL_DEPTH`.
     """
+    if reached(process.activities, sites.sizes) > MAX_POSITIONS:
+        raise _too_complex(process)
     walk = _Walk(process, system, sites)
     walk.through(process.activities, _Branch())
     return [position for position in walk.found if position is not None]
@@ -107,7 +109,7 @@ class _Walk:
             counter, times = branch.counter, branch.times
             place = len(self.found)
             if place >= MAX_POSITIONS or len(branch.above) > MAX_CALL_DEPTH:
-                raise TooComplexError(f"{self.process.name!r} has too many calls, or too deeply nested calls, to be analysed")
+                raise _too_complex(self.process)
             if isinstance(activity, LabelAccess):
                 self.found.append(self._access(activity, branch, outer))
                 continue
@@ -158,6 +160,10 @@ class _Walk:
                 return None
             counter = found
         return counter
+
+
+def _too_complex(process: Process) -> TooComplexError:
+    return TooComplexError(f"{process.name!r} has too many calls, or too deeply nested calls, to be analysed")
 
 
 def _of_call(call: Call, called: Runnable, branch: _Branch, outer: Nesting, counter: Counter | None, times: int) -> _Branch:

@@ -6,19 +6,19 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import IReferable
-from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.content import new_name
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 
 
 def _check(element: IReferable, context: Context) -> Iterator[str]:
-    if element.name and len(_in_file(element, context)) > 1:
+    if element.name and _has_namesake_in_file(element, context):
         yield f"{element.qualified_name!r} is the name of several {type(element).__name__} objects in this file"
 
 
-def _in_file(element: IReferable, context: Context) -> list[Element]:
-    return [other for other in context.namesakes.get(element, ()) if other.document is element.document]
+def _has_namesake_in_file(element: IReferable, context: Context) -> bool:
+    document = element.document
+    return any(other is not element and other.document is document for other in context.namesakes.get(element, ()))
 
 
 def _fix(element: IReferable, context: Context) -> bool:

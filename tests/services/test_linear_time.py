@@ -1,0 +1,84 @@
+"""The steps that a command takes grow with the size of its input, not with its square, also for inputs that are all mistakes."""
+
+import sys
+
+import pytest
+
+from amalthea_uros import load
+from amalthea_uros.services.check import check_files
+from amalthea_uros.services.format import format_files
+
+SIZES = (50, 100, 200)
+START = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0" '
+    'xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmi:version="2.0"><swModel>'
+)
+CALL = '<items xsi:type="am:RunnableCall" runnable="{}?type=Runnable"/>'
+
+
+def repeated(text, count, separator=""):
+    return separator.join(text.replace("#", str(number)) for number in range(count))
+
+
+#: The content of the software model of a size.
+CONTENTS = {
+    "dangling references of one object": lambda n: (
+        f'<tasks name="T" stimuli="{repeated("None#?type=PeriodicStimulus", n, " ")}"/>'
+    ),
+    "dangling references in one list": lambda n: (
+        f'<runnables name="R"><activityGraph>{repeated(CALL.format("None#"), n)}</activityGraph></runnables>'
+    ),
+    "references to equal names": lambda n: (
+        f'<runnables name="R"/><runnables name="R"><activityGraph>{CALL.format("R") * n}</activityGraph></runnables>'
+        + '<runnables name="R"/>' * n
+    ),
+    "unknown attributes of one object": lambda n: '<labels name="L" ' + repeated('none#="1"', n, " ") + "/>",
+    "unknown attributes of many objects": lambda n: repeated('<labels name="L#" none#="1"/>', n),
+    "unknown elements": lambda n: repeated("<none#/>", n),
+    "wrong values": lambda n: repeated('<labels name="L#" constant="none#"/>', n),
+    "wrong ids": lambda n: repeated('<labels name="L#" xmi:id="none#"/>', n),
+}
+CHECKED = ("dangling references in one list", "unknown attributes of many objects")
+
+
+def steps(action, *arguments):
+    """The number of lines of Python that an action executes, each as often as it is executed."""
+    count = 0
+
+    def trace(_frame, _event, _argument):
+        nonlocal count
+        count += 1
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        action(*arguments)
+    finally:
+        sys.settrace(before)
+    return count
+
+
+def growth(action, folder, content):
+    """How many times more steps the second doubling adds than the first one: 2 for a linear number, 4 for a square."""
+    paths = [folder / f"{size}.amxmi" for size in SIZES]
+    for path, size in zip(paths, SIZES, strict=True):
+        path.write_text(f"{START}{content(size)}</swModel></am:Amalthea>\n")
+    action(paths[0])  # fills the caches that do not depend on the file
+    small, medium, large = (steps(action, path) for path in paths)
+    return (large - medium) / (medium - small)
+
+
+@pytest.mark.parametrize("name", CONTENTS)
+def test_reading(name, tmp_path):
+    assert growth(load, tmp_path, CONTENTS[name]) < 2.5
+
+
+@pytest.mark.parametrize("name", CHECKED)
+def test_checking(name, tmp_path):
+    assert growth(lambda path: check_files([path]), tmp_path, CONTENTS[name]) < 2.5
+
+
+@pytest.mark.parametrize("name", CHECKED)
+def test_formatting(name, tmp_path):
+    assert growth(lambda path: format_files([path]), tmp_path, CONTENTS[name]) < 2.5
