@@ -11,6 +11,7 @@ import click
 from amalthea_uros.cli.output import Output, output_option, show_text, write_outputs
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.check import CheckResult, CheckStatistics, add_rules, check_files, write_baseline
+from amalthea_uros.services.file_changes import FilesDiff
 from amalthea_uros.services.settings import CheckSettings
 from amalthea_uros.validate.rule import Profile
 
@@ -67,6 +68,12 @@ _RULES = _Several("RULE")
     "--each", is_flag=True, help="Check every .amxmi file as a model of its own; otherwise they are one model together."
 )
 @click.option("--fix", is_flag=True, help="First repair what can be repaired in only one way.")
+@click.option(
+    "--diff",
+    "show_diff",
+    is_flag=True,
+    help="With --fix: write nothing and do not check; show what would be repaired, exit code 1 if anything would.",
+)
 @click.option("--statistics", is_flag=True, help="Show how often each rule fires instead of each finding.")
 @click.option("--baseline", type=click.Path(path_type=Path), metavar="FILE", help="Hide the findings that a baseline accepts.")
 @click.option(
@@ -82,6 +89,7 @@ def command(
     fail_on: str | None,
     each: bool,
     fix: bool,
+    show_diff: bool,
     statistics: bool,
     baseline: Path | None,
     new_baseline: Path | None,
@@ -93,6 +101,8 @@ def command(
     reported. `amuros explain RULE` explains a rule. The settings of a project are in `[tool.amuros.check]` of its pyproject.toml, or
     in `[check]` of amuros.toml; options of the command line replace them.
     """
+    if show_diff and not fix:
+        raise click.UsageError("--diff shows what --fix would change; add --fix")
     add_rules(rule_files)
     settings = CheckSettings(
         profiles=(*profiles, Profile.USER) if profiles and rule_files else profiles,
@@ -104,7 +114,11 @@ def command(
     if fix:
         from amalthea_uros.services.fix import fix_files
 
-        show_text(fix_files(paths, settings, each=each), on_error_stream=True)
+        repairs = fix_files(paths, settings, each=each, write=not show_diff)
+        show_text(repairs, on_error_stream=True)
+        if show_diff:
+            show_text(FilesDiff(repairs.changed, "repaired"))
+            sys.exit(1 if repairs.changed else 0)
     result = check_files(paths, settings, each=each)
     if new_baseline is not None:
         write_baseline(result, new_baseline)

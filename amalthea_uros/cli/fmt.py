@@ -8,7 +8,8 @@ from pathlib import Path
 import click
 
 from amalthea_uros.cli.output import show_findings, show_text
-from amalthea_uros.services.format import FormatDiff, format_files
+from amalthea_uros.services.file_changes import FilesDiff
+from amalthea_uros.services.format import format_files
 
 
 @click.command("fmt")
@@ -22,6 +23,6 @@ def command(paths: tuple[Path, ...], check: bool, show_diff: bool) -> None:
     content are preserved. MODEL is a file or a folder with .amxmi files.
     """
     result = format_files(paths, write=not (check or show_diff))
-    show_text(FormatDiff(result) if show_diff else result)
+    show_text(FilesDiff(result.changed, "canonical") if show_diff else result)
     show_findings(result.findings)
     sys.exit(2 if result.findings else 1 if result.changed and not result.is_written else 0)

@@ -144,8 +144,11 @@ class _Comparison:
         return True
 
     def start_part(self, element: Element, feature: FeaturePlan, plan: ClassPlan, attributes: dict[str, str]) -> None:
-        wanted = self.serializer.attributes(feature, plan, element, self.serializer.write_plan(plan, element))
-        wanted.pop(self.serializer.prefixes.xsi_type, None)
+        if self.is_copied(element):
+            wanted = attributes
+        else:
+            wanted = self.serializer.attributes(feature, plan, element, self.serializer.write_plan(plan, element))
+            wanted.pop(self.serializer.prefixes.xsi_type, None)
         if attributes != wanted:
             for key, value in attributes.items():
                 if wanted.get(key) != value and not self.is_meant(element, plan, key, value, wanted.get(key)):
@@ -155,6 +158,10 @@ class _Comparison:
                 if known is not None and element.__dict__.get(known.name) is not None:
                     self.refuse(element, f"the attribute {key!r} would be missing")
         self.stack.append(_Open(element, plan, {}, frozenset(attributes)))
+
+    def is_copied(self, element: Element) -> bool:
+        """Whether the start tag was copied from the source, where it was read with these attributes."""
+        return self.merger is not None and element in self.merger.source.index and element not in self.document.changes.modified
 
     def is_meant(self, element: Element, plan: ClassPlan, key: str, value: str, wanted: str | None) -> bool:
         """Whether an attribute that EMF would not write like this has the value of the object, or is unknown content."""
