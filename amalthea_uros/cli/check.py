@@ -8,7 +8,9 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.cli.output import Output, output_option, show_text, write_outputs
+from amalthea_uros._internal.files import STANDARD_INPUT
+from amalthea_uros.cli.files import INPUT, OUTPUT
+from amalthea_uros.cli.output import Output, beside_files, output_option, show_text, write_outputs
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.check import CheckResult, CheckStatistics, add_rules, check_files, write_baseline
 from amalthea_uros.services.file_changes import FilesDiff
@@ -40,7 +42,7 @@ _RULES = _Several("RULE")
 
 
 @click.command("check")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL_OR_YAML...")
+@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
 @click.option(
     "--profile",
     "profiles",
@@ -75,10 +77,8 @@ _RULES = _Several("RULE")
     help="With --fix: write nothing and do not check; show what would be repaired, exit code 1 if anything would.",
 )
 @click.option("--statistics", is_flag=True, help="Show how often each rule fires instead of each finding.")
-@click.option("--baseline", type=click.Path(path_type=Path), metavar="FILE", help="Hide the findings that a baseline accepts.")
-@click.option(
-    "--write-baseline", "new_baseline", type=click.Path(path_type=Path), metavar="FILE", help="Accept all current findings."
-)
+@click.option("--baseline", type=INPUT, metavar="FILE", help="Hide the findings that a baseline accepts.")
+@click.option("--write-baseline", "new_baseline", type=OUTPUT, metavar="FILE", help="Accept all current findings.")
 @output_option(CheckResult)
 def command(
     paths: tuple[Path, ...],
@@ -103,6 +103,9 @@ def command(
     """
     if show_diff and not fix:
         raise click.UsageError("--diff shows what --fix would change; add --fix")
+    if fix and STANDARD_INPUT in paths:
+        raise click.UsageError("--fix repairs files; standard input cannot be repaired")
+    outputs = beside_files(outputs, [("--write-baseline", new_baseline)])
     add_rules(rule_files)
     settings = CheckSettings(
         profiles=(*profiles, Profile.USER) if profiles and rule_files else profiles,

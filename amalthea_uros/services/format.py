@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.metamodel.versions import spelled
@@ -32,7 +33,7 @@ class FormatResult:
 
 
 def format_files(paths: StrPath | Iterable[StrPath], write: bool = True) -> FormatResult:
-    """Rewrite models in canonical form; files that are in it already are not touched.
+    """Rewrite models in canonical form; files that are in it already are not touched. Standard input goes to standard output.
 
     Parameters
     ----------
@@ -65,8 +66,8 @@ def _format(path: Path, write: bool) -> Iterable[FileChange]:
     # The canonical form is UTF-8 without a byte order mark, as EMF writes it.
     before = "\ufeff" + source.text if source.encoding == "utf-8-sig" else source.text
     after = document_text(document, canonical=True)
+    if write and (after != before or path == STANDARD_INPUT):
+        save(model, STANDARD_OUTPUT if path == STANDARD_INPUT else None, canonical=True)
     if after == before:
         return ()
-    if write:
-        save(model, canonical=True)
     return (FileChange(path, before, after),)

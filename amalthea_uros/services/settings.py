@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from amalthea_uros._internal.files import is_file, resolved
+from amalthea_uros._internal.files import STANDARD_INPUT, is_file, resolved
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings.targets import TARGETS
@@ -70,7 +70,7 @@ def project_settings(path: Path) -> CheckSettings:
     ------
     ReadError : the settings cannot be read, or something in them is wrong.
     """
-    start = resolved(path)
+    start = resolved(Path() if path == STANDARD_INPUT else path)
     for folder in (start, *start.parents):
         for name, tables in _PLACES:
             file = folder / name

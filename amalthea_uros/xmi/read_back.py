@@ -181,7 +181,9 @@ class _Comparison:
     def refuse(self, element: Element, reason: str) -> NoReturn:
         name = place(element)
         message = f"{name}: the file would be read differently: {reason}"
-        raise WriteError([Finding("XMI106", Severity.ERROR, message, self.document.location_of(element), _HELP, name)]) from None
+        raise WriteError(
+            [Finding("XMI106", Severity.ERROR, message, self.document.location_of(element), _HELP, name)]
+        ) from None
 
 
 def _values(element: Element, feature: FeaturePlan) -> list[Any]:

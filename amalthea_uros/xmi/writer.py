@@ -20,8 +20,8 @@ from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
 from amalthea_uros.xmi.kept_content import KeptContent, used_prefixes
 from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan
-from amalthea_uros.xmi.refusals import MAX_DEPTH
 from amalthea_uros.xmi.read_back import check_read_back
+from amalthea_uros.xmi.refusals import MAX_DEPTH
 from amalthea_uros.xmi.source_merger import SourceMerger
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
