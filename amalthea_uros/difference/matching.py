@@ -137,7 +137,8 @@ class Matching:
         for _ in range(_ROUNDS):
             colours = {
                 element: numbers.setdefault(
-                    (colours[element], *sorted(((*way, colours.get(e, names.token(e))) for way, e in found), key=repr)), len(numbers)
+                    (colours[element], *sorted(((*way, colours.get(e, names.token(e))) for way, e in found), key=repr)),
+                    len(numbers),
                 )
                 for element, found in neighbours.items()
             }
