@@ -6,8 +6,10 @@ import codecs
 import os
 import shutil
 import stat
+import sys
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import BinaryIO
 
@@ -22,6 +24,15 @@ _BYTE_ORDER_MARKS = (
 #: Codecs that treat a byte order mark as an ordinary character. Without a mark, such text cannot be told from binary data.
 _UNMARKED = frozenset({"utf-16-le", "utf-16-be"})
 _MARK = "\ufeff"
+
+#: What `-` stands for on the command line.
+STANDARD_INPUT = Path("/dev/stdin")
+STANDARD_OUTPUT = Path("/dev/stdout")
+STANDARD_ERROR = Path("/dev/stderr")
+
+#: What these are where there are no such paths.
+_STANDARD_DESCRIPTORS = {STANDARD_OUTPUT: 1, STANDARD_ERROR: 2}
+_MAX_LINKS = 40
 
 #: What a path can be wrong by: a path with a zero byte is a ValueError, one in a circle of links a RuntimeError before Python 3.13.
 _IMPOSSIBLE = (OSError, ValueError, RuntimeError)
@@ -62,6 +73,8 @@ def read_bytes(path: Path, max_size: int = MAX_SIZE) -> bytes:
     FileError : not found, not permitted, or a directory.
     """
     try:
+        if path == STANDARD_INPUT:
+            return _limited(_standard_input(), path, max_size)
         if path.is_dir():
             raise FileError(path, "expected a file, found a directory")
         with path.open("rb") as stream:
@@ -70,9 +83,19 @@ def read_bytes(path: Path, max_size: int = MAX_SIZE) -> bytes:
         raise FileError(path, "file not found", "Check the path.") from None
     except (OSError, ValueError) as error:
         raise FileError(path, f"the file cannot be read: {_cause(error)}") from None
+    return _limited(data, path, max_size)
+
+
+def _limited(data: bytes, path: Path, max_size: int) -> bytes:
     if len(data) > max_size:
         raise FileTooLargeError(path, max_size)
     return data
+
+
+@cache
+def _standard_input() -> bytes:
+    """The content of standard input; it can be read only once, but several readers may ask for it."""
+    return sys.stdin.buffer.read(MAX_SIZE + 1) if sys.stdin is not None else b""
 
 
 def read_text(path: Path, max_size: int = MAX_SIZE) -> str:
@@ -90,7 +113,7 @@ def read_text(path: Path, max_size: int = MAX_SIZE) -> str:
 
 
 def write_bytes(path: Path, data: bytes) -> None:
-    """Write a file whole or not at all: beside the target first, then renamed; write to a pipe or a device itself.
+    """Write a file whole or not at all: beside the target first, then renamed; write to a pipe, a device or an open file itself.
 
     Raises
     ------
@@ -100,31 +123,34 @@ def write_bytes(path: Path, data: bytes) -> None:
 
 
 def write_all(contents: Mapping[Path, bytes], removed: Collection[Path] = ()) -> None:
-    """Write several files and remove others, all of that or nothing; write to pipes and devices themselves, as the last thing.
+    """Write several files and remove others, all of that or nothing; write to pipes, devices and open files themselves, at last.
+
+    A file keeps its permissions, its owner and its hard links; one that is read-only is not replaced.
 
     Raises
     ------
     FileError : a file cannot be written; all files are as they were.
     """
     with ExitStack() as undo:
-        streams = {path: data for path, data in contents.items() if _is_stream(path)}
+        streams = {path: data for path, data in contents.items() if is_stream(path)}
         staged = {path: _staged(path, data, undo) for path, data in contents.items() if path not in streams}
-        # A single change happens or not, and needs no way back.
-        is_single = len(contents) + len(removed) == 1
+        # A single change happens or not, and needs no way back, unless a file is overwritten rather than replaced.
+        is_single = len(contents) + len(removed) == 1 and not any(_stays(path, new) for path, new in staged.items())
         former = {} if is_single else {path: _copied(path, undo) for path in (*staged, *removed)}
         for path in (*staged, *removed):
             if path in former:
                 undo.callback(_restore, path, former[path])
             try:
                 if path in staged:
-                    staged[path].replace(path.resolve())  # a symbolic link remains one: the file that it points to is replaced
+                    _put(staged[path], path)
                 else:
                     path.unlink(missing_ok=True)
             except OSError as error:
                 raise not_writable(path, error) from None
         for path, data in streams.items():
             try:
-                path.write_bytes(data)
+                with _open_stream(path) as stream:
+                    stream.write(data)
             except OSError as error:
                 raise not_writable(path, error) from None
         undo.pop_all()
@@ -136,15 +162,15 @@ def write_all(contents: Mapping[Path, bytes], removed: Collection[Path] = ()) ->
 def replacing(path: Path) -> Iterator[BinaryIO]:
     """A stream whose content becomes that of a file once the block ends; after an exception the file is as it was.
 
-    A pipe or a device is written itself.
+    A pipe, a device or an open file is written itself.
 
     Raises
     ------
     FileError : the file cannot be written.
     """
-    if _is_stream(path):
+    if is_stream(path):
         try:
-            stream = path.open("wb")
+            stream = _open_stream(path)
         except OSError as error:
             raise not_writable(path, error) from None
         with stream:
@@ -159,11 +185,16 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
                 os.fsync(stream.fileno())
             except OSError as error:
                 raise not_writable(path, error) from None
+        former = _copied(path, undo) if _stays(path, temporary) else None
+        if former is not None:
+            undo.callback(_restore, path, former)
         try:
-            temporary.replace(path.resolve())
+            _put(temporary, path)
         except OSError as error:
             raise not_writable(path, error) from None
         undo.pop_all()
+        if former is not None:
+            former.unlink(missing_ok=True)
 
 
 def check_writable(path: Path) -> None:
@@ -173,15 +204,51 @@ def check_writable(path: Path) -> None:
     ------
     FileError : the file cannot be written.
     """
-    if not _is_stream(path):
+    if not is_stream(path):
         with ExitStack() as undo:
             _staged(path, b"", undo)
 
 
-def _is_stream(path: Path) -> bool:
-    """Whether a path is a pipe or a device, which must not become a file."""
+def is_stream(path: Path) -> bool:
+    """Whether a path is a pipe, a device or an open file of this process, which must not become another file."""
+    if _descriptor(path) is not None:
+        return True
     mode = _mode(path)
     return mode is not None and not stat.S_ISREG(mode) and not stat.S_ISDIR(mode)
+
+
+def _descriptor(path: Path) -> int | None:
+    """The number of the open file that a path such as `/dev/stdout` or `/dev/fd/63` stands for, None for all other paths.
+
+    Where standard output is redirected to a file, `/dev/stdout` leads to that file; to replace it would leave the output in a file
+    without a name.
+    """
+    if path in _STANDARD_DESCRIPTORS:
+        return _STANDARD_DESCRIPTORS[path]
+    folders = ("/dev/fd", "/proc/self/fd", f"/proc/{os.getpid()}/fd")
+    with suppress(*_IMPOSSIBLE):
+        for _ in range(_MAX_LINKS):
+            if path.name.isdecimal() and path.absolute().parent.as_posix() in folders:
+                return int(path.name)
+            if not path.is_symlink():
+                return None
+            path = path.parent / path.readlink()
+    return None
+
+
+def is_standard_output(path: Path) -> bool:
+    """Whether a path leads to the standard output of this process."""
+    return _descriptor(path) == 1
+
+
+def _open_stream(path: Path) -> BinaryIO:
+    """A pipe or a device, or an open file once more, so that closing it here does not close it for others."""
+    descriptor = _descriptor(path)
+    if descriptor is None:
+        return path.open("wb")
+    for stream in filter(None, (sys.stdout, sys.stderr)):
+        stream.flush()
+    return os.fdopen(os.dup(descriptor), "wb")
 
 
 def _mode(path: Path) -> int | None:
@@ -199,13 +266,47 @@ def _staged(path: Path, data: bytes, undo: ExitStack) -> Path:
     mode = _mode(path)
     if mode is not None and stat.S_ISDIR(mode):
         raise FileError(path, "the file cannot be written: it is a directory")
+    if mode is not None and not mode & 0o222:
+        raise FileError(path, "the file cannot be written: it is read-only", "Allow writing it, or write another file.")
     try:
         temporary = _beside(path, undo)
         _write_new(temporary, data)
+        _give_owner(temporary, path)
         temporary.chmod(0o666 & ~_umask() if mode is None else mode & 0o777)
     except _IMPOSSIBLE as error:
         raise not_writable(path, error) from None
     return temporary
+
+
+def _give_owner(temporary: Path, path: Path) -> None:
+    """Give a file the owner of the one that it replaces, where that is allowed."""
+    with suppress(FileNotFoundError, PermissionError):
+        former, new = path.stat(), temporary.stat()
+        if (former.st_uid, former.st_gid) != (new.st_uid, new.st_gid):
+            os.chown(temporary, former.st_uid, former.st_gid)
+
+
+def _stays(path: Path, staged: Path) -> bool:
+    """Whether a file is overwritten, because replacing it would cut its hard links or change its owner."""
+    try:
+        former, new = path.stat(), staged.stat()
+    except OSError:
+        return False
+    return former.st_nlink > 1 or (former.st_uid, former.st_gid) != (new.st_uid, new.st_gid)
+
+
+def _put(staged: Path, path: Path) -> None:
+    """Give a file the content that was staged; at a symbolic link, the file to which it leads."""
+    target = path.resolve()
+    if not _stays(target, staged):
+        staged.replace(target)
+        return
+    with staged.open("rb") as new, target.open("r+b") as old:
+        shutil.copyfileobj(new, old)
+        old.truncate()
+        old.flush()
+        os.fsync(old.fileno())
+    staged.unlink()
 
 
 def _copied(path: Path, undo: ExitStack) -> Path | None:
@@ -246,7 +347,7 @@ def _restore(path: Path, former: Path | None) -> None:
         if former is None:
             path.unlink(missing_ok=True)
         elif former.exists():
-            former.replace(path.resolve())
+            _put(former, path)
 
 
 def not_writable(path: Path, error: OSError | ValueError | RuntimeError) -> FileError:

@@ -10,6 +10,7 @@ import click
 
 from amalthea_uros.analyze.results import EXPLAINED, Quantity
 from amalthea_uros.analyze.summary import Schedulable
+from amalthea_uros.cli.files import INPUT
 from amalthea_uros.cli.output import Output, output_option, show_findings, shows_text, write_outputs
 from amalthea_uros.cli.settings_options import Assignment, settings_options
 from amalthea_uros.report.closing_line import closing_line
@@ -25,7 +26,7 @@ _FAILING = {
 
 
 @click.command("analyze")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL_OR_YAML...")
+@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
 @settings_options
 @click.option(
     "--mode",

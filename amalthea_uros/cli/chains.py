@@ -7,12 +7,14 @@ from pathlib import Path
 
 import click
 
+from amalthea_uros._internal.files import is_standard_output
+from amalthea_uros.cli.files import INPUT, OUTPUT
 from amalthea_uros.cli.output import show_findings, show_text
 from amalthea_uros.services.chains import add_path, chosen_path, find_paths
 
 
 @click.command("chains")
-@click.argument("model", type=click.Path(path_type=Path), metavar="MODEL_OR_YAML")
+@click.argument("model", type=INPUT, metavar="MODEL_OR_YAML")
 @click.option("--from", "start", required=True, metavar="NAME", help="Process, runnable or label where paths start.")
 @click.option("--to", "end", required=True, metavar="NAME", help="Process, runnable or label where paths end.")
 @click.option("--add", "name", metavar="CHAIN", help="Add a path to the model as an event chain with this name.")
@@ -20,7 +22,7 @@ from amalthea_uros.services.chains import add_path, chosen_path, find_paths
 @click.option(
     "-o",
     "output",
-    type=click.Path(path_type=Path),
+    type=OUTPUT,
     metavar="FILE",
     help="File to which the model with the event chain is written.",
 )
@@ -38,7 +40,8 @@ def command(model: Path, start: str, end: str, name: str | None, number: int, ou
         show_text(result)
         sys.exit(1)
     chosen_path(result, number)
-    show_text(result)
+    is_piped = output is not None and is_standard_output(output)
+    show_text(result, on_error_stream=is_piped)
     if name is not None and output is not None:
         add_path(result, number, name, output)
-        click.echo(f"path {number} is now the chain {name} in {output}")
+        click.echo(f"path {number} is now the chain {name} in {output}", err=is_piped)

@@ -7,10 +7,13 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.cli.output import Output, output_option, show_text, write_outputs
+from amalthea_uros._internal.files import STANDARD_INPUT
+from amalthea_uros.cli.files import INPUT, OUTPUT
+from amalthea_uros.cli.output import Output, beside_files, output_option, show_text, write_outputs
 from amalthea_uros.cli.several import Several, several
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.check import CheckResult, CheckStatistics, add_rules, check_files, write_baseline
+from amalthea_uros.services.file_changes import FilesDiff
 from amalthea_uros.services.settings import CheckSettings
 from amalthea_uros.validate.rule import Profile
 
@@ -19,7 +22,7 @@ _RULES = Several("RULE")
 
 
 @click.command("check")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL_OR_YAML...")
+@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
 @click.option(
     "--profile",
     "profiles",
@@ -60,11 +63,15 @@ _RULES = Several("RULE")
 )
 @click.option("--only-amuros", is_flag=True, help="Skip YAML files without the key 'amuros', which are of other programs.")
 @click.option("--fix", is_flag=True, help="First repair what can be repaired in only one way.")
-@click.option("--statistics", is_flag=True, help="Show how often each rule fires instead of each finding.")
-@click.option("--baseline", type=click.Path(path_type=Path), metavar="FILE", help="Hide the findings that a baseline accepts.")
 @click.option(
-    "--write-baseline", "new_baseline", type=click.Path(path_type=Path), metavar="FILE", help="Accept all current findings."
+    "--diff",
+    "show_diff",
+    is_flag=True,
+    help="With --fix: write nothing and do not check; show what would be repaired, exit code 1 if anything would.",
 )
+@click.option("--statistics", is_flag=True, help="Show how often each rule fires instead of each finding.")
+@click.option("--baseline", type=INPUT, metavar="FILE", help="Hide the findings that a baseline accepts.")
+@click.option("--write-baseline", "new_baseline", type=OUTPUT, metavar="FILE", help="Accept all current findings.")
 @output_option(CheckResult)
 def command(
     paths: tuple[Path, ...],
@@ -76,6 +83,7 @@ def command(
     each: bool,
     only_amuros: bool,
     fix: bool,
+    show_diff: bool,
     statistics: bool,
     baseline: Path | None,
     new_baseline: Path | None,
@@ -87,6 +95,11 @@ def command(
     reported. `amuros explain RULE` explains a rule. The settings of a project are in `[tool.amuros.check]` of its pyproject.toml, or
     in `[check]` of amuros.toml; options of the command line replace them.
     """
+    if show_diff and not fix:
+        raise click.UsageError("--diff shows what --fix would change; add --fix")
+    if fix and STANDARD_INPUT in paths:
+        raise click.UsageError("--fix repairs files; standard input cannot be repaired")
+    outputs = beside_files(outputs, [("--write-baseline", new_baseline)])
     add_rules(rule_files)
     settings = CheckSettings(
         profiles=(*profiles, Profile.USER) if profiles and rule_files else profiles,
@@ -98,7 +111,11 @@ def command(
     if fix:
         from amalthea_uros.services.fix import fix_files
 
-        show_text(fix_files(paths, settings, each=each), on_error_stream=True)
+        repairs = fix_files(paths, settings, each=each, write=not show_diff)
+        show_text(repairs, on_error_stream=True)
+        if show_diff:
+            show_text(FilesDiff(repairs.changed, "repaired"))
+            sys.exit(1 if repairs.changed else 0)
     result = check_files(paths, settings, each=each, only_amuros=only_amuros)
     if new_baseline is not None:
         write_baseline(result, new_baseline)

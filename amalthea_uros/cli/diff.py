@@ -7,13 +7,14 @@ from pathlib import Path
 
 import click
 
+from amalthea_uros.cli.files import INPUT
 from amalthea_uros.cli.output import Output, output_option, show_findings, write_outputs
 from amalthea_uros.services.diff import DiffResult, diff
 
 
 @click.command("diff")
-@click.argument("old", type=click.Path(path_type=Path))
-@click.argument("new", type=click.Path(path_type=Path))
+@click.argument("old", type=INPUT)
+@click.argument("new", type=INPUT)
 @output_option(DiffResult)
 def command(old: Path, new: Path, outputs: tuple[Output, ...]) -> None:
     """Compare two models by meaning: only what a review has to look at.

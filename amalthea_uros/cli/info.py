@@ -7,13 +7,14 @@ from pathlib import Path
 
 import click
 
+from amalthea_uros.cli.files import INPUT
 from amalthea_uros.cli.output import Output, output_option, show_findings, write_outputs
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.info import InfoResult, info
 
 
 @click.command("info")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL_OR_YAML...")
+@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
 @click.option("--schema", is_flag=True, help="Also validate each file against the XML schema of its version.")
 @output_option(InfoResult)
 def command(paths: tuple[Path, ...], schema: bool, outputs: tuple[Output, ...]) -> None:

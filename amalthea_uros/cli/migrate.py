@@ -9,7 +9,9 @@ from typing import TypeVar
 
 import click
 
-from amalthea_uros.cli.output import Output, output_option, show_findings, write_outputs
+from amalthea_uros._internal.files import STANDARD_INPUT
+from amalthea_uros.cli.files import INPUT, OUTPUT
+from amalthea_uros.cli.output import Output, beside_files, output_option, show_findings, write_outputs
 from amalthea_uros.services.migrate import TARGETS, MigrationResult, migrate_files
 
 T = TypeVar("T")
@@ -23,13 +25,13 @@ def _with_progress(items: Sequence[T]) -> Iterator[T]:
 
 
 @click.command("migrate")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL...")
+@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL...")
 @click.option("--to", "version", metavar="VERSION", default=TARGETS[-1], show_default=True, help="AMALTHEA version to write.")
 @click.option(
     "-o",
     "--out",
     "target",
-    type=click.Path(path_type=Path),
+    type=OUTPUT,
     metavar="FILE_OR_FOLDER",
     help="What to write: a file for one file, a folder for several; default: beside the old files, with the version in the name.",
 )
@@ -60,6 +62,9 @@ def command(
     """
     if in_place and target is not None:
         raise click.UsageError("--in-place and -o exclude each other.")
+    if STANDARD_INPUT in paths and target is None and not is_dry_run:
+        raise click.UsageError("-o names the file for standard input; add it, e.g. -o - for standard output.")
+    outputs = beside_files(outputs, [("-o", target)])
     result = migrate_files(
         paths,
         version,

@@ -9,8 +9,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
+from click.core import ParameterSource
 
-from amalthea_uros._internal.files import FileError, check_writable, resolved
+from amalthea_uros._internal.files import (
+    STANDARD_ERROR,
+    STANDARD_OUTPUT,
+    FileError,
+    check_writable,
+    is_standard_output,
+    is_stream,
+    resolved,
+)
+from amalthea_uros.cli.files import output_path, refuse_mixture
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.report import formats
 from amalthea_uros.report.terminal import Terminal
@@ -20,11 +30,20 @@ if TYPE_CHECKING:
     from amalthea_uros.services.changes.apply import Difference
 
 
+#: Names in `sys`: these streams are written as text, in colour on a terminal.
+_STANDARD_STREAMS = {STANDARD_OUTPUT: "stdout", STANDARD_ERROR: "stderr"}
+
+
 class Output(NamedTuple):
-    """One request of the user: a format, and the file for it (None: standard output)."""
+    """One request of the user: a format, and the file for it."""
 
     format: str
-    path: Path | None
+    path: Path
+
+    @property
+    def option(self) -> str:
+        """How the user gave it."""
+        return f"--output {self.format}" + ("" if self.path == STANDARD_OUTPUT else f"={self.path}")
 
 
 class OutputType(click.ParamType[Output]):
@@ -42,7 +61,7 @@ class OutputType(click.ParamType[Output]):
         name, _, path = str(value).partition("=")
         if name not in self.names:
             self.fail(f"unknown format {name!r}, expected one of {', '.join(self.names)}", param, ctx)
-        return Output(name, None if path in ("", "-") else Path(path))
+        return Output(name, output_path(path) if path else STANDARD_OUTPUT)
 
 
 def output_option(result: type) -> Callable[[Any], Any]:
@@ -53,10 +72,37 @@ def output_option(result: type) -> Callable[[Any], Any]:
         "outputs",
         type=OutputType(names),
         multiple=True,
+        callback=_without_mixture,
         default=(names[0],),
         show_default=True,
-        help=f"Format and file of the result: {', '.join(names)}; e.g. json=result.json. May be repeated.",
+        help=f"Format and file of the result: {', '.join(names)}; e.g. json=result.json. Without a file, or with '-', it goes to "
+        "standard output. May be repeated.",
     )
+
+
+def _without_mixture(_context: click.Context, _parameter: click.Parameter, outputs: tuple[Output, ...]) -> tuple[Output, ...]:
+    refuse_mixture((output.option, output.path) for output in outputs)
+    return outputs
+
+
+def beside_files(outputs: tuple[Output, ...], files: Sequence[tuple[str, Path | None]]) -> tuple[Output, ...]:
+    """The outputs of a command that also writes files: the text for people goes to standard error if a file is standard output.
+
+    Parameters
+    ----------
+    files : with the options that name them; None: not given
+
+    Raises
+    ------
+    UsageError : what the user asked for explicitly would be mixed.
+    """
+    refuse_mixture(files)
+    if not any(path is not None and is_standard_output(path) for _, path in files):
+        return outputs
+    if click.get_current_context().get_parameter_source("outputs") is ParameterSource.DEFAULT:
+        return tuple(Output(output.format, STANDARD_ERROR) for output in outputs)
+    refuse_mixture([*files, *((output.option, output.path) for output in outputs)])
+    return outputs
 
 
 def write_outputs(outputs: Iterable[Output], result: object, as_text: object | None = None) -> None:
@@ -72,12 +118,12 @@ def write_outputs(outputs: Iterable[Output], result: object, as_text: object | N
     UsageError : a file is one of those that the command reads.
     """
     for output in outputs:
-        if output.path is not None:
-            refuse_input(output.path, f"--output {output.format}={output.path}")
+        refuse_input(output.path, output.option)
     for output in outputs:
         shown = result if as_text is None or output.format != formats.TEXT else as_text
-        if output.path is None:
-            formats.write(output.format, shown, sys.stdout)
+        stream = _STANDARD_STREAMS.get(output.path)
+        if stream is not None:
+            formats.write(output.format, shown, getattr(sys, stream))
         else:
             _write_file(output.path, output.format, shown)
 
@@ -93,7 +139,7 @@ def refuse_input(path: Path, option: str) -> None:
     ------
     UsageError : the file would be replaced.
     """
-    if resolved(path) in _inputs():
+    if not is_stream(path) and resolved(path) in _inputs():
         raise click.UsageError(f"{option} would replace a file that is read.")
 
 
@@ -122,7 +168,7 @@ def _inputs() -> set[Path]:
 
 def shows_text(outputs: Iterable[Output]) -> bool:
     """Whether a result is shown to a person on standard output."""
-    return any(output.format == formats.TEXT and output.path is None for output in outputs)
+    return any(output.format == formats.TEXT and output.path == STANDARD_OUTPUT for output in outputs)
 
 
 def _write_file(path: Path, name: str, result: object) -> None:

@@ -37,8 +37,14 @@ class Pictures:
     @property
     def paths(self) -> tuple[Path, ...]:
         """All files."""
-        chart = () if self.gantt is None else (self.gantt,)
-        return (*chart, *(path for _, path in self.timelines), *(path for _, path in self.histograms))
+        return tuple(path for _, path in self.files)
+
+    @property
+    def files(self) -> tuple[tuple[str, Path], ...]:
+        """All files with the options that name them."""
+        chart = () if self.gantt is None else (("--gantt", self.gantt),)
+        timelines = (("--timeline", path) for _, path in self.timelines)
+        return (*chart, *timelines, *(("--histogram", path) for _, path in self.histograms))
 
     def check(self, plan: SimulationPlan) -> None:
         """Refuse what cannot be drawn, before the simulation, which may take long.

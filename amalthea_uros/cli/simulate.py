@@ -9,9 +9,11 @@ from pathlib import Path
 
 import click
 
+from amalthea_uros.cli.files import INPUT, OUTPUT_FILE, output_path
 from amalthea_uros.cli.main import INTERRUPTED
 from amalthea_uros.cli.output import (
     Output,
+    beside_files,
     output_option,
     refuse_input,
     refuse_unwritable,
@@ -32,9 +34,6 @@ from amalthea_uros.services.simulate import CampaignResult, SimulationResult, pl
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time, parse_time, time_text
-
-_FILE = click.Path(path_type=Path, dir_okay=False)
-_STANDARD_OUTPUT = Path("-")
 
 
 def _duration(text: str) -> Time:
@@ -59,7 +58,7 @@ def _labels(text: str) -> tuple[str, ...]:
 
 
 @click.command("simulate")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="MODEL_OR_YAML...")
+@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
 @click.option(
     "--duration",
     type=Parsed("TIME", _duration),
@@ -90,14 +89,14 @@ def _labels(text: str) -> tuple[str, ...]:
     "--trace",
     "traces",
     multiple=True,
-    type=_FILE,
+    type=OUTPUT_FILE,
     metavar="FILE",
     help="Write the events to a file, of which the suffix says the format, e.g. run.btf; may be repeated.",
 )
 @click.option(
     "--trace-window", type=Parsed("FROM..TO", _window), help="Write only the events of this part of the run, e.g. 10ms..20ms."
 )
-@click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what all processes do in a part of the run, as SVG.")
+@click.option("--gantt", type=OUTPUT_FILE, metavar="FILE", help="Draw what all processes do in a part of the run, as SVG.")
 @click.option("--gantt-of", metavar="PROCESS", help="Show the longest response time of this process in --gantt.")
 @click.option(
     "--chain",
@@ -108,14 +107,14 @@ def _labels(text: str) -> tuple[str, ...]:
     "--timeline",
     "timelines",
     multiple=True,
-    type=Assignment("PROCESS=FILE", Path),
+    type=Assignment("PROCESS=FILE", output_path),
     help="Draw the states of a process in a part of the run, as SVG; may be repeated.",
 )
 @click.option(
     "--histogram",
     "histograms",
     multiple=True,
-    type=Assignment("NAME=FILE", Path),
+    type=Assignment("NAME=FILE", output_path),
     help="Draw the response times of a process, the latencies of a chain, or another of its quantities, e.g. "
     "Task.net_execution_time=net.svg; may be repeated.",
 )
@@ -142,7 +141,7 @@ def _labels(text: str) -> tuple[str, ...]:
 @click.option(
     "--cluster", metavar="ADDRESS", help="Execute the runs on the Dask cluster with this scheduler, e.g. tcp://host:8786."
 )
-@click.option("--table", type=_FILE, metavar="FILE", help="Write a row for each run to a .csv, .json or .parquet file.")
+@click.option("--table", type=OUTPUT_FILE, metavar="FILE", help="Write a row for each run to a .csv, .json or .parquet file.")
 @output_option(CampaignResult)
 def command(
     paths: tuple[Path, ...],
@@ -187,7 +186,8 @@ def command(
         raise click.UsageError("--cluster executes the runs of --sweep or --runs; add one of them")
     if trace_window is not None and not traces:
         raise click.UsageError("--trace-window needs --trace FILE")
-    _check_targets(traces, [*pictures.paths, *(path for _, path in outputs if path is not None)], table)
+    outputs = beside_files(outputs, [*(("--trace", path) for path in traces), *pictures.files, ("--table", table)])
+    _check_targets(traces, [*pictures.paths, *(path for _, path in outputs)], table)
     traced = (trace_window or (0, duration)) if traces else None
     options = Options(duration=duration, seed=seed, mode=Mode(mode), settings=settings, traced=traced, labels=labels)
     if is_campaign:
@@ -213,8 +213,6 @@ def _check_targets(traces: Sequence[Path], results: Sequence[Path], table: Path 
     """Refuse files that cannot be written before the simulation, which may take long."""
     late = [*results, *([table] if table is not None else [])]
     for path, number in Counter([*traces, *late]).items():
-        if path == _STANDARD_OUTPUT:
-            raise click.UsageError("'-' is no file; only --output writes to standard output. Give a file, e.g. --trace run.btf")
         if number > 1:
             raise click.UsageError(f"{path} is the file of {number} options; give each its own")
         refuse_input(path, str(path))

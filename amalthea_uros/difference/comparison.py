@@ -36,6 +36,9 @@ VERSION_FEATURE = "AMALTHEA version"
 #: Further names of a list are only counted.
 _MAX_NAMES = 5
 
+#: Two objects that exchange their names are two changes.
+_SHORTEST_EXCHANGE = 2
+
 Elements = tuple[Element, ...]
 
 
@@ -77,19 +80,23 @@ def difference(old: Model, new: Model) -> list[Change]:
     # The comparison makes many objects and no garbage: scanning both models for it would take half of the time.
     gc.disable()
     try:
-        return _Comparison(old, new).changes()
+        changes = _Comparison(old, new).changes()
+        if len(changes) <= _SHORTEST_EXCHANGE:
+            return changes
+        # Where names were exchanged, as in a swap, the same content under other names is the shorter description.
+        return min(changes, _Comparison(old, new, by_content=True).changes(), key=len)
     finally:
         if was_enabled:
             gc.enable()
 
 
 class _Comparison:
-    def __init__(self, old: Model, new: Model) -> None:
+    def __init__(self, old: Model, new: Model, by_content: bool = False) -> None:
         self.models = old, new
         unset_attributes = UnsetAttributes([*old.documents, *new.documents])
         self.unset_attributes = unset_attributes
         self.old_names, self.new_names = Names(old), Names(new)
-        self.matching = Matching(self.old_names, self.new_names, unset_attributes)
+        self.matching = Matching(self.old_names, self.new_names, unset_attributes, by_content)
         numbers: dict[Hashable, int] = {}
         self.old = Side(self.old_names, Fingerprints(unset_attributes, self.old_names.token, numbers))
         self.new = Side(self.new_names, Fingerprints(unset_attributes, self.new_names.token, numbers))

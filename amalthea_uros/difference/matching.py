@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.difference.fingerprint import Fingerprints
 from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.features import features_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from amalthea_uros.difference.unset import UnsetAttributes
 
 Pair = tuple[Element, Element]
+
+#: How far the neighbourhood of an object counts, in references.
+_ROUNDS = 4
 
 
 def pair_up(
@@ -39,18 +43,26 @@ class Matching:
     ----------
     pairs : the old and the new side of what is in both; renamed objects too
     removed, added : what is in one of them only
+
+    Parameters
+    ----------
+    by_content : content is more than names: objects with the same name and different content may have exchanged their names with others
     """
 
-    def __init__(self, old: Names, new: Names, unset_attributes: UnsetAttributes) -> None:
+    def __init__(self, old: Names, new: Names, unset_attributes: UnsetAttributes, by_content: bool = False) -> None:
         self._old, self._new, self._unset_attributes = old, new, unset_attributes
+        #: Objects that are the same whatever is found about renames.
+        self._certain: list[Pair] = []
         self.pairs: list[Pair] = []
         self.removed: dict[Element, None] = {}
         self.added: dict[Element, None] = {}
         self._common = old.by_token.keys() & new.by_token.keys()
         for token in old.by_token | new.by_token:
             self._match_name(old.by_token.get(token, []), new.by_token.get(token, []))
+        namesakes = self._part_changed() if by_content else []
         if self.removed and self.added:
             self._match_renamed()
+        self._accept([(a, b) for a, b in namesakes if a in self.removed and b in self.added])
 
     def _match_name(self, old: list[Element], new: list[Element]) -> None:
         if len(old) == len(new) == 1:
@@ -65,7 +77,20 @@ class Matching:
         self.removed |= dict.fromkeys(rest[0][common:])
         self.added |= dict.fromkeys(rest[1][common:])
 
+    def _part_changed(self) -> list[Pair]:
+        """Undo the pairs of objects with the same name and different content; the result are these pairs."""
+        numbers: dict[Hashable, int] = {}
+        old, new = (Fingerprints(self._unset_attributes, names.token, numbers) for names in (self._old, self._new))
+        changed = [(a, b) for a, b in self.pairs if old.nameless(a) != new.nameless(b)]
+        undone = {a for a, _ in changed}
+        self.pairs = [pair for pair in self.pairs if pair[0] not in undone]
+        self.removed |= dict.fromkeys(a for a, _ in changed)
+        self.added |= dict.fromkeys(b for _, b in changed)
+        self._common = self._common - {self._old.own_token(a) for a, _ in changed}
+        return changed
+
     def _match_renamed(self) -> None:
+        self._match_namespaces()
         candidates = self._candidates()
         while candidates:
             self._translate(candidates)
@@ -77,12 +102,47 @@ class Matching:
             candidates = kept
         self._translate([])
 
+    def _match_namespaces(self) -> None:
+        """Match objects that got into a namespace or out of one: they have the same name in the same place."""
+
+        def key(names: Names) -> Callable[[Element], Hashable]:
+            return lambda e: (type(e), e.__dict__.get("name"), names.owner(e)) if "namespace" in features_of(type(e)) else None
+
+        alike = _unique_pairs(_grouped(self.removed, key(self._old)), _grouped(self.added, key(self._new)))
+        pairs = [(old, new) for old, new in alike if self._old.own_token(old) != self._new.own_token(new)]
+        self._certain += pairs
+        self._translate([])
+        self._common = self._common | {self._old.own_token(old) for old, _ in pairs}
+        self._accept(pairs)
+
     def _candidates(self) -> list[Pair]:
         """Pairs of a removed and an added object that could be one; references to what is not matched may lead anywhere yet."""
         numbers: dict[Hashable, int] = {}
         old = self._loose_keys(self._old, self.removed, numbers)
         new = self._loose_keys(self._new, self.added, numbers)
-        return [(old[key][0], new[key][0]) for key in old if len(old[key]) == 1 and len(new.get(key, ())) == 1]
+        pairs = _unique_pairs(old, new)
+        if sum(map(len, old.values())) == len(pairs):
+            return pairs
+        # What is alike may still be told apart by what refers to it, and by that to which it refers.
+        taken = {element for pair in pairs for element in pair}
+        refined = self._refined(self._old, old, numbers), self._refined(self._new, new, numbers)
+        return pairs + [pair for pair in _unique_pairs(*refined) if taken.isdisjoint(pair)]
+
+    def _refined(
+        self, names: Names, groups: dict[Hashable, list[Element]], numbers: dict[Hashable, int]
+    ) -> dict[Hashable, list[Element]]:
+        """The groups split by the neighbours of their objects, and by the neighbours of these (colour refinement)."""
+        colours: dict[Element, Hashable] = {element: key for key, group in groups.items() for element in group}
+        neighbours = names.neighbours(colours)
+        for _ in range(_ROUNDS):
+            colours = {
+                element: numbers.setdefault(
+                    (colours[element], *sorted(((*way, colours.get(e, names.token(e))) for way, e in found), key=repr)),
+                    len(numbers),
+                )
+                for element, found in neighbours.items()
+            }
+        return _grouped(colours, colours.__getitem__)
 
     def _loose_keys(
         self, names: Names, unmatched: dict[Element, None], numbers: dict[Hashable, int]
@@ -101,7 +161,7 @@ class Matching:
         return found
 
     def _translate(self, pairs: list[Pair]) -> None:
-        self._new.translation = {self._new.own_token(new): self._old.own_token(old) for old, new in pairs}
+        self._new.translation = {self._new.own_token(new): self._old.own_token(old) for old, new in (*self._certain, *pairs)}
 
     def _renamed_with_owner(self) -> list[Pair]:
         """Pairs of which only the names in front changed: ports of a renamed component, members of a namespace."""
@@ -132,6 +192,18 @@ class Matching:
         for old, new in pairs:
             del self.removed[old]
             del self.added[new]
+
+
+def _grouped(elements: Iterable[Element], key: Callable[[Element], Hashable]) -> dict[Hashable, list[Element]]:
+    found: dict[Hashable, list[Element]] = defaultdict(list)
+    for element in elements:
+        found[key(element)].append(element)
+    found.pop(None, None)
+    return found
+
+
+def _unique_pairs(old: dict[Hashable, list[Element]], new: dict[Hashable, list[Element]]) -> list[Pair]:
+    return [(old[key][0], new[key][0]) for key in old if len(old[key]) == 1 and len(new.get(key, ())) == 1]
 
 
 def _position_key(element: Element, names: Names) -> Hashable:

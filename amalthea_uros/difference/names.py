@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from amalthea_uros.metamodel.classes.sw import CallArgument, RunnableCall
+from amalthea_uros.metamodel.element import references_of
 from amalthea_uros.metamodel.naming import TYPE_MARK, segments
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from amalthea_uros.metamodel.element import Element
     from amalthea_uros.metamodel.model import Model
 
@@ -58,10 +61,29 @@ class Names:
 
     def owner(self, element: Element) -> Token:
         """The token of the nearest container with an identity, empty if there is none: files and sub-models are no owners."""
-        holder = element.container
+        holder = self._identified(element.container) if element.container is not None else None
+        return self.token(holder) if holder is not None else ()
+
+    def neighbours(self, elements: Collection[Element]) -> dict[Element, list[tuple[tuple[str, str], Element]]]:
+        """The objects with an identity that refer to some objects, and those to which these refer, each with direction and feature."""
+        found: dict[Element, list[tuple[tuple[str, str], Element]]] = {element: [] for element in elements}
+        for holder in self.order:
+            user: Element | None = None
+            for name, value in references_of(holder):
+                user = user or self._identified(holder)
+                for target in value if isinstance(value, list) else (value,):
+                    if user is not None and target in found:
+                        found[target].append((("from", name), user))
+                    if user in found:
+                        found[user].append((("to", name), target))
+        return found
+
+    def _identified(self, element: Element) -> Element | None:
+        """The object itself or its nearest container with an identity."""
+        holder: Element | None = element
         while holder is not None and not has_identity(holder):
             holder = holder.container
-        return self.token(holder) if holder is not None else ()
+        return holder
 
     def _argument_token(self, argument: CallArgument) -> Token:
         call = argument.container

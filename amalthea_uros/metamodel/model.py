@@ -46,6 +46,9 @@ class Document:
     prolog : comments and processing instructions before the root element, `epilog` those after it
     spellings : ids and references that are not in canonical form, by object and XML name
     href_features : references that are `href` elements although EMF would write an attribute (or the reverse: False)
+    href_content : what is inside the `href` elements of a reference, as written in the file; by the object that refers, the XML name
+        of the feature, and the target
+    namespaces : the namespaces that the root of the file declares, by prefix; unknown content may need them
     migrated_from : the older version of the file, if the document was migrated while it was read; else None
     origins : locations of objects that were not read from this document, such as a line of a description
     """
@@ -59,6 +62,8 @@ class Document:
         self.epilog: list[str] = []
         self.spellings: dict[tuple[Element, str], Spelling] = {}
         self.href_features: dict[tuple[Element, str], bool] = {}
+        self.href_content: dict[tuple[Element, str, Element], list[str]] = {}
+        self.namespaces: dict[str, str] = {}
         self.changes = Changes()
         self.migrated_from: str | None = None
         self.origins: dict[Element, Location] = {}

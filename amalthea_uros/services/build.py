@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT, is_file
 from amalthea_uros._internal.garbage import paused_garbage_collection
-from amalthea_uros.diagnostics import Finding
-from amalthea_uros.errors import ReadError
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import AmurosError, ReadError, WriteError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.metamodel.model import Document, Model
-from amalthea_uros.services.paths import StrPath
+from amalthea_uros.services.paths import StrPath, folder_of
 from amalthea_uros.uros.assemble import Assembly, assemble
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def describe(path: StrPath, platform: str | None = None) -> Assembly:
     try:
         if draft.section is None:
             raise ReadError(draft.findings)
-        assembly = _assembled(draft.section, file.parent, platform)
+        assembly = _assembled(draft.section, folder_of(file), platform)
     except ReadError as error:
         raise ReadError(draft.with_more(error.findings)) from None
     if draft.findings:
@@ -103,24 +104,59 @@ def build_file(
     version: str | None = None,
     platform: str | None = None,
     compress: bool = False,
+    force: bool = False,
 ) -> BuildResult:
     """Build the AMALTHEA model of an `app.yaml` and write it.
 
     Parameters
     ----------
-    target : the file to write; None: beside the description, with the suffix `.amxmi`
+    target : the file to write; None: beside the description, with the suffix `.amxmi`, or standard output for standard input
     version, platform : as for `build`
     compress : write a ZIP
+    force : without a target, also replace a model that this function would not write
 
     Raises
     ------
     ReadError : as for `build`; nothing is written.
-    WriteError : the version cannot hold the model, or the file cannot be written.
+    WriteError : the version cannot hold the model, or the file cannot be written, or would be replaced.
     """
-    from amalthea_uros.xmi.load import SUFFIX
     from amalthea_uros.xmi.save import save
 
     result = build(path, version, platform)
-    result.document.path = Path(path).with_suffix(SUFFIX) if target is None else Path(target)
+    result.document.path = _beside(Path(path), force) if target is None else Path(target)
     save(result.model, compress=compress)
     return result
+
+
+def _beside(description: Path, force: bool) -> Path:
+    """The file for the model of a description, unless somebody else made it.
+
+    Raises
+    ------
+    WriteError : it has content that `build` would not write.
+    """
+    from amalthea_uros.xmi.load import SUFFIX
+
+    if description == STANDARD_INPUT:
+        return STANDARD_OUTPUT
+    path = description.with_suffix(SUFFIX)
+    if not force and is_file(path) and not _is_built(path):
+        message = "the file exists already, and it is not a model that `amuros build` wrote"
+        advice = "Use --force to replace it, or write another file with -o."
+        raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(path), advice)])
+    return path
+
+
+def _is_built(path: Path) -> bool:
+    """Whether a file has exactly the text that is built from the system in it; a model that others made or edited has more."""
+    from amalthea_uros.bridge.build import build_model
+    from amalthea_uros.bridge.extract import extract
+    from amalthea_uros.xmi.load import load
+    from amalthea_uros.xmi.writer import document_text
+
+    try:
+        (document,) = load(path).documents
+        built = build_model(extract(document.model).system, document.version)
+        return document.source is not None and document_text(built.documents[0]) == document.source.text
+    except (AmurosError, ValueError):
+        return False

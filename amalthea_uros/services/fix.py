@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.services.check import selection_of
+from amalthea_uros.services.file_changes import FileChange
 from amalthea_uros.services.paths import StrPath, as_paths, by_model, is_description
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
@@ -24,10 +24,12 @@ class ModelRepairs:
     Attributes
     ----------
     repaired : the number of objects by the id of the rule
+    changed : the files with their texts before and after
     """
 
     paths: tuple[Path, ...]
     repaired: Mapping[str, int]
+    changed: tuple[FileChange, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,19 +40,29 @@ class FixResult:
     ----------
     descriptions : the files that were not repaired, since only their authors know what is meant
     older : the files of models that have to be migrated first, with their AMALTHEA version
+    is_written : whether the repairs are in the files
     """
 
     models: tuple[ModelRepairs, ...]
     descriptions: tuple[Path, ...]
     older: tuple[tuple[Path, str], ...] = ()
+    is_written: bool = True
+
+    @property
+    def changed(self) -> tuple[FileChange, ...]:
+        """The files of all models that change."""
+        return tuple(file for model in self.models for file in model.changed)
 
 
-def fix_files(paths: StrPath | Iterable[StrPath], settings: CheckSettings | None = None, *, each: bool = False) -> FixResult:
+def fix_files(
+    paths: StrPath | Iterable[StrPath], settings: CheckSettings | None = None, *, each: bool = False, write: bool = True
+) -> FixResult:
     """Repair AMALTHEA models, and write the files that changed.
 
     Parameters
     ----------
     settings, each : as for `check_files`
+    write : False: only find out what would change
 
     Raises
     ------
@@ -71,13 +83,20 @@ def fix_files(paths: StrPath | Iterable[StrPath], settings: CheckSettings | None
         migrated = [(d.path, d.migrated_from) for d in model.documents if d.path is not None and d.migrated_from is not None]
         older += migrated
         if not migrated:
-            models.append(ModelRepairs(paths=group, repaired=_repair(model, rules)))
-    return FixResult(models=tuple(models), descriptions=tuple(descriptions), older=tuple(older))
+            models.append(_repair(group, model, rules, write))
+    return FixResult(models=tuple(models), descriptions=tuple(descriptions), older=tuple(older), is_written=write)
 
 
-def _repair(model: Model, rules: Collection[str]) -> Counter[str]:
+def _repair(paths: tuple[Path, ...], model: Model, rules: Collection[str], write: bool) -> ModelRepairs:
     from amalthea_uros.xmi.save import save_documents
+    from amalthea_uros.xmi.writer import document_text
 
     repairs = repair(model, [rule for rule in map(registry.rule, rules) if isinstance(rule, ModelRule)])
-    save_documents(repairs.changed, repairs.rewritten)
-    return repairs.done
+    changed = tuple(
+        FileChange(document.path, document.source.text, document_text(document, document in repairs.rewritten))
+        for document in model.documents
+        if document in repairs.changed and document.path is not None and document.source is not None
+    )
+    if write:
+        save_documents(repairs.changed, repairs.rewritten)
+    return ModelRepairs(paths=paths, repaired=repairs.done, changed=changed)

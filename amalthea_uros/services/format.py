@@ -6,23 +6,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.metamodel.versions import spelled
+from amalthea_uros.services.file_changes import FileChange
 from amalthea_uros.services.inputs import refuse_descriptions
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.xmi.load import load, model_files
 from amalthea_uros.xmi.save import save
 from amalthea_uros.xmi.writer import document_text
-
-
-@dataclass(frozen=True, slots=True)
-class FormattedFile:
-    """A file that was not in canonical form: its text before and after."""
-
-    path: Path
-    before: str
-    after: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,20 +28,13 @@ class FormatResult:
     findings : why a file could not be read or written
     """
 
-    changed: tuple[FormattedFile, ...]
+    changed: tuple[FileChange, ...]
     is_written: bool
     findings: tuple[Finding, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class FormatDiff:
-    """What canonical form changes, line by line."""
-
-    result: FormatResult
-
-
 def format_files(paths: StrPath | Iterable[StrPath], write: bool = True) -> FormatResult:
-    """Rewrite models in canonical form; files that are in it already are not touched.
+    """Rewrite models in canonical form; files that are in it already are not touched. Standard input goes to standard output.
 
     Parameters
     ----------
@@ -61,7 +47,7 @@ def format_files(paths: StrPath | Iterable[StrPath], write: bool = True) -> Form
     """
     files = as_paths(paths)
     refuse_descriptions(files)
-    changed: list[FormattedFile] = []
+    changed: list[FileChange] = []
     findings: list[Finding] = []
     for path in model_files(files):
         try:
@@ -71,7 +57,7 @@ def format_files(paths: StrPath | Iterable[StrPath], write: bool = True) -> Form
     return FormatResult(changed=tuple(changed), is_written=write, findings=tuple(findings))
 
 
-def _format(path: Path, write: bool) -> Iterable[FormattedFile]:
+def _format(path: Path, write: bool) -> Iterable[FileChange]:
     model = load(path)
     document = model.documents[0]
     if document.migrated_from is not None:
@@ -79,10 +65,13 @@ def _format(path: Path, write: bool) -> Iterable[FormattedFile]:
         raise WriteError(
             [Finding("XMI104", Severity.ERROR, message, Location(path), f"Migrate it first: amuros migrate {path}")]
         )
-    before = document.source.text if document.source else ""
+    source = document.source
+    assert source is not None
+    # The canonical form is UTF-8 without a byte order mark, as EMF writes it.
+    before = "\ufeff" + source.text if source.encoding == "utf-8-sig" else source.text
     after = document_text(document, canonical=True)
+    if write and (after != before or path == STANDARD_INPUT):
+        save(model, STANDARD_OUTPUT if path == STANDARD_INPUT else None, canonical=True)
     if after == before:
         return ()
-    if write:
-        save(model, canonical=True)
-    return (FormattedFile(path, before, after),)
+    return (FileChange(path, before, after),)

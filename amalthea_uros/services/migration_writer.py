@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from amalthea_uros._internal.files import is_file, resolved
+from amalthea_uros._internal.files import is_file, is_stream, resolved
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.services.migrated_paths import Destination
@@ -60,7 +60,7 @@ class Writer:
             help_text = "Migrate them one by one, or rename one of them."
             raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(target), help_text)])
         is_itself = self.goal.in_place and place == resolved(source)
-        if is_file(target) and not self.force and not is_itself:
+        if is_file(target) and not is_stream(target) and not self.force and not is_itself:
             message = "the file exists already"
             help_text = "Use --force to overwrite it, --in-place to replace the old file, or write to another place with -o."
             raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(target), help_text)])

@@ -7,24 +7,39 @@ from collections.abc import Iterable, Iterator
 from os import PathLike
 from pathlib import Path
 
+from amalthea_uros._internal.files import STANDARD_INPUT, FileError, read_bytes
+
 StrPath = str | PathLike[str]
 
 _DESCRIPTION_SUFFIXES = (".yaml", ".yml")
 
 #: The key of a description that says what the file is.
 _KEY = re.compile(rb"""^(?:\xef\xbb\xbf)?["']?amuros["']?[ \t]*:""", re.MULTILINE)
+#: How models begin: as XML in one of the encodings with a byte order mark or in none of them, or as a ZIP.
+_MODEL_STARTS = (b"<", b"\xef\xbb\xbf<", b"\xff\xfe", b"\xfe\xff", b"PK")
 
 
 def is_description(path: StrPath) -> bool:
-    """Whether a file is an `app.yaml`, by its name."""
-    return Path(path).suffix in _DESCRIPTION_SUFFIXES
+    """Whether a file is an `app.yaml`, by its name; standard input, by its content."""
+    file = Path(path)
+    if file == STANDARD_INPUT:
+        try:
+            return not read_bytes(file).lstrip().startswith(_MODEL_STARTS)
+        except FileError:
+            return False
+    return file.suffix in _DESCRIPTION_SUFFIXES
+
+
+def folder_of(path: Path) -> Path:
+    """The folder to which relative paths in a file refer; for standard input, the current one."""
+    return Path() if path == STANDARD_INPUT else path.parent
 
 
 def is_other_yaml(path: Path) -> bool:
     """Whether a YAML file can be read, but has no key `amuros` at its top level, so that it is of some other program."""
     try:
-        return is_description(path) and _KEY.search(path.read_bytes()) is None
-    except OSError:
+        return is_description(path) and _KEY.search(read_bytes(path)) is None
+    except FileError:
         return False
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from amalthea_uros._internal.files import is_file, resolved
+from amalthea_uros._internal.files import STANDARD_INPUT, is_file, resolved
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
@@ -70,7 +70,7 @@ def project_settings(path: Path) -> CheckSettings:
     ------
     ReadError : the settings cannot be read, or something in them is wrong.
     """
-    start = resolved(path)
+    start = resolved(Path() if path == STANDARD_INPUT else path)
     for folder in (start, *start.parents):
         for name, tables in _PLACES:
             file = folder / name

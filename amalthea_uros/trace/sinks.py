@@ -12,7 +12,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Protocol, Self, cast
 
-from amalthea_uros._internal.files import FileError, not_writable, replacing
+from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, not_writable, replacing
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.trace.table import Entity, EventTable
@@ -88,7 +88,7 @@ def open_sink(
 
     Parameters
     ----------
-    target : a file, or an open stream, which is not closed
+    target : a file, or an open stream, which is not closed; standard output gets the format BTF
     entities : those of the tables; more may be appended to the sequence while the trace is written
     suffix : stands for the format instead of the name, e.g. ".btf" or ".btf.gz"; a stream needs it
 
@@ -97,6 +97,8 @@ def open_sink(
     InvalidArgumentError : there is no such format.
     WriteError : the file cannot be written.
     """
+    if suffix is None and target == STANDARD_OUTPUT:
+        suffix = ".btf"
     name = (suffix if suffix is not None else target.name if isinstance(target, Path) else "").lower()
     encoder = _encoder(name.removesuffix(".gz"), name)(entities, options or WriteOptions())
     return _EncodingSink(target, encoder, is_compressed=name.endswith(".gz"))

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Iterator
 from itertools import count
+from typing import NamedTuple
 
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
@@ -31,6 +34,23 @@ def _is_same_value(one: object, other: object) -> bool:
 
 
 def new_name(stem: str, cls: type[Element], context: Context) -> str:
-    """A name that no object of a class uses yet."""
-    taken = {getattr(element, "name", None) for element in context.all(cls)}
-    return next(name for number in count(1) if (name := f"{stem}_{number}") not in taken)
+    """A name that no object of a class uses yet, and no reference without target, which would get another meaning."""
+    names = context.once(_names)
+    taken = names.taken[cls]
+    name = next(name for number in names.numbers[cls, stem] if (name := f"{stem}_{number}") not in taken)
+    taken.add(name)
+    return name
+
+
+class _Names(NamedTuple):
+    """The names in use by class, and the next number for a stem, so that many objects are named in one pass."""
+
+    taken: dict[type[Element], set[str | None]]
+    numbers: dict[tuple[type[Element], str], Iterator[int]]
+
+
+def _names(context: Context) -> _Names:
+    taken: dict[type[Element], set[str | None]] = defaultdict(set)
+    for element in (*context.all(Element), *context.referred):
+        taken[type(element)].add(element.__dict__.get("name"))
+    return _Names(taken, defaultdict(lambda: count(1)))

@@ -63,6 +63,8 @@ class EmfSerializer:
         self.prefixes = prefixes
         self.findings: list[Finding] = []
         self.uses_xsi = False
+        #: Unknown content that was written, which may need namespaces of the file.
+        self.kept: list[str] = []
         self._write_plans: dict[tuple[type[Element], tuple[str, ...]], WritePlan] = {}
         #: Reference text of a target, and whether it is in this document.
         self._targets: dict[Element, tuple[str, bool]] = {}
@@ -245,7 +247,20 @@ class EmfSerializer:
         is_local = all(self.target(target)[1] for target in targets)
         if self.is_attribute(element, feature, is_local):
             return []
-        return [self.href(feature, target) for target in targets]
+        found: list[Child] = [self.href(feature, target) for target in targets]
+        if self.document.href_content:
+            self.fill(element, feature, targets, found)
+        return found
+
+    def fill(self, element: Element, feature: FeaturePlan, targets: list[Element], hrefs: list[Child]) -> None:
+        """Put into `href` elements what is inside them in the file."""
+        first_numbers = {target: number for number, target in reversed(list(enumerate(targets)))}
+        for target, number in first_numbers.items():
+            content = self.document.href_content.get((element, feature.xml_name, target))
+            href = hrefs[number]
+            if content and isinstance(href, Href):
+                self.kept += content
+                hrefs[number] = href._replace(tag=f"{href.tag[:-2]}>{''.join(content)}</{feature.xml_name}>")
 
     def href(self, feature: FeaturePlan, target: Element) -> Href:
         """`<task href="amlt:/#T?type=Task"/>`, with `xsi:type` where the declared class is abstract."""

@@ -8,6 +8,9 @@ import re
 _SPECIAL = re.compile(r'[&<"\t\n\r]')
 _ESCAPES = {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\t": "&#x9;", "\n": "&#xA;", "\r": "&#xD;"}
 
+#: What XML 1.0 counts as white space (section 2.3); Python counts more.
+WHITE_SPACE = " \t\r\n"
+
 #: Characters that XML 1.0 does not allow, not even escaped.
 _IMPOSSIBLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
@@ -20,6 +23,11 @@ def escape(value: str) -> str:
     if not _SPECIAL.search(value):
         return value
     return _SPECIAL.sub(lambda match: _ESCAPES[match[0]], value)
+
+
+def escape_text(value: str) -> str:
+    """A text for use between tags, where a parser makes a line end of a carriage return, and `]]>` is forbidden (XML 1.0, 2.4)."""
+    return value.replace("&", "&amp;").replace("<", "&lt;").replace("]]>", "]]&gt;").replace("\r", "&#xD;")
 
 
 def impossible_character(value: str) -> str | None:

@@ -9,7 +9,7 @@ from typing import Any
 from xml.parsers import expat
 
 #: Something else than white space between two tags. It also finds `>` in values and comments; then the handler is called for nothing.
-_BETWEEN_TAGS = re.compile(r">\s*+[^<]")
+_BETWEEN_TAGS = re.compile(r">[ \t\r\n]*+[^<]")
 
 _CDATA = "<![CDATA["
 
@@ -36,6 +36,8 @@ def connect(parser: Any, text: str, handlers: Handlers) -> None:
     parser.CommentHandler = handlers.comment
     parser.ProcessingInstructionHandler = handlers.processing_instruction
     if has_character_data(text):
+        # Larger than any text, so that one that is longer than the usual buffer is not reported in pieces.
+        parser.buffer_size = len(text.encode())
         parser.CharacterDataHandler = handlers.characters
 
 

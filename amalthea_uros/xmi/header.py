@@ -31,6 +31,7 @@ class Header(NamedTuple):
     xmi_id, xsi_type : names of the special attributes in this document
     type_prefix : prefix of class names in `xsi:type`
     own_attributes : attributes of the root that belong to XML and XMI, not to the model
+    namespaces : the namespaces that the root declares, by prefix
     """
 
     version: str
@@ -39,6 +40,7 @@ class Header(NamedTuple):
     xsi_type: str
     type_prefix: str
     own_attributes: frozenset[str]
+    namespaces: dict[str, str]
 
     @property
     def version_note(self) -> str:
@@ -88,12 +90,12 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
         raise NotAModelError("XMI005", f"namespace {namespace} does not end with an AMALTHEA version")
     if version_key(version) < version_key(OLDEST_SUPPORTED):
         raise NotAModelError("XMI006", f"AMALTHEA {version} was never published", _VERSIONS)
-    prefixes = {uri: key.partition(":")[2] for key, uri in attributes.items() if key.startswith("xmlns:")}
+    namespaces = {key.partition(":")[2]: uri for key, uri in attributes.items() if key.startswith("xmlns:")}
     for usual, uri in (("xmi", XMI_NAMESPACE), ("xsi", XSI_NAMESPACE)):
-        given = attributes.get(f"xmlns:{usual}", uri)
+        given = namespaces.get(usual, uri)
         if given != uri:
             raise NotAModelError("XMI005", f"the prefix {usual!r} is bound to {given!r}", f'Write xmlns:{usual}="{uri}".')
-    xmi, xsi = prefixes.get(XMI_NAMESPACE, "xmi"), prefixes.get(XSI_NAMESPACE, "xsi")
+    xmi, xsi = _prefix(namespaces, XMI_NAMESPACE, "xmi"), _prefix(namespaces, XSI_NAMESPACE, "xsi")
     return Header(
         version=version,
         facts_version=nearest_version(version),
@@ -101,7 +103,14 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
         xsi_type=f"{xsi}:type",
         type_prefix=f"{prefix}:",
         own_attributes=frozenset(k for k in attributes if k.startswith(("xmlns", f"{xmi}:version", f"{xsi}:"))),
+        namespaces=namespaces,
     )
+
+
+def _prefix(namespaces: dict[str, str], namespace: str, usual: str) -> str:
+    """The prefix of a namespace: the usual one, if it is among several."""
+    declared = [prefix for prefix, uri in namespaces.items() if uri == namespace]
+    return usual if usual in declared or not declared else declared[0]
 
 
 #: Files of published versions before 0.9.7 are not read directly; they are migrated.

@@ -6,7 +6,7 @@ also of attributes, and beyond line 65,535, where libxml2 stops counting.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
@@ -20,6 +20,7 @@ from amalthea_uros.metamodel.element import Element, extras_of
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.xmi import refusals
+from amalthea_uros.xmi.escape import WHITE_SPACE, escape_text
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.finding_collector import CollectedFinding, FindingCollector
 from amalthea_uros.xmi.handlers import Handlers, connect, disconnect
@@ -66,6 +67,7 @@ class ReadResult(NamedTuple):
     ----------
     referables : every object that can be referred to
     xmi_ids : the `xmi:id` of every object that has one
+    href_content : what is inside an `href` element, by the object that refers, the feature and the number of the element
     findings : problems that did not prevent reading
     """
 
@@ -73,6 +75,7 @@ class ReadResult(NamedTuple):
     references: list[PendingReference]
     referables: list[Element]
     xmi_ids: list[tuple[Element, str]]
+    href_content: Mapping[tuple[Element, str, int], list[str]]
     findings: list[Finding]
 
 
@@ -133,6 +136,9 @@ class _Reader:
         self.xmi_ids: list[tuple[Element, str]] = []
         #: Comments and the like, until the part that follows them is read.
         self.pending_extras: dict[Element, list[str]] = {}
+        #: The same for what is inside `href` elements, and the key of the last one of these.
+        self.href_content: dict[tuple[Element, str, int], list[str]] = {}
+        self.href: tuple[Element, str, int] | None = None
         self.prolog: list[str] = []
         self.epilog: list[str] = []
         self.skipped_depth = 0
@@ -171,8 +177,9 @@ class _Reader:
             content.text, header.version, content.encoding, content.zip_entry, prefixes, self.elements, self.starts, self.ends
         )
         document.prolog, document.epilog = self.prolog, self.epilog
+        document.namespaces = header.namespaces
         findings = [collected.finding(self.path, source) for collected in self.collector]
-        return ReadResult(document, self.references, self.referables, self.xmi_ids, findings)
+        return ReadResult(document, self.references, self.referables, self.xmi_ids, self.href_content, findings)
 
     @cached_property
     def encoded(self) -> bytes:
@@ -186,7 +193,7 @@ class _Reader:
             self.header = header = read_header(name, attributes)
         except NotAModelError as error:
             raise self.refuse(error.rule, error.message, error.help) from None
-        if "xsi:type" in self.content.text and "xmlns:xsi" not in self.content.text:
+        if refusals.lacks_namespace(self.content.text):
             raise refusals.undeclared_prefix(self.path, self.content.text, self.offset, "xsi", XSI_NAMESPACE)
         if header.version_note:
             added = "Additions of that version are preserved when the file is saved, but ignored otherwise."
@@ -266,8 +273,9 @@ class _Reader:
                     texts = value.split()
                     if len(texts) > 1 and not attribute.many:
                         texts = reference_texts(attribute, value)
-                    add_reference(_tuple(PendingReference, (element, attribute, texts, False)))
-                    own_held[attribute.name] = True
+                    if texts:
+                        add_reference(_tuple(PendingReference, (element, attribute, texts, False)))
+                        own_held[attribute.name] = True
                 elif attribute.parse is None:
                     _set(element, attribute.name, value)
                 else:
@@ -310,6 +318,7 @@ class _Reader:
         elif texts is True or not feature.many:
             self.start_duplicate(feature)
             return
+        self.href = (holder, feature.name, len(texts))
         texts.append(text)
         self.stack.append((None, None, -1, {}))
 
@@ -377,11 +386,12 @@ class _Reader:
         self.keep_extra(self.encoded[start:end].decode())
 
     def characters(self, data: str) -> None:
-        if data.isspace() or self.skipped_depth:
+        text = data.strip(WHITE_SPACE)
+        if not text or self.skipped_depth:
             return
-        message = f"text {data.strip()[:30]!r} between the elements"
+        message = f"text {text[:30]!r} between the elements"
         self.report("XMI015", Severity.WARNING, message, "Remove it; a model has no text between its elements.")
-        self.keep_extra(data.strip().replace("&", "&amp;").replace("<", "&lt;"))
+        self.keep_extra(escape_text(text))
 
     def comment(self, data: str) -> None:
         self.keep_extra(f"<!--{data}-->")
@@ -393,9 +403,11 @@ class _Reader:
         """Keep what the metamodel cannot represent at the open element."""
         if self.skipped_depth:
             return
-        holder = next((element for element, *_ in reversed(self.stack) if element is not None), None)
+        holder = self.stack[-1][0] if self.stack else None
         if holder is not None:
             self.pending_extras.setdefault(holder, []).append(raw)
+        elif self.stack and self.href is not None:
+            self.href_content.setdefault(self.href, []).append(raw)
         else:
             (self.epilog if self.elements else self.prolog).append(raw)
 

@@ -128,6 +128,11 @@ class _Resolver:
                 local = local and (is_single or target.document is document)
             if targets:
                 _set(holder, feature.name, ReferenceList(holder, targets) if feature.many else targets[0])
+            if is_href and result.href_content:
+                for number, target in enumerate(targets):
+                    content = result.href_content.get((holder, feature.name, number))
+                    if content:
+                        document.href_content.setdefault((holder, feature.xml_name, target), []).extend(content)
             if is_href is local and targets:
                 document.href_features[holder, feature.xml_name] = is_href
 

@@ -49,6 +49,17 @@ def malformed(path: Path, text: str, error: expat.ExpatError, offset: int, open_
     return refusal(path, text, offset, "XMI002", f"not well-formed XML: {reason}")
 
 
+def lacks_namespace(text: str) -> bool:
+    """Whether a text uses `xsi:type` without a declaration of the prefix; most texts need not be parsed to know it."""
+    if "xsi:type" not in text or "xmlns:xsi" in text:
+        return False
+    try:
+        expat.ParserCreate(namespace_separator=" ").Parse(text, True)
+    except expat.ExpatError as error:
+        return expat.ErrorString(error.code) == expat.errors.XML_ERROR_UNBOUND_PREFIX
+    return False  # only in a value or a comment
+
+
 def undeclared_prefix(path: Path, text: str, offset: int, prefix: str, namespace: str) -> ReadError:
     """The refusal of a prefix without declaration."""
     message = f"not well-formed XML: undeclared namespace prefix {prefix!r}"

@@ -17,6 +17,7 @@ from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Source, attributes_of_tag
 from amalthea_uros.xmi.emf_serializer import Child, EmfSerializer, Href, Part
 from amalthea_uros.xmi.escape import escape, unescape
+from amalthea_uros.xmi.kept_content import tag_of
 from amalthea_uros.xmi.plan import ClassPlan, reference_texts
 
 _NAME = re.compile(r"[^\s/>]+")
@@ -162,11 +163,11 @@ class SourceMerger:
         ----------
         separator : white space before a child, unless the source gives an example
         """
-        extra = [raw for _, raw in element.extras.content if _is_element(raw)] if element.extras else []
+        extra = [raw for _, raw in element.extras.content if tag_of(raw)] if element.extras else []
         nodes = list(self.nodes(element, children, extra, at, end))
         separator = next((n.text for n in nodes if n.text.isspace() and "\n" in n.text), separator if not nodes else "")
         new_extra = [piece for raw in extra for piece in (separator, raw)]
-        if not _in_order(nodes, children):
+        if not _in_order(nodes, children) or _would_follow_duplicate(nodes, children):
             return _reordered(nodes, children, new_extra, separator)
         after, before = _added(nodes, children)
         found: list[str | Part] = [item for child in after.get(None, ()) for item in (separator, _item(child))]
@@ -254,10 +255,6 @@ def _item(child: Child) -> str | Part:
     return child if isinstance(child, Part) else child.tag
 
 
-def _is_element(raw: str) -> bool:
-    return raw.startswith("<") and raw[1] not in "!?"
-
-
 def _before_last_space(found: list[str | Part]) -> int:
     last = found[-1] if found else None
     return len(found) - 1 if isinstance(last, str) and last.isspace() else len(found)
@@ -274,6 +271,13 @@ def _in_order(nodes: list[Node], children: list[Child]) -> bool:
                 return False
             last[node.child.feature.xml_name] = position
     return True
+
+
+def _would_follow_duplicate(nodes: list[Node], children: list[Child]) -> bool:
+    """Whether a new value could get behind an unknown one of the same feature, so that this one would count instead."""
+    present = {id(node.child) for node in nodes}
+    unknown = {tag_of(node.text) for node in nodes if node.kept and node.child is None}
+    return any(child.feature.xml_name in unknown and id(child) not in present for child in children)
 
 
 def _added(nodes: list[Node], children: list[Child]) -> tuple[dict[int | None, list[Child]], dict[int, list[Child]]]:
@@ -299,11 +303,10 @@ def _added(nodes: list[Node], children: list[Child]) -> tuple[dict[int | None, l
 
 
 def _reordered(nodes: list[Node], children: list[Child], extra: list[str], separator: str) -> list[str | Part]:
-    """The children in EMF's order, because their new order contradicts that of the source; comments come first."""
-    found: list[str | Part] = []
-    for node in nodes:
-        if node.kept and node.child is None and not node.text.isspace():
-            found += [separator, node.text]
+    """The children in EMF's order, because their new order contradicts that of the source; comments first, unknown elements last."""
+    others = [node.text for node in nodes if node.kept and node.child is None and not node.text.isspace()]
+    found: list[str | Part] = [piece for text in others if not tag_of(text) for piece in (separator, text)]
+    extra = [*(piece for text in others if tag_of(text) for piece in (separator, text)), *extra]
     by_child = {id(node.child): node for node in nodes if isinstance(node.child, Href)}
     for child in children:
         found += [separator, by_child[id(child)].text if id(child) in by_child else _item(child)]

@@ -18,12 +18,15 @@ from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, version_key
 from amalthea_uros.xmi.emf_serializer import Child, EmfSerializer, Part, WritePlan
 from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
+from amalthea_uros.xmi.kept_content import KeptContent, used_prefixes
 from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan
+from amalthea_uros.xmi.read_back import check_read_back
 from amalthea_uros.xmi.refusals import MAX_DEPTH
 from amalthea_uros.xmi.source_merger import SourceMerger
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
 _INDENT = "  "
+_OWN_PREFIX = Prefixes().type_prefix.rstrip(":")
 
 
 def document_text(document: Document, canonical: bool = False) -> str:
@@ -35,7 +38,8 @@ def document_text(document: Document, canonical: bool = False) -> str:
 
     Raises
     ------
-    WriteError : the AMALTHEA version of the document does not allow something in it; carries a finding for each such thing.
+    WriteError : the AMALTHEA version of the document does not allow something in it; carries a finding for each such thing. Or
+        the text would be read as another model.
     """
     source = None if canonical else usable_source(document)
     if source is not None:
@@ -47,6 +51,9 @@ def document_text(document: Document, canonical: bool = False) -> str:
     if writer.serializer.findings:
         # What differs from the source is serialised twice.
         raise WriteError(dict.fromkeys(writer.serializer.findings))
+    is_as_read = document.source is not None and document.source.text == text and not document.changes.modified
+    if not is_as_read:
+        check_read_back(text, document, writer.serializer, writer.merger)
     return text
 
 
@@ -65,9 +72,10 @@ class _Writer:
         self.source = source
         self.index = source.index if source else {}
         self.newline = source.newline if source else "\n"
-        self.serializer = EmfSerializer(document, source.prefixes if source else Prefixes())
+        self.serializer = EmfSerializer(document, source.prefixes if source else canonical_prefixes(document))
         self.merger = SourceMerger(document, source, self.serializer) if source else None
         self.version = document.version
+        self.namespaces = known_namespaces(document)
         self.outside = (document.prolog, document.epilog)
         self.depth = 1
         self.out: list[str] = []
@@ -95,16 +103,31 @@ class _Writer:
             self.out.append("")
             self.canonical_content(self.root, tag, children, "")
             self.out += [self.newline, *(raw + self.newline for raw in epilog)]
-            self.out[opening_at] = f"<{tag}{self.root_attributes()}{_extra_attributes(self.root)}"
-        prefix = self.serializer.prefixes.xsi_type.partition(":")[0]
-        if self.serializer.uses_xsi and not re.search(rf"\sxmlns:{prefix}\s*=", self.out[opening_at]):
-            self.out[opening_at] += f' xmlns:{prefix}="{XSI_NAMESPACE}"'
+            self.out[opening_at] = f"<{tag}{self.root_attributes()}"
+        self.out[opening_at] += self.missing_declarations(self.out[opening_at])
+        if not self.source:
+            self.out[opening_at] += _extra_attributes(self.root)
         return "".join(self.out)
+
+    def missing_declarations(self, opening: str) -> str:
+        """The declarations that the root element, whose start tag is given, needs for what was written."""
+        needed = {prefix: self.namespaces[prefix] for prefix in self.kept_prefixes()}
+        if self.serializer.uses_xsi:
+            needed[self.serializer.prefixes.xsi_type.partition(":")[0]] = XSI_NAMESPACE
+        missing = (prefix for prefix in needed if not re.search(rf"\sxmlns:{re.escape(prefix)}\s*=", opening))
+        return "".join(f' xmlns:{prefix}="{escape(needed[prefix])}"' for prefix in missing)
+
+    def kept_prefixes(self) -> list[str]:
+        """The prefixes that unknown content needs, in the order of their declarations."""
+        used = used_prefixes(self.serializer.kept)
+        is_foreign = self.source is None and self.serializer.prefixes.type_prefix != Prefixes().type_prefix
+        return [prefix for prefix in self.namespaces if prefix in used or (is_foreign and prefix == _OWN_PREFIX)]
 
     def root_attributes(self) -> str:
         """The attributes of the root element that XML and XMI require, in EMF's order."""
-        xsi = f' xmlns:xsi="{XSI_NAMESPACE}"' if self.serializer.uses_xsi else ""
-        own = f' xmlns:am="{NAMESPACE_PREFIX}{self.version}"'
+        uses_xsi = self.serializer.uses_xsi or "xsi" in self.kept_prefixes()
+        xsi = f' xmlns:xsi="{XSI_NAMESPACE}"' if uses_xsi else ""
+        own = f' xmlns:{self.serializer.prefixes.type_prefix[:-1]}="{NAMESPACE_PREFIX}{self.version}"'
         # The order changed with 1.0.0, when APP4MC no longer used Sphinx.
         spaces = xsi + own if version_key(self.version) >= (1,) else own + xsi
         return f' xmi:version="2.0" xmlns:xmi="{XMI_NAMESPACE}"{spaces}'
@@ -158,6 +181,7 @@ class _Writer:
             known = plan.attributes.get(key)
             if known is None or element.__dict__.get(known.name) in (None, []):
                 wanted[key] = text
+                self.serializer.kept.append(f'{key}="{text}"')
         return "".join(f' {key}="{escape(text)}"' for key, text in wanted.items())
 
     def canonical_content(self, element: Element, tag: str, children: list[Child], indent: str) -> None:
@@ -169,18 +193,17 @@ class _Writer:
             out.append("/>")
             return
         out.append(">")
-        pending_extras: dict[Element | None, list[str]] = {}
-        present = {child.element for child in children if isinstance(child, Part)} if extra else set()
-        for anchor, raw in extra:
-            pending_extras.setdefault(anchor if anchor in present else None, []).append(raw)
+        kept = KeptContent.of(extra, children)
+        self.serializer.kept += [raw for _, raw in extra]
         for child in children:
             if isinstance(child, Part):
-                out += [separator + raw for raw in pending_extras.get(child.element, ())]
+                out += [separator + raw for raw in kept.before.get(child.element, ())]
                 out.append(separator)
                 self.part(child, inner)
             else:
                 out.append(separator + child.tag)
-        out += [separator + raw for raw in pending_extras.get(None, ())]
+            out += [separator + raw for raw in kept.after.pop(child.feature.xml_name, ())]
+        out += [separator + raw for raw in kept.before.get(None, ())]
         out.append(f"{self.newline}{indent}</{tag}>")
 
     def merged_content(self, element: Element, tag: str, children: list[Child], indent: str, place: int, at: int) -> None:
@@ -222,6 +245,22 @@ class _Writer:
                 if item.isspace():
                     inner = item.rpartition("\n")[2]
         out.append(text[end : self.merger.end(place)])
+
+
+def canonical_prefixes(document: Document) -> Prefixes:
+    """The usual prefixes, unless the file needs `am` for something else."""
+    foreign = document.namespaces.get(_OWN_PREFIX, NAMESPACE_PREFIX + document.version) != NAMESPACE_PREFIX + document.version
+    own = document.source.prefixes.type_prefix if document.source else Prefixes().type_prefix
+    return Prefixes(type_prefix=own) if foreign else Prefixes()
+
+
+def known_namespaces(document: Document) -> dict[str, str]:
+    """The namespaces of the file, and those of the other files of the model, from which unknown content may have moved."""
+    found = dict(document.namespaces)
+    for other in document.model.documents:
+        for prefix, uri in other.namespaces.items():
+            found.setdefault(prefix, uri)
+    return found
 
 
 def _extra_attributes(element: Element) -> str:

@@ -123,6 +123,29 @@ def test_an_older_file_stays_when_there_are_mistakes(advanced, tmp_path):
     assert out.read_text() == "precious"
 
 
+class TestWithoutTarget:
+    """A model beside the description is replaced only if nobody else made or edited it."""
+
+    def test_its_own_model_is_replaced(self, advanced, tmp_path):
+        assert amuros("build", advanced, "--amalthea", "3.2.0").returncode == 0
+        assert amuros("build", advanced).returncode == 0
+        assert amalthea_uros.load(tmp_path / "app.amxmi").documents[0].version == "3.3.0"
+
+    @pytest.mark.parametrize("edit", [lambda text: text.replace("<swModel>", "<swModel><!-- mine -->"), lambda _: "precious"])
+    def test_what_others_made_stays(self, edit, advanced, tmp_path):
+        model = tmp_path / "app.amxmi"
+        amuros("build", advanced)
+        model.write_text(edit(model.read_text()))
+        before = model.read_text()
+        run = amuros("build", advanced)
+        assert run.returncode == 2
+        assert "XMI101 error: the file exists already" in run.stderr
+        assert "--force" in run.stderr
+        assert model.read_text() == before
+        assert amuros("build", advanced, "--force").returncode == 0
+        assert model.read_text() != before
+
+
 def test_another_version(advanced, tmp_path):
     run = amuros("build", advanced, "--amalthea", "2.1.0", "-o", tmp_path / "old.amxmi")
     assert run.returncode == 0

@@ -1,10 +1,17 @@
 """`amuros check --fix`: what is repaired, and what is not."""
 
+from collections import Counter
+
 import pytest
 from support import DATA, MODEL, ROOT, meaning
 from test_cli import amuros
 
 from amalthea_uros import load
+from amalthea_uros.services.check import check_files
+from amalthea_uros.services.fix import fix_files
+from amalthea_uros.validate import registry
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import ModelRule
 
 RELATIVE = """
 <stimuliModel>
@@ -97,3 +104,71 @@ def test_a_description_is_left_to_its_author(tmp_path):
     before = path.read_bytes()
     assert "a description is not repaired" in amuros("check", "--fix", path).stderr
     assert path.read_bytes() == before
+
+
+def test_a_preview_shows_the_repairs_and_writes_nothing(tmp_path):
+    rule, before, _ = CASES[0]
+    path = tmp_path / "model.amxmi"
+    path.write_text(MODEL.format(before))
+    run = amuros("check", "--fix", "--diff", "--select", rule, path)
+    assert run.returncode == 1
+    assert run.stderr == f"{path}: {rule} would be repaired in 1 object\n"
+    assert [line for line in run.stdout.splitlines() if line[0] in "+-"] == [
+        f"--- {path}",
+        f"+++ {path} (repaired)",
+        '-      <lowerBound value="10" unit="ms"/>',
+        '+      <lowerBound value="10000" unit="us"/>',
+    ]
+    assert path.read_text() == MODEL.format(before)
+    amuros("check", "--fix", "--select", rule, path)
+    again = amuros("check", "--fix", "--diff", "--select", rule, path)
+    assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
+
+
+def test_a_preview_without_repairs_is_wrong_use():
+    run = amuros("check", "--diff", DATA / "brake.amxmi")
+    assert run.returncode == 2
+    assert "add --fix" in run.stderr
+
+
+@pytest.mark.parametrize("tasks", ['<tasks name="T"/><tasks name="T"/>', '<tasks name="T"/><tasks/>'])
+def test_no_object_gets_the_name_that_a_dangling_reference_expects(tasks, tmp_path):
+    """It would get another meaning, without a word."""
+    path = tmp_path / "model.amxmi"
+    allocations = "".join(f'<taskAllocation task="{name}?type=Task"/>' for name in ("T_1", "Task_1"))
+    path.write_text(MODEL.format(f"<swModel>{tasks}</swModel><mappingModel>{allocations}</mappingModel>"))
+    assert amuros("check", "--fix", "--select", "AM-EMF-INTRINSIC/*", path).stdout.count("is not defined") == 2
+
+
+def test_many_objects_are_named_in_one_pass(tmp_path, monkeypatch):
+
+    path = tmp_path / "model.amxmi"
+    path.write_text(MODEL.format(f"<swModel>{'<labels/>' * 300}</swModel>"))
+    walks = []
+    once = Context.referred.func
+    monkeypatch.setattr(Context, "referred", property(lambda context: walks.append(1) or once(context)))
+    fix_files(path)
+    assert len(walks) < 10
+    assert len({label.name for label in load(path).root.sw_model.labels}) == 300
+
+
+#: EMF's form states defaults; this rule counts them only where they are stated.
+_OF_STATED_DEFAULTS = {"INC-OS-SEMA-TYPE"}
+
+
+def test_one_run_repairs_everything_and_makes_nothing_worse(tmp_path):
+    """For what every rule with a repair complains about, alone and together with that of another one."""
+
+    rules = [rule for rule in map(registry.rule, registry.ids()) if isinstance(rule, ModelRule)]
+    repairable = [
+        rule.fails for rule in rules if rule.fails and "<am:" not in rule.fails and (rule.fix or rule.in_canonical_form)
+    ]
+    path = tmp_path / "model.amxmi"
+    neighbours = zip(repairable, [*repairable[1:], repairable[0]], strict=True)
+    for excerpt, other in [*((one, "") for one in repairable), *neighbours]:
+        path.write_text(MODEL.format(excerpt + other))
+        before = Counter(finding.rule for finding in check_files(path).findings)
+        assert any(model.changed for model in fix_files(path).models)
+        after = Counter(finding.rule for finding in check_files(path).findings)
+        assert set(after - before) <= _OF_STATED_DEFAULTS
+        assert not any(model.changed for model in fix_files(path, write=False).models)

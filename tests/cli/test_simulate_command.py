@@ -336,8 +336,6 @@ WRONG = {
     "a trace window after the end": (["--trace", "t.btf", "--trace-window", "3s..4s"], "the run ends at 1 s"),
     "a window after the end": (["--window", "3s..4s", "--gantt", "g.svg"], "the run ends at 1 s"),
     "a window of nothing": (["--window", "1ms..2ms"], "--window chooses what --gantt and --timeline show"),
-    "a trace on standard output": (["--trace", "-"], "only --output writes to standard output"),
-    "a picture on standard output": (["--gantt", "-"], "only --output writes to standard output"),
     "a file for two pictures": (["--gantt", "g.svg", "--timeline", "Control_Function=g.svg"], "g.svg is the file of 2 options"),
     "a file for a result and a table": (["--output", "json=x.json", "--table", "x.json"], "x.json is the file of 2 options"),
     "a result that cannot be written": (

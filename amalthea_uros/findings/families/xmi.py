@@ -282,4 +282,12 @@ KINDS = (
         "nevertheless.",
         remedy="Report the message together with the model, unless it is about memory.",
     ),
+    FindingKind(
+        id="XMI106",
+        title="model that would be read differently",
+        severity=Severity.ERROR,
+        rationale="The text is read again before it is written. Reading it would not give the same model, so nothing is written. This "
+        "happens if something unknown, or a second value where one is allowed, would be read as the value of the object.",
+        remedy="Remove what is unknown or given twice. If there is nothing like that, report the message together with the model.",
+    ),
 )

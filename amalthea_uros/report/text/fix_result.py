@@ -11,9 +11,10 @@ from amalthea_uros.services.fix import FixResult
 
 def write(result: FixResult, terminal: Terminal) -> None:
     """Write a line for each rule and model."""
+    done = "repaired" if result.is_written else "would be repaired"
     for model in result.models:
         for rule, number in model.repaired.items():
-            terminal.line(f"{joined(model.paths)}: {rule} repaired in {counted(number, 'object')}")
+            terminal.line(f"{joined(model.paths)}: {rule} {done} in {counted(number, 'object')}")
     for path in result.descriptions:
         terminal.line(f"{path}: a description is not repaired, only its author knows what is meant")
     for path, version in result.older:

@@ -9,7 +9,7 @@ from io import StringIO
 from pathlib import Path
 from typing import TypeAlias
 
-from amalthea_uros._internal.files import FileError, write_bytes
+from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, write_bytes
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.campaign.run import Record, Value
 from amalthea_uros.xmi.files import not_writable
@@ -19,12 +19,14 @@ TableFormat: TypeAlias = Callable[[Sequence[str], Sequence[Record]], bytes]
 
 
 def table_format(path: Path) -> TableFormat:
-    """The format for a path.
+    """The format for a path; CSV for standard output.
 
     Raises
     ------
     InvalidArgumentError : no format has the suffix, or it needs a package that is not installed.
     """
+    if path == STANDARD_OUTPUT:
+        return _csv
     if path.suffix.lower() not in _FORMATS:
         known = ", ".join(_FORMATS)
         raise InvalidArgumentError(f"{str(path)!r}: unknown kind of table; expected one of {known}, e.g. runs.csv")

@@ -112,7 +112,7 @@ class _Parser:
     def start_root(self, name: str, attributes: dict[str, str]) -> None:
         prefixes = {key.partition(":")[2]: uri for key, uri in attributes.items() if key.startswith("xmlns")}
         by_namespace = {uri: prefix for prefix, uri in prefixes.items()}
-        if "xsi:type" in self.content.text and "xsi" not in prefixes:
+        if refusals.lacks_namespace(self.content.text):
             raise refusals.undeclared_prefix(self.path, self.content.text, self.offset, "xsi", XSI_NAMESPACE)
         self.xsi_type = f"{by_namespace.get(XSI_NAMESPACE, 'xsi')}:type"
         xmi = by_namespace.get(XMI_NAMESPACE, "xmi")

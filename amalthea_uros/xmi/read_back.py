@@ -1,0 +1,192 @@
+"""What is about to be written, read again and compared with the document, so that no file is written that means something else.
+
+The text is parsed once more and compared element by element while it is parsed; no second model is made.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, NoReturn
+from xml.parsers import expat
+
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.errors import WriteError
+from amalthea_uros.metamodel.element import Element, extras_if_any
+from amalthea_uros.metamodel.model import Document
+from amalthea_uros.metamodel.naming import place
+from amalthea_uros.xmi import refusals
+from amalthea_uros.xmi.emf_serializer import EmfSerializer
+from amalthea_uros.xmi.header import Header, NotAModelError, read_header
+from amalthea_uros.xmi.kept_content import tag_of
+from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan
+from amalthea_uros.xmi.source_merger import SourceMerger
+
+_HELP = (
+    "Remove what amuros does not know of this object, or what is given twice. If there is nothing like that, this is an error in "
+    "amuros: report it together with the file."
+)
+
+
+class _Open(NamedTuple):
+    """An open element.
+
+    Attributes
+    ----------
+    element, plan : the object; None for a reference
+    read : the number of values that were read as child elements, by XML name
+    attributes : the XML names of the references that were read as attributes
+    """
+
+    element: Element | None
+    plan: ClassPlan | None
+    read: dict[str, int]
+    attributes: frozenset[str]
+
+
+def check_read_back(text: str, document: Document, serializer: EmfSerializer, merger: SourceMerger | None) -> None:
+    """Compare a text with the document that it is to represent.
+
+    Raises
+    ------
+    WriteError : reading the text would not give the same model.
+    """
+    comparison = _Comparison(document, serializer, merger)
+    if refusals.lacks_namespace(text):
+        comparison.refuse(document.root, "the prefix 'xsi' would not be declared")
+    parser = comparison.parser
+    parser.StartElementHandler, parser.EndElementHandler = comparison.start, comparison.end
+    try:
+        parser.Parse(text, True)
+    except expat.ExpatError as error:
+        open_element = next((level.element for level in reversed(comparison.stack) if level.element is not None), document.root)
+        comparison.refuse(open_element, f"the text would not be well-formed XML ({expat.ErrorString(error.code)})")
+    finally:
+        parser.StartElementHandler = parser.EndElementHandler = None
+
+
+class _Comparison:
+    def __init__(self, document: Document, serializer: EmfSerializer, merger: SourceMerger | None) -> None:
+        self.document = document
+        self.serializer = serializer
+        self.merger = merger
+        self.parser = expat.ParserCreate()
+        self.header: Header | None = None
+        self.stack: list[_Open] = []
+        self.skipped_depth = 0
+
+    # Events
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        if self.skipped_depth:
+            self.skipped_depth += 1
+        elif self.header is None:
+            self.start_root(name, attributes)
+        else:
+            parent = self.stack[-1]
+            feature = parent.plan.children.get(name) if parent.plan else None
+            if feature is None or parent.element is None or not self.start_known(parent, parent.element, feature, attributes):
+                self.skipped_depth = 1
+                parent.read[""] = parent.read.get("", 0) + 1
+
+    def end(self, _name: str) -> None:
+        if self.skipped_depth:
+            self.skipped_depth -= 1
+            return
+        element, plan, read, _ = self.stack.pop()
+        if element is None or plan is None:
+            return
+        for child in self.serializer.write_plan(plan, element).children:
+            if not child.is_reference and read.get(child.xml_name, 0) != len(_values(element, child)):
+                self.refuse(element, f"{child.xml_name!r} would be incomplete")
+        extras = extras_if_any(element)
+        kept = sum(bool(tag_of(raw)) for _, raw in extras.content) if extras else 0
+        if read.get("", 0) != kept:
+            self.refuse(element, f"{read.get('', 0)} unknown elements would be read instead of {kept}")
+
+    # Comparison
+
+    def start_root(self, name: str, attributes: dict[str, str]) -> None:
+        root = self.document.root
+        try:
+            self.header = header = read_header(name, attributes)
+        except NotAModelError as error:
+            self.refuse(root, error.message)
+        if header.facts_version != self.document.facts_version:
+            self.refuse(root, f"the version would be {header.version}")
+        plan = self.serializer.plans.of("Amalthea")
+        extras = extras_if_any(root)
+        if {key: attributes[key] for key in attributes.keys() - header.own_attributes} != (extras.attributes if extras else {}):
+            self.refuse(root, "its unknown attributes would change")
+        self.stack.append(_Open(root, plan, {}, frozenset()))
+
+    def start_known(self, parent: _Open, holder: Element, feature: FeaturePlan, attributes: dict[str, str]) -> bool:
+        """Compare a child element that the metamodel knows; whether the reader would use it."""
+        assert self.header
+        name = feature.xml_name
+        type_name = attributes.pop(self.header.xsi_type, None)
+        number = parent.read.get(name, 0)
+        is_surplus = number > 0 and (not feature.many or feature.only_one)
+        if feature.is_reference:
+            if list(attributes) != ["href"] or is_surplus or name in parent.attributes:
+                return False
+            self.compare_href(holder, feature, number, attributes["href"])
+            self.stack.append(_Open(None, None, {}, frozenset()))
+        else:
+            if type_name is not None and self.header.type_prefix != TYPE_PREFIX:
+                type_name = TYPE_PREFIX + type_name.removeprefix(self.header.type_prefix)
+            plan = feature.parts.get(type_name) or self.serializer.plans.part(feature, type_name)
+            if plan is None or is_surplus:
+                return False
+            values = _values(holder, feature)
+            if number >= len(values) or type(values[number]) is not plan.cls:
+                self.refuse(holder, f"{name!r} would be another object")
+            self.start_part(values[number], feature, plan, attributes)
+        parent.read[name] = number + 1
+        return True
+
+    def start_part(self, element: Element, feature: FeaturePlan, plan: ClassPlan, attributes: dict[str, str]) -> None:
+        if self.is_copied(element):
+            wanted = attributes
+        else:
+            wanted = self.serializer.attributes(feature, plan, element, self.serializer.write_plan(plan, element))
+            wanted.pop(self.serializer.prefixes.xsi_type, None)
+        if attributes != wanted:
+            for key, value in attributes.items():
+                if wanted.get(key) != value and not self.is_meant(element, plan, key, value, wanted.get(key)):
+                    self.refuse(element, f"the attribute {key!r} would be {value!r}")
+            for key in wanted.keys() - attributes.keys():
+                known = plan.attributes.get(key)
+                if known is not None and element.__dict__.get(known.name) is not None:
+                    self.refuse(element, f"the attribute {key!r} would be missing")
+        self.stack.append(_Open(element, plan, {}, frozenset(attributes)))
+
+    def is_copied(self, element: Element) -> bool:
+        """Whether the start tag was copied from the source, where it was read with these attributes."""
+        return self.merger is not None and element in self.merger.source.index and element not in self.document.changes.modified
+
+    def is_meant(self, element: Element, plan: ClassPlan, key: str, value: str, wanted: str | None) -> bool:
+        """Whether an attribute that EMF would not write like this has the value of the object, or is unknown content."""
+        extras = extras_if_any(element)
+        if extras and extras.attributes.get(key) == value:
+            return True
+        return self.merger is not None and self.merger.is_unchanged(element, plan, key, value, wanted)
+
+    def compare_href(self, holder: Element, feature: FeaturePlan, number: int, href: str) -> None:
+        values = _values(holder, feature)
+        text = href.partition("#")[2] or href
+        if self.merger is not None:
+            (text,) = self.merger.canonical_references(holder, feature.xml_name, [text])
+        if number >= len(values) or self.serializer.target(values[number])[0] != text:
+            self.refuse(holder, f"{feature.xml_name!r} would refer to {text!r}")
+
+    def refuse(self, element: Element, reason: str) -> NoReturn:
+        name = place(element)
+        message = f"{name}: the file would be read differently: {reason}"
+        raise WriteError(
+            [Finding("XMI106", Severity.ERROR, message, self.document.location_of(element), _HELP, name)]
+        ) from None
+
+
+def _values(element: Element, feature: FeaturePlan) -> list[Any]:
+    """What an object has of a feature, as a list."""
+    value = element.__dict__.get(feature.name)
+    return value if isinstance(value, list) else [] if value is None else [value]
