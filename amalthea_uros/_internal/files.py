@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import codecs
+import io
 import os
 import shutil
 import stat
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import BinaryIO
+from typing import IO, BinaryIO
 
-#: No input comes near this size (the largest published model has 6 MB); a larger file is refused before it fills the memory.
-MAX_SIZE = 512 * 2**20
+from amalthea_uros._internal.limits import ADVICE
 
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
@@ -22,6 +22,7 @@ _BYTE_ORDER_MARKS = (
 #: Codecs that treat a byte order mark as an ordinary character. Without a mark, such text cannot be told from binary data.
 _UNMARKED = frozenset({"utf-16-le", "utf-16-be"})
 _MARK = "\ufeff"
+_BLOCK = 1 << 16
 
 #: What a path can be wrong by: a path with a zero byte is a ValueError, one in a circle of links a RuntimeError before Python 3.13.
 _IMPOSSIBLE = (OSError, ValueError, RuntimeError)
@@ -43,18 +44,20 @@ class FileError(Exception):
 
 
 class FileTooLargeError(FileError):
-    """A file, or what is packed in it, is larger than a limit in bytes."""
+    """A file, or what is packed in it, is larger than a limit."""
 
-    def __init__(self, path: Path, limit: int, what: str = "the file") -> None:
-        super().__init__(path, f"{what} is larger than {_size_text(limit)}")
+
+def larger(path: Path, limit: int, what: str = "the file") -> FileTooLargeError:
+    """The error for more than a number of bytes."""
+    return FileTooLargeError(path, f"{what} is larger than {_size_text(limit)}", ADVICE)
 
 
 class FileEncodingError(FileError):
     """The bytes of a file are not text in the expected encoding."""
 
 
-def read_bytes(path: Path, max_size: int = MAX_SIZE) -> bytes:
-    """The content of a file.
+def read_bytes(path: Path, max_size: int) -> bytes:
+    """The content of a file; of a larger one, or an endless device, no more is read than `max_size`.
 
     Raises
     ------
@@ -65,17 +68,27 @@ def read_bytes(path: Path, max_size: int = MAX_SIZE) -> bytes:
         if path.is_dir():
             raise FileError(path, "expected a file, found a directory")
         with path.open("rb") as stream:
-            data = stream.read(max_size + 1)
+            # Asked for at once, the limit would be reserved as memory: `stream.read(limit)` makes a buffer of that size.
+            size = os.fstat(stream.fileno()).st_size
+            data = read_up_to(stream, max_size + 1, max(size + 1, _BLOCK))
     except FileNotFoundError:
         raise FileError(path, "file not found", "Check the path.") from None
     except (OSError, ValueError) as error:
         raise FileError(path, f"the file cannot be read: {_cause(error)}") from None
     if len(data) > max_size:
-        raise FileTooLargeError(path, max_size)
+        raise larger(path, max_size)
     return data
 
 
-def read_text(path: Path, max_size: int = MAX_SIZE) -> str:
+def read_up_to(stream: IO[bytes], limit: int, block: int = _BLOCK) -> bytes:
+    """The content of a stream, at most `limit` bytes of it, in parts of `block` bytes."""
+    found = io.BytesIO()  # which gives its content without a copy
+    while limit > 0 and (part := stream.read(min(limit, block))):
+        limit -= found.write(part)
+    return found.getvalue()
+
+
+def read_text(path: Path, max_size: int) -> str:
     """The characters of a UTF-8 file, without its byte order mark.
 
     Raises

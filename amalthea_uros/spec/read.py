@@ -12,15 +12,13 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from amalthea_uros._internal.files import FileError, FileTooLargeError, read_text
+from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.nodes import MAX_FINDINGS, Mapping, Node, Place, Scalar, Sequence, Source, plain, read_nodes
 from amalthea_uros.spec.section import Section, attach_locations
 from amalthea_uros.units import shortened
-
-#: In bytes.
-MAX_SIZE = 5 * 2**20
 
 S = TypeVar("S", bound=Section)
 
@@ -53,10 +51,9 @@ def read_section(path: Path, kind: type[S]) -> S:
 
 def _text(path: Path) -> str:
     try:
-        return read_text(path, MAX_SIZE)
+        return read_text(path, DESCRIPTION_SIZE)
     except FileTooLargeError as error:
-        advice = "Split the application, or generate less."
-        raise ReadError([Finding("YML002", Severity.ERROR, error.reason, Location(path), advice)]) from None
+        raise ReadError([Finding("YML002", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
     except FileError as error:
         raise ReadError([Finding("YML001", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
 
