@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from amalthea_uros.cli.output import show_text
+from amalthea_uros.report.escape import output_line
 from amalthea_uros.services.chains import add_path, chosen_path, find_paths
 
 
@@ -40,4 +41,4 @@ def command(model: Path, start: str, end: str, name: str | None, number: int, ou
     show_text(result)
     if name is not None and output is not None:
         add_path(result, number, name, output)
-        click.echo(f"path {number} is now the chain {name} in {output}")
+        click.echo(output_line(f"path {number} is now the chain {name} in {output}"))

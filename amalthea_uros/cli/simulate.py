@@ -9,7 +9,6 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.cli.main import INTERRUPTED
 from amalthea_uros.cli.output import (
     Output,
     output_option,
@@ -17,11 +16,13 @@ from amalthea_uros.cli.output import (
     refuse_unwritable,
     show_differences,
     show_findings,
+    show_line,
     shows_text,
     write_outputs,
 )
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.pictures import Pictures
+from amalthea_uros.cli.process import INTERRUPTED
 from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
 from amalthea_uros.report.wording import counted
 from amalthea_uros.services.campaign.run import Outcome, count_runs
@@ -233,7 +234,7 @@ def _show(result: SimulationResult, table: Path | None, outputs: Sequence[Output
         write_table(table, [result.simulation.record()])
     write_outputs(outputs, result)
     if result.is_failed and not shows_text(outputs):
-        click.echo(closing_line(result.simulation), err=True)
+        show_line(closing_line(result.simulation))
 
 
 def _campaign(
@@ -275,7 +276,7 @@ def _show_campaign(result: CampaignResult, table: Path | None, outputs: Sequence
         write_table(table, result.rows)
     write_outputs(outputs, result)
     if result.is_failed and not shows_text(outputs):
-        click.echo(closing_line(result), err=True)
+        show_line(closing_line(result))
     if not result.is_complete:
         click.echo(f"interrupted: {len(result.outcomes):,} of {counted(result.planned, 'run')} finished", err=True)
 
