@@ -18,8 +18,11 @@ from amalthea_uros.report.pictures.svg import element, text
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.check import CheckResult
 
-#: Any character, with those that act in some way more often.
-NAMES = st.text(st.one_of(st.characters(), st.sampled_from("\n\r\t\x1b\x7f\x85\u202e\u2066\u2028\ufeff\udcff:#")), max_size=20)
+#: Any character that a file or the name of a file can have, with those that act in some way more often.
+NAMES = st.text(
+    st.one_of(st.characters(exclude_categories=["Cs"]), st.sampled_from("\n\r\t\x1b\x7f\x85\u202e\u2066\u2028\ufeff\udcff:#")),
+    max_size=20,
+)
 
 
 def result(name):
