@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from amalthea_uros._version import __version__
-from amalthea_uros.cli.process import INTERRUPTED, failed
+from amalthea_uros.cli.ends import INTERRUPTED, failed
 from amalthea_uros.report.escape import visible
 
 #: Command -> its line in `amuros --help`; the module with the same name has the rest.

@@ -1,6 +1,6 @@
 """The command as a process of its own: how it ends, whatever happens.
 
-It imports nothing before it can handle Ctrl-C.
+It imports next to nothing before it can handle Ctrl-C.
 """
 
 from __future__ import annotations
@@ -11,8 +11,7 @@ import sys
 from types import FrameType
 from typing import Any
 
-#: The exit code that shells give a process that Ctrl-C ended: 128 and the number of the signal.
-INTERRUPTED = 130
+from amalthea_uros.cli.ends import INTERRUPTED, failed, say
 
 #: Signals after which everything is cleaned up; one that the caller ignores, as `nohup` does, remains ignored.
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
@@ -31,17 +30,6 @@ def run() -> None:
     os._exit(128 + _received[0] if _received else code)
 
 
-def failed(error: OSError) -> int:
-    """Say what could not be read or written, by the descriptor, because the stream may be what failed; the exit code."""
-    # The reader of our output is gone, as in `amuros info m.amxmi | head`; that needs no words.
-    if not isinstance(error, BrokenPipeError):
-        from amalthea_uros.report.escape import visible
-
-        what = "the output cannot be written" if error.filename is None else os.fsdecode(error.filename)
-        _say(visible(f"{what}: {error.strerror or error}"))
-    return 2
-
-
 def _code() -> int:
     """Run the command line to the end of its output; the exit code."""
     _prepare()
@@ -55,7 +43,7 @@ def _code() -> int:
             raise
         code = end.code
     except MemoryError:
-        _say("not enough memory; the input is too large for this computer, or for its limits")
+        say("not enough memory; the input is too large for this computer, or for its limits")
         code = 2
     try:
         for stream in filter(None, (sys.stdout, sys.stderr)):
@@ -101,7 +89,3 @@ def _repeat_interrupt(ignored: Any) -> None:
     timer = Timer(0.01, interrupt_main)
     timer.daemon = True
     timer.start()
-
-
-def _say(message: str) -> None:
-    os.write(2, f"amuros: {message}\n".encode(errors="backslashreplace"))

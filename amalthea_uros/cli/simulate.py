@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from amalthea_uros.cli.ends import INTERRUPTED
 from amalthea_uros.cli.output import (
     Output,
     output_option,
@@ -22,7 +23,6 @@ from amalthea_uros.cli.output import (
 )
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.pictures import Pictures
-from amalthea_uros.cli.process import INTERRUPTED
 from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
 from amalthea_uros.report.wording import counted
 from amalthea_uros.services.campaign.run import Outcome, count_runs
