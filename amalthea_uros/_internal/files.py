@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import io
 import os
 import shutil
 import stat
@@ -11,10 +12,9 @@ from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from typing import BinaryIO
+from typing import IO, BinaryIO
 
-#: No input comes near this size (the largest published model has 6 MB); a larger file is refused before it fills the memory.
-MAX_SIZE = 512 * 2**20
+from amalthea_uros._internal.limits import ADVICE, MODEL_SIZE
 
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
@@ -24,6 +24,7 @@ _BYTE_ORDER_MARKS = (
 #: Codecs that treat a byte order mark as an ordinary character. Without a mark, such text cannot be told from binary data.
 _UNMARKED = frozenset({"utf-16-le", "utf-16-be"})
 _MARK = "\ufeff"
+_BLOCK = 1 << 16
 
 #: What `-` stands for on the command line.
 STANDARD_INPUT = Path("/dev/stdin")
@@ -54,18 +55,20 @@ class FileError(Exception):
 
 
 class FileTooLargeError(FileError):
-    """A file, or what is packed in it, is larger than a limit in bytes."""
+    """A file, or what is packed in it, is larger than a limit."""
 
-    def __init__(self, path: Path, limit: int, what: str = "the file") -> None:
-        super().__init__(path, f"{what} is larger than {_size_text(limit)}")
+
+def larger(path: Path, limit: int, what: str = "the file") -> FileTooLargeError:
+    """The error for more than a number of bytes."""
+    return FileTooLargeError(path, f"{what} is larger than {_size_text(limit)}", ADVICE)
 
 
 class FileEncodingError(FileError):
     """The bytes of a file are not text in the expected encoding."""
 
 
-def read_bytes(path: Path, max_size: int = MAX_SIZE) -> bytes:
-    """The content of a file.
+def read_bytes(path: Path, max_size: int) -> bytes:
+    """The content of a file; of a larger one, or an endless device, no more is read than `max_size`.
 
     Raises
     ------
@@ -78,7 +81,9 @@ def read_bytes(path: Path, max_size: int = MAX_SIZE) -> bytes:
         if path.is_dir():
             raise FileError(path, "expected a file, found a directory")
         with path.open("rb") as stream:
-            data = stream.read(max_size + 1)
+            # Asked for at once, the limit would be reserved as memory: `stream.read(limit)` makes a buffer of that size.
+            size = os.fstat(stream.fileno()).st_size
+            data = read_up_to(stream, max_size + 1, max(size + 1, _BLOCK))
     except FileNotFoundError:
         raise FileError(path, "file not found", "Check the path.") from None
     except (OSError, ValueError) as error:
@@ -88,17 +93,25 @@ def read_bytes(path: Path, max_size: int = MAX_SIZE) -> bytes:
 
 def _limited(data: bytes, path: Path, max_size: int) -> bytes:
     if len(data) > max_size:
-        raise FileTooLargeError(path, max_size)
+        raise larger(path, max_size)
     return data
 
 
 @cache
 def _standard_input() -> bytes:
     """The content of standard input; it can be read only once, but several readers may ask for it."""
-    return sys.stdin.buffer.read(MAX_SIZE + 1) if sys.stdin is not None else b""
+    return read_up_to(sys.stdin.buffer, MODEL_SIZE + 1) if sys.stdin is not None else b""
 
 
-def read_text(path: Path, max_size: int = MAX_SIZE) -> str:
+def read_up_to(stream: IO[bytes], limit: int, block: int = _BLOCK) -> bytes:
+    """The content of a stream, at most `limit` bytes of it, in parts of `block` bytes."""
+    found = io.BytesIO()  # which gives its content without a copy
+    while limit > 0 and (part := stream.read(min(limit, block))):
+        limit -= found.write(part)
+    return found.getvalue()
+
+
+def read_text(path: Path, max_size: int) -> str:
     """The characters of a UTF-8 file, without its byte order mark.
 
     Raises

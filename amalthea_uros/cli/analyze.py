@@ -11,7 +11,7 @@ import click
 from amalthea_uros.analyze.results import EXPLAINED, Quantity
 from amalthea_uros.analyze.summary import Schedulable
 from amalthea_uros.cli.files import INPUT
-from amalthea_uros.cli.output import Output, output_option, show_findings, shows_text, write_outputs
+from amalthea_uros.cli.output import Output, output_option, show_findings, show_line, shows_text, write_outputs
 from amalthea_uros.cli.settings_options import Assignment, settings_options
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail, explain
@@ -110,5 +110,5 @@ def command(
     write_outputs(outputs, result, as_text)
     schedulable = result.analysis.summary.schedulable
     if schedulable is not Schedulable.YES and (as_text is not None or not shows_text(outputs)):
-        click.echo(closing_line(result.analysis.summary), err=True)
+        show_line(closing_line(result.analysis.summary))
     sys.exit(1 if schedulable in _FAILING[fail_on] else 0)

@@ -10,6 +10,7 @@ import click
 from amalthea_uros._internal.files import is_standard_output
 from amalthea_uros.cli.files import INPUT, OUTPUT
 from amalthea_uros.cli.output import show_findings, show_text
+from amalthea_uros.report.escape import output_line
 from amalthea_uros.services.chains import add_path, chosen_path, find_paths
 
 
@@ -44,4 +45,4 @@ def command(model: Path, start: str, end: str, name: str | None, number: int, ou
     show_text(result, on_error_stream=is_piped)
     if name is not None and output is not None:
         add_path(result, number, name, output)
-        click.echo(f"path {number} is now the chain {name} in {output}", err=is_piped)
+        click.echo(output_line(f"path {number} is now the chain {name} in {output}"), err=is_piped)

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import errno
-import os
 import sys
 from importlib import import_module
-from io import StringIO
 from typing import Any
 
 import click
 
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros._version import __version__
+from amalthea_uros.cli.ends import INTERRUPTED, failed
+from amalthea_uros.report.escape import visible
 
 #: Command -> its line in `amuros --help`; the module with the same name has the rest.
 COMMANDS = {
@@ -31,17 +31,18 @@ COMMANDS = {
 }
 
 
-#: The exit code that shells give a process that Ctrl-C ended: 128 and the number of the signal.
-INTERRUPTED = 130
-
-
 class LazyGroup(click.Group):
     """Commands that are imported when they are called."""
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; click itself would end it with 1 after Ctrl-C, the exit code of findings."""
         try:
+            _check_environment()
             return super().invoke(ctx)
+        except click.ClickException as error:
+            if error.format_message().isprintable():
+                raise
+            raise click.UsageError(visible(error.format_message()), ctx) from None
         except KeyboardInterrupt:
             click.echo("interrupted", err=True)
             ctx.exit(INTERRUPTED)
@@ -74,32 +75,11 @@ def cli() -> None:
     """
 
 
-def run() -> None:
-    """The command as a process of its own: it ends at once, because to free a large model object by object takes a fifth of a run."""
-    if sys.stderr is None:
-        sys.stderr = StringIO()  # closed by the caller, who wants no messages
-    code = 0
+def _check_environment() -> None:
     try:
-        main()
-    except SystemExit as end:
-        if not isinstance(end.code, int):
-            raise
-        code = end.code
-    try:
-        for stream in filter(None, (sys.stdout, sys.stderr)):
-            stream.flush()
-    except OSError as error:
-        code = _failed(error)
-    os._exit(code)
-
-
-def _failed(error: OSError) -> int:
-    """Say what could not be read or written, by the descriptor, because the stream may be what failed; the exit code."""
-    # The reader of our output is gone, as in `amuros info m.amxmi | head`; that needs no words.
-    if not isinstance(error, BrokenPipeError):
-        what = "the output cannot be written" if error.filename is None else str(error.filename)
-        os.write(2, f"amuros: {what}: {error.strerror or error}\n".encode(errors="replace"))
-    return 2
+        import_module("amalthea_uros._internal.limits")
+    except ValueError as error:
+        raise click.UsageError(str(error)) from None
 
 
 def main() -> None:
@@ -117,7 +97,7 @@ def main() -> None:
         Terminal(sys.stderr).findings(error.findings)
         sys.exit(2 if is_unreadable(error.findings) else 1)
     except InvalidArgumentError as error:
-        click.UsageError(str(error)).show()
+        click.UsageError(visible(str(error))).show()
         sys.exit(2)
     except OSError as error:
-        sys.exit(_failed(error))
+        sys.exit(failed(error))

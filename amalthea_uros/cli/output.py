@@ -184,6 +184,11 @@ def show_text(result: object, on_error_stream: bool = False) -> None:
     formats.write(formats.TEXT, result, sys.stderr if on_error_stream else sys.stdout)
 
 
+def show_line(text: str) -> None:
+    """Show a line on standard error."""
+    Terminal(sys.stderr).line(text)
+
+
 def show_findings(findings: Iterable[Finding]) -> None:
     """Show findings on standard error."""
     Terminal(sys.stderr).findings(findings)
@@ -192,7 +197,7 @@ def show_findings(findings: Iterable[Finding]) -> None:
 def show_differences(differences: Iterable[Difference]) -> None:
     """Show on standard error what changes did."""
     for difference in differences:
-        Terminal(sys.stderr).line(f"{difference.target}: {difference.before} -> {difference.after}")
+        show_line(f"{difference.target}: {difference.before} -> {difference.after}")
 
 
 def show_summaries(model: Model, targets: Sequence[str]) -> None:
@@ -202,4 +207,4 @@ def show_summaries(model: Model, targets: Sequence[str]) -> None:
         from amalthea_uros.services.check import summaries
 
         for target, groups in summaries(model, targets).items():
-            Terminal(sys.stderr).line(summary(target, (group.shown for group in groups)))
+            show_line(summary(target, (group.shown for group in groups)))

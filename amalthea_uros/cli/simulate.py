@@ -9,8 +9,8 @@ from pathlib import Path
 
 import click
 
+from amalthea_uros.cli.ends import INTERRUPTED
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE, output_path
-from amalthea_uros.cli.main import INTERRUPTED
 from amalthea_uros.cli.output import (
     Output,
     beside_files,
@@ -19,6 +19,7 @@ from amalthea_uros.cli.output import (
     refuse_unwritable,
     show_differences,
     show_findings,
+    show_line,
     shows_text,
     write_outputs,
 )
@@ -231,7 +232,7 @@ def _show(result: SimulationResult, table: Path | None, outputs: Sequence[Output
         write_table(table, [result.simulation.record()])
     write_outputs(outputs, result)
     if result.is_failed and not shows_text(outputs):
-        click.echo(closing_line(result.simulation), err=True)
+        show_line(closing_line(result.simulation))
 
 
 def _campaign(
@@ -273,7 +274,7 @@ def _show_campaign(result: CampaignResult, table: Path | None, outputs: Sequence
         write_table(table, result.rows)
     write_outputs(outputs, result)
     if result.is_failed and not shows_text(outputs):
-        click.echo(closing_line(result), err=True)
+        show_line(closing_line(result))
     if not result.is_complete:
         click.echo(f"interrupted: {len(result.outcomes):,} of {counted(result.planned, 'run')} finished", err=True)
 

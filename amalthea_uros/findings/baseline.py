@@ -6,6 +6,8 @@ import json
 from collections.abc import Iterable
 from pathlib import Path
 
+from amalthea_uros._internal.files import FileError, read_text
+from amalthea_uros._internal.limits import BASELINE_SIZE
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.fingerprint import fingerprint
 
@@ -24,7 +26,12 @@ def read_baseline(path: Path) -> set[str]:
     ValueError : the file is not a baseline.
     """
     try:
-        accepted = json.loads(path.read_text(encoding="utf-8"))["accepted"]
-    except (OSError, ValueError, TypeError, KeyError) as error:
+        content = json.loads(read_text(path, BASELINE_SIZE))
+    except FileError as error:
+        raise ValueError(" ".join(filter(None, (f"{path}: {error.reason}", error.advice)))) from None
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{path} is not a baseline of amuros: {error}") from None
+    accepted = content.get("accepted") if isinstance(content, dict) else None
+    if not isinstance(accepted, dict):
+        raise ValueError(f"{path} is not a baseline of amuros: it has no table 'accepted'")
     return set(accepted)

@@ -9,4 +9,4 @@ from amalthea_uros.diagnostics import Finding
 
 def fingerprint(finding: Finding) -> str:
     """A digest of a finding that does not change when lines move."""
-    return sha256(f"{finding.rule}|{finding.object}|{finding.message}".encode()).hexdigest()[:32]
+    return sha256(f"{finding.rule}|{finding.object}|{finding.message}".encode(errors="backslashreplace")).hexdigest()[:32]

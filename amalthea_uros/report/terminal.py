@@ -8,6 +8,7 @@ from itertools import zip_longest
 from typing import IO
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.report.escape import output_line, visible
 from amalthea_uros.report.table_layout import GAP, column_widths, folded, table_width, with_footnotes
 
 #: Longer source lines are shown in part; scheduler descriptions have a thousand characters.
@@ -19,6 +20,10 @@ WIDTH_ELSEWHERE = 120
 _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
 
 
+#: Begins a style until the line is written: a lone surrogate, which no text of a file has.
+_STYLE = "\ud800["
+
+
 class Terminal:
     """Writes to a stream, in colour if it is a terminal and `NO_COLOR` is not set."""
 
@@ -28,12 +33,14 @@ class Terminal:
         self.coloured = stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
     def line(self, text: str = "") -> None:
-        """Write one line."""
-        self.stream.write(text.rstrip() + "\n")
+        """Write one line; of what is not ours in it, hidden characters are shown as escapes."""
+        text = text.rstrip()
+        # No CI system reads the colours of a terminal.
+        self.stream.write(("\x1b[".join(map(visible, text.split(_STYLE))) if self.coloured else output_line(text)) + "\n")
 
     def style(self, text: str, code: str) -> str:
         """The text in an ANSI style ("1" bold, "2" dim, "31" red ...), if colours are on."""
-        return f"\x1b[{code}m{text}\x1b[0m" if self.coloured and text else text
+        return f"{_STYLE}{code}m{text}{_STYLE}0m" if self.coloured and text else text
 
     def heading(self, text: str) -> None:
         """Write a heading with an empty line before it."""
@@ -58,6 +65,7 @@ class Terminal:
         text, column = _excerpt(location.text, location.column - 1)
         number = str(location.line)
         tabless = text.replace("\t", " ")
+        column = len(visible(tabless[:column]))
         self.line(f"  {self.style(f'{number} |', '34')} {tabless}")
         self.line(f"  {self.style(' ' * len(number) + ' |', '34')} {' ' * column}{self.style('^', '31')}")
 
@@ -71,7 +79,7 @@ class Terminal:
         ----------
         right : columns that are aligned to the right
         """
-        cells = [[str(cell) for cell in row] for row in rows]
+        cells = [[visible(str(cell)) for cell in row] for row in rows]
         notes: list[str] = []
         if table_width(headings, cells) > (self.width or WIDTH_ELSEWHERE):
             cells, notes = with_footnotes(headings, cells)

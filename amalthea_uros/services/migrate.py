@@ -6,8 +6,8 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from amalthea_uros._internal.files import MAX_SIZE
 from amalthea_uros._internal.garbage import paused_garbage_collection
+from amalthea_uros._internal.limits import MODEL_SIZE
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import AmurosError, ReadError, WriteError
 from amalthea_uros.metamodel.model import Model
@@ -205,8 +205,8 @@ def _required(to: str | None) -> str:
 
 
 def _sets(paths: Sequence[Path], version: str, excluded: Collection[Path]) -> list[tuple[InputFile, ...]]:
-    inputs = (InputFile.read(file.path, file.scope, version, MAX_SIZE) for file in given_files(paths, excluded))
-    return sets_of(inputs, version, MAX_SIZE)
+    inputs = (InputFile.read(file.path, file.scope, version, MODEL_SIZE) for file in given_files(paths, excluded))
+    return sets_of(inputs, version, MODEL_SIZE)
 
 
 def _of_model(model: Model, version: str) -> Iterable[InputFile]:
@@ -219,7 +219,7 @@ def _of_model(model: Model, version: str) -> Iterable[InputFile]:
 
 def _migrate(files: Sequence[InputFile], version: str, official: bool) -> MigratedSet:
     contents = [(file.path, file.content) for file in files if file.content is not None]
-    migrated = migrate_set(contents, version, MAX_SIZE, official)
+    migrated = migrate_set(contents, version, MODEL_SIZE, official)
     lost = losses_of_going_back(migrated)
     if lost:
         raise WriteError(lost)

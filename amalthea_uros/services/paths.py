@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from amalthea_uros._internal.files import STANDARD_INPUT, FileError, read_bytes
+from amalthea_uros._internal.limits import DESCRIPTION_SIZE, MODEL_SIZE
 
 StrPath = str | PathLike[str]
 
@@ -24,7 +25,7 @@ def is_description(path: StrPath) -> bool:
     file = Path(path)
     if file == STANDARD_INPUT:
         try:
-            return not read_bytes(file).lstrip().startswith(_MODEL_STARTS)
+            return not read_bytes(file, MODEL_SIZE).lstrip().startswith(_MODEL_STARTS)
         except FileError:
             return False
     return file.suffix in _DESCRIPTION_SUFFIXES
@@ -38,7 +39,7 @@ def folder_of(path: Path) -> Path:
 def is_other_yaml(path: Path) -> bool:
     """Whether a YAML file can be read, but has no key `amuros` at its top level, so that it is of some other program."""
     try:
-        return is_description(path) and _KEY.search(read_bytes(path)) is None
+        return is_description(path) and _KEY.search(read_bytes(path, DESCRIPTION_SIZE)) is None
     except FileError:
         return False
 

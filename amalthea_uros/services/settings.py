@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from amalthea_uros._internal.files import STANDARD_INPUT, is_file, resolved
+from amalthea_uros._internal.files import STANDARD_INPUT, FileError, is_file, read_text, resolved
+from amalthea_uros._internal.limits import SETTINGS_SIZE
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
@@ -82,14 +83,22 @@ def project_settings(path: Path) -> CheckSettings:
 def _table(file: Path, tables: tuple[str, ...]) -> Any:
     """The content of a table of a file, None if there is no such table."""
     try:
-        found: Any = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ReadError([Finding("CFG001", Severity.ERROR, f"not valid TOML: {error}", Location(file))]) from None
+        found: Any = tomllib.loads(read_text(file, SETTINGS_SIZE))
+    except FileError as error:
+        raise _unreadable(file, error.reason, error.advice) from None
+    except tomllib.TOMLDecodeError as error:
+        raise _unreadable(file, f"not valid TOML: {error}") from None
+    except RecursionError:
+        raise _unreadable(file, "not valid TOML: the values are nested too deep") from None
     for table in tables:
         if not isinstance(found, dict) or table not in found:
             return None
         found = found[table]
     return found
+
+
+def _unreadable(file: Path, message: str, advice: str = "") -> ReadError:
+    return ReadError([Finding("CFG001", Severity.ERROR, message, Location(file), advice)])
 
 
 class _Reader:

@@ -15,11 +15,11 @@ from typing import Any, TypeAlias
 
 import yaml
 
+from amalthea_uros._internal.limits import ADVICE, DESCRIPTION_VALUES
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 
 MAX_DEPTH = 40
-MAX_NODES = 400_000
 #: Further errors are not reported in one run.
 MAX_FINDINGS = 100
 
@@ -245,8 +245,9 @@ class _Reader:
     def tally(self, mark: Any) -> None:
         """Count a node, and stop at the limit."""
         self.count += 1
-        if self.count > MAX_NODES:
-            raise self.stop("YML002", f"the content has more than {MAX_NODES:,} values, including expanded aliases", mark)
+        if self.count > DESCRIPTION_VALUES:
+            message = f"the content has more than {DESCRIPTION_VALUES:,} values, including expanded aliases"
+            raise self.stop("YML002", message, mark, ADVICE)
 
     def stop(self, rule: str, message: str, mark: Any, help_text: str = "") -> ReadError:
         """The error that stops reading, together with the findings so far."""

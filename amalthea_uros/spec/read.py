@@ -10,6 +10,7 @@ from typing import Generic, TypeVar
 from pydantic import ValidationError
 
 from amalthea_uros._internal.files import FileError, FileTooLargeError, read_text
+from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
@@ -17,9 +18,6 @@ from amalthea_uros.spec.mistakes import Mistake, finding_of, without_consequence
 from amalthea_uros.spec.nodes import MAX_FINDINGS, Node, Scalar, plain, read_nodes
 from amalthea_uros.spec.repair import repair
 from amalthea_uros.spec.section import Section, attach_locations
-
-#: In bytes.
-MAX_SIZE = 5 * 2**20
 
 S = TypeVar("S", bound=Section)
 
@@ -110,10 +108,9 @@ def _refuse_xml(path: Path, text: str) -> None:
 
 def _text(path: Path) -> str:
     try:
-        return read_text(path, MAX_SIZE)
+        return read_text(path, DESCRIPTION_SIZE)
     except FileTooLargeError as error:
-        advice = "Split the application, or generate less."
-        raise ReadError([Finding("YML002", Severity.ERROR, error.reason, Location(path), advice)]) from None
+        raise ReadError([Finding("YML002", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
     except FileError as error:
         raise ReadError([Finding("YML001", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
 

@@ -6,19 +6,21 @@ import gzip
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TextIO
 
+from amalthea_uros._internal.limits import TRACE_LINE
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
-from amalthea_uros.trace.problems import Problems
+from amalthea_uros.trace.problems import Place, Problems
 
 _DAMAGED = (EOFError, gzip.BadGzipFile, zlib.error)
 
 
 @contextmanager
-def opened_text(path: Path, problems: Problems) -> Iterator[TextIO]:
-    """The text of a file; that the rest of it is damaged is a problem, and what comes before it has been read.
+def opened_text(path: Path, problems: Problems) -> Iterator[Iterator[str]]:
+    """The lines of a file; that the rest of it is damaged is a problem, and what comes before it has been read.
 
     Raises
     ------
@@ -29,14 +31,30 @@ def opened_text(path: Path, problems: Problems) -> Iterator[TextIO]:
     try:
         # Bytes that are not UTF-8 come from names of old files; a wrong character there does no harm to the times.
         with opening(path, "rt", encoding="utf-8-sig", errors="replace", newline="\n") as stream:
-            yield stream
+            yield _lines(stream)
     except _DAMAGED as error:
         message = f"the compressed file is damaged: {error}; only the events before that are used"
         problems.add("TRC006", Severity.ERROR, message, advice="Check that it was written completely.")
+    except _LineTooLongError as error:
+        message = f"a line is longer than {TRACE_LINE:,} characters; only the events before that are used"
+        problems.add("TRC002", Severity.ERROR, message, Place(error.line, 1), "Check that this is a trace.")
     except FileNotFoundError:
         raise _not_readable(path, "file not found", "Check the path.") from None
     except OSError as error:
         raise _not_readable(path, f"the file cannot be read: {error.strerror or error}") from None
+
+
+class _LineTooLongError(Exception):
+    def __init__(self, line: int) -> None:
+        self.line = line
+
+
+def _lines(stream: TextIO) -> Iterator[str]:
+    """The lines of a stream; a file without line ends, such as a device, would else become one in memory."""
+    for number, line in enumerate(iter(partial(stream.readline, TRACE_LINE), ""), 1):
+        if len(line) == TRACE_LINE:
+            raise _LineTooLongError(number)
+        yield line
 
 
 def _not_readable(path: Path, reason: str, advice: str = "") -> ReadError:

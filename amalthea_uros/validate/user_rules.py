@@ -10,6 +10,8 @@ from traceback import extract_tb
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.files import FileError, read_text
+from amalthea_uros._internal.limits import RULES_SIZE
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.validate.rule import ModelRule
@@ -31,9 +33,9 @@ def rules_of_file(path: Path) -> list[ModelRule]:
     ReadError : the file cannot be read or executed, or defines no rule.
     """
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise _broken(f"the rules cannot be read: {error}", Location(path)) from None
+        text = read_text(path, RULES_SIZE)
+    except FileError as error:
+        raise _refused("RUL001", error.reason, Location(path), error.advice) from None
     module = ModuleType(f"amuros_rules_{path.stem}")
     module.__file__ = str(path)
     sys.modules[module.__name__] = module

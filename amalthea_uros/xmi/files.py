@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import lzma
 import re
 import zipfile
 import zlib
@@ -12,18 +11,23 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal import files
-from amalthea_uros._internal.files import MAX_SIZE, FileEncodingError, FileError, FileTooLargeError
+from amalthea_uros._internal.files import FileEncodingError, FileError, FileTooLargeError
+from amalthea_uros._internal.limits import ADVICE, MODEL_ELEMENTS, MODEL_SIZE
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 
 #: Name that EMF gives to the only entry of a zipped resource.
 ZIP_ENTRY = "ResourceContents"
 
-_RAISE_LIMIT = "If you trust the file, raise the limit: load(path, max_size=...)."
+#: How the directory entry of a packed file begins. The bytes occur in packed data by chance, but not that often.
+_DIRECTORY_ENTRY, _MOST_ENTRIES = b"PK\x01\x02", 1000
+_UNPACK = "Unpack it and load the directory."
+#: How EMF compresses. Others unpack without a limit to what comes out at a time: a few bytes of bzip2 become a megabyte.
+_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _DECLARED = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
 
 #: What `zipfile` raises; an index error where an entry has no name.
-_DAMAGED = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, OSError, ValueError, IndexError)
+_DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, OSError, ValueError, IndexError)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +39,12 @@ class FileText:
     zip_entry: str | None = None
 
 
-def read_text(path: Path, max_size: int = MAX_SIZE) -> FileText:
+def read_text(path: Path, max_size: int = MODEL_SIZE) -> FileText:
     """Characters of a model file, unpacked if it is a ZIP (recognised by content, as EMF does).
+
+    Parameters
+    ----------
+    max_size : largest size in bytes, unpacked; a larger one than usual allows more elements in proportion
 
     Raises
     ------
@@ -77,8 +85,7 @@ def write_texts(contents: Mapping[Path, FileText], removed: Collection[Path] = (
 def not_readable(error: FileError) -> ReadError:
     """A failure to read a file as the exception of this library."""
     rule = {FileEncodingError: "XMI002", FileTooLargeError: "XMI004"}.get(type(error), "XMI001")
-    advice = error.advice or (_RAISE_LIMIT if isinstance(error, FileTooLargeError) else "")
-    return ReadError([Finding(rule, Severity.ERROR, error.reason, Location(error.path), advice)])
+    return ReadError([Finding(rule, Severity.ERROR, error.reason, Location(error.path), error.advice)])
 
 
 def not_writable(error: FileError) -> WriteError:
@@ -105,24 +112,36 @@ def _read_text(path: Path, max_size: int) -> FileText:
         raise FileEncodingError(path, f"not XML: the content is not valid {encoding} text ({error})", advice) from None
     if not text or text.isspace():
         raise FileError(path, "the file is empty", "Check that it was written completely.")
+    _check_elements(path, text, MODEL_ELEMENTS * max(MODEL_SIZE, max_size) // MODEL_SIZE)
     return FileText(text, encoding, entry)
 
 
+def _check_elements(path: Path, text: str, limit: int) -> None:
+    """Refuse a model with too many elements before any object is made: a hundred kilobytes of ZIP may hold ten million."""
+    # Comments count too, since they are kept.
+    if text.count("<") - text.count("</") > limit:
+        raise FileTooLargeError(path, f"the file has more than {limit:,} elements", ADVICE)
+
+
 def _unzip(path: Path, data: bytes, max_size: int) -> tuple[str, bytes]:
+    if data.count(_DIRECTORY_ENTRY) > _MOST_ENTRIES:
+        raise FileError(path, f"the archive contains more than {_MOST_ENTRIES:,} files, expected one", _UNPACK)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            names = [info.filename for info in archive.infolist() if not info.is_dir()]
-            if len(names) != 1:
-                reason = f"the archive contains {len(names)} files, expected one"
-                raise FileError(path, reason, "Unpack it and load the directory.")
-            with archive.open(names[0]) as stream:
+            entries = [info for info in archive.infolist() if not info.is_dir()]
+            if len(entries) != 1:
+                raise FileError(path, f"the archive contains {len(entries)} files, expected one", _UNPACK)
+            if entries[0].compress_type not in _METHODS:
+                reason = "the archive is compressed by a method that AMALTHEA tools do not use"
+                raise FileError(path, reason, "Compress it again with the method Deflate.")
+            with archive.open(entries[0]) as stream:
                 # Never trust the size that the archive declares: stop when too much has come out.
-                content = stream.read(max_size + 1)
+                content = files.read_up_to(stream, max_size + 1)
     except _DAMAGED as error:
         raise FileError(path, f"the archive is damaged or not supported: {error}") from None
     if len(content) > max_size:
-        raise FileTooLargeError(path, max_size, "the unpacked content")
-    return names[0], content
+        raise files.larger(path, max_size, "the unpacked content")
+    return entries[0].filename, content
 
 
 def _zip(entry: str, data: bytes) -> bytes:

@@ -7,8 +7,9 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from amalthea_uros._internal.files import MAX_SIZE, FileError, is_directory, list_directory
+from amalthea_uros._internal.files import FileError, is_directory, list_directory
 from amalthea_uros._internal.garbage import paused_garbage_collection
+from amalthea_uros._internal.limits import MODEL_SIZE
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.element import Element
@@ -26,7 +27,7 @@ _SUFFIXES = re.compile(r"\.amxmi(?:-[a-z]+)?")
 StrPath = str | os.PathLike[str]
 
 
-def load(*paths: StrPath | Iterable[StrPath], max_size: int = MAX_SIZE) -> Model:
+def load(*paths: StrPath | Iterable[StrPath], max_size: int = MODEL_SIZE) -> Model:
     """Read a model.
 
     Parameters
@@ -34,7 +35,7 @@ def load(*paths: StrPath | Iterable[StrPath], max_size: int = MAX_SIZE) -> Model
     paths : files (plain or zipped), directories, which stand for all `.amxmi` files in them (and `.amxmi-sw` and the like of
         ITEA versions), or lists of these. Several files form one model, in which every object can refer to every other. Files of
         versions before 0.9.7 are migrated to the newest version in memory, together with those to which they refer by file names
-    max_size : largest size of a file, unpacked, in bytes
+    max_size : largest size of a file, unpacked, in bytes; more than the default also allows more elements in proportion
 
     Returns
     -------

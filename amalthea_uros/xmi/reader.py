@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 from xml.parsers import expat
 
+from amalthea_uros._internal.limits import ADVICE, MODEL_REFERENCES
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.classes import Amalthea
@@ -132,6 +133,7 @@ class _Reader:
         #: The open elements; an `href` element has no object of its own.
         self.stack: list[Frame] = []
         self.references: list[PendingReference] = []
+        self.listed_references = 0
         self.referables: list[Element] = []
         self.xmi_ids: list[tuple[Element, str]] = []
         #: Comments and the like, until the part that follows them is read.
@@ -217,7 +219,7 @@ class _Reader:
         foreign_prefix = None if header.type_prefix == TYPE_PREFIX else header.type_prefix
         elements, add_element, add_start, add_end = self.elements, self.elements.append, self.starts.append, self.ends.append
         add_referable, add_id, add_reference = self.referables.append, self.xmi_ids.append, self.references.append
-        pending_extras, max_depth = self.pending_extras, refusals.MAX_DEPTH
+        pending_extras, max_depth, max_references = self.pending_extras, refusals.MAX_DEPTH, MODEL_REFERENCES
 
         def start(name: str, attributes: dict[str, str]) -> None:
             parent, parent_plan, _, held = stack[-1]
@@ -270,9 +272,9 @@ class _Reader:
                     else:
                         self.unknown_attribute(element, plan, key, value)
                 elif attribute.is_reference:
-                    texts = value.split()
-                    if len(texts) > 1 and not attribute.many:
-                        texts = reference_texts(attribute, value)
+                    texts = value.split(None, max_references)
+                    if len(texts) > 1:
+                        texts = self.several(attribute, value, texts)
                     if texts:
                         add_reference(_tuple(PendingReference, (element, attribute, texts, False)))
                         own_held[attribute.name] = True
@@ -289,6 +291,15 @@ class _Reader:
                 raise self.too_deep()
 
         return start
+
+    def several(self, feature: FeaturePlan, value: str, texts: list[str]) -> list[str]:
+        """The ids in an attribute with blanks; of a whole file not so many that they exhaust the memory."""
+        if not feature.many:
+            return reference_texts(feature, value)
+        self.listed_references += len(texts)
+        if self.listed_references > MODEL_REFERENCES:
+            raise self.refuse("XMI004", f"the file has more than {MODEL_REFERENCES:,} references in lists", ADVICE)
+        return texts
 
     def end_handler(self) -> EndHandler:
         """The handler of end tags."""

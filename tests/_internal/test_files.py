@@ -20,18 +20,18 @@ from amalthea_uros._internal.files import (
 
 def test_text_keeps_its_line_ends(tmp_path):
     (tmp_path / "a.txt").write_bytes(b"gr\xc3\xb6\xc3\x9fer\r\n")
-    assert read_text(tmp_path / "a.txt") == "größer\r\n"
+    assert read_text(tmp_path / "a.txt", 100) == "größer\r\n"
 
 
 def test_a_byte_order_mark_is_not_part_of_the_text(tmp_path):
     (tmp_path / "a.txt").write_bytes(b"\xef\xbb\xbfa")
-    assert read_text(tmp_path / "a.txt") == "a"
+    assert read_text(tmp_path / "a.txt", 100) == "a"
 
 
 def test_what_is_not_utf_8_is_refused(tmp_path):
     (tmp_path / "a.txt").write_bytes(b"ab\xff")
     with pytest.raises(FileEncodingError, match=r"not UTF-8 \(byte 2\)"):
-        read_text(tmp_path / "a.txt")
+        read_text(tmp_path / "a.txt", 100)
 
 
 def test_the_limit_is_the_largest_size_that_is_read(tmp_path):
@@ -44,7 +44,7 @@ def test_the_limit_is_the_largest_size_that_is_read(tmp_path):
 @pytest.mark.parametrize("name", ["none", "a\0b", "a" * 300])
 def test_a_file_that_cannot_be_read(name, tmp_path):
     with pytest.raises(FileError):
-        read_bytes(tmp_path / name)
+        read_bytes(tmp_path / name, 100)
 
 
 def test_a_write_that_fails_leaves_the_old_content_and_no_other_file(tmp_path, monkeypatch):

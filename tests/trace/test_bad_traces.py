@@ -71,3 +71,13 @@ def test_a_damaged_trace(tmp_path_factory, suffix, seed, places, numeric):
         with open_sink(io.BytesIO(), reader.entities, suffix=target) as sink:
             for table in reader:
                 sink.write(table)
+
+
+@pytest.mark.parametrize("suffix", ["btf", "csv"])
+def test_a_trace_without_line_ends_is_read_up_to_a_limit(suffix, tmp_path):
+    path = tmp_path / f"endless.{suffix}"
+    path.symlink_to("/dev/zero")
+    reader = open_trace(path)
+    assert sum(map(len, reader)) == 0
+    assert "TRC002" in [finding.rule for finding in reader.findings]
+    assert any("longer than 65,536 characters" in finding.message for finding in reader.findings)

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from amalthea_uros import ReadError, WriteError, load, save
+from amalthea_uros._internal import files
 from amalthea_uros.cli.main import main
 from amalthea_uros.metamodel import classes
 
@@ -209,6 +210,60 @@ def test_an_archive_that_unpacks_to_more_than_the_limit_is_refused(tmp_path):
     with pytest.raises(ReadError) as caught:
         load(path, max_size=1_000_000)
     assert caught.value.findings[0].rule == "XMI004"
+
+
+def test_elements_are_counted_before_objects_are_made(tmp_path, monkeypatch):
+    # 100 kB of ZIP hold ten million tasks; no object of them is made.
+    path = file(tmp_path, zipped(("ResourceContents", root("<swModel>" + "<tasks/>" * 1_000_000 + "</swModel>"))))
+    monkeypatch.setattr("amalthea_uros.xmi.load.read", lambda *_arguments: pytest.fail("an object was made"))
+    assert path.stat().st_size < 20_000
+    with pytest.raises(ReadError, match=r"more than 1,000,000 elements") as caught:
+        load(path)
+    (finding,) = caught.value.findings
+    assert finding.rule == "XMI004"
+    assert "AMUROS_LIMITS=4" in finding.help
+
+
+def test_a_larger_size_allows_more_elements(tmp_path, monkeypatch):
+    monkeypatch.setattr("amalthea_uros.xmi.files.MODEL_ELEMENTS", 10)
+    monkeypatch.setattr("amalthea_uros.xmi.files.MODEL_SIZE", 1000)
+    path = file(tmp_path, root("<swModel>" + "<tasks/>" * 10 + "</swModel>").encode())
+    with pytest.raises(ReadError, match="more than 10 elements"):
+        load(path, max_size=1000)
+    assert len(load(path, max_size=2000).documents[0].root.sw_model.tasks) == 10
+
+
+def test_references_in_lists_are_counted(tmp_path, monkeypatch):
+    monkeypatch.setattr("amalthea_uros.xmi.reader.MODEL_REFERENCES", 5)
+    many = "<swModel>" + '<tasks name="T" stimuli="a b c"/>' * 2 + "</swModel>"
+    with pytest.raises(ReadError, match="more than 5 references in lists"):
+        load(file(tmp_path, root(many).encode()))
+
+
+def test_an_archive_with_a_method_without_limits_is_refused(tmp_path):
+    # bzip2 packs a gigabyte in less than a kilobyte, and is unpacked as a whole.
+    path = file(tmp_path, zipped(("ResourceContents", VALID), method=zipfile.ZIP_BZIP2))
+    with pytest.raises(ReadError, match="compressed by a method that AMALTHEA tools do not use"):
+        load(path)
+
+
+def test_an_archive_with_many_entries_is_refused_before_its_directory_is_read(tmp_path, monkeypatch):
+    path = file(tmp_path, zipped(*((str(number), b"") for number in range(1001))))
+    monkeypatch.setattr(zipfile, "ZipFile", lambda *_arguments: pytest.fail("the directory was read"))
+    with pytest.raises(ReadError, match="more than 1,000 files"):
+        load(path)
+
+
+def test_no_more_memory_is_reserved_than_the_file_needs():
+    asked = []
+
+    class Counting(io.BytesIO):
+        def read(self, size=-1):
+            asked.append(size)
+            return super().read(size)
+
+    assert files.read_up_to(Counting(b"x" * 100), 1 << 40, block=101) == b"x" * 100
+    assert max(asked) <= 101
 
 
 def test_all_bad_files_of_a_folder_are_told(tmp_path):

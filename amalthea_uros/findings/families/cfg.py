@@ -8,9 +8,9 @@ from amalthea_uros.findings.kind import FindingKind
 KINDS = (
     FindingKind(
         id="CFG001",
-        title="settings that are not valid TOML",
+        title="settings that cannot be read",
         severity=Severity.ERROR,
-        rationale="The settings cannot be read, and nothing is checked without them.",
+        rationale="The settings are not valid TOML, not UTF-8, or larger than 1 MiB; nothing is checked without them.",
         remedy="Correct the syntax of pyproject.toml or amuros.toml.",
         fails="""
 [check

@@ -39,10 +39,10 @@ KINDS = (
     ),
     FindingKind(
         id="XMI004",
-        title="file that is too large or nested too deeply",
+        title="file that is too large, has too many elements, or is nested too deeply",
         severity=Severity.ERROR,
         rationale="Such content could exhaust the memory, so it is refused.",
-        remedy="If the file can be trusted, raise the limit: load(path, max_size=...).",
+        remedy="If the file can be trusted, set AMUROS_LIMITS=4 in the environment for four times as much.",
     ),
     FindingKind(
         id="XMI005",

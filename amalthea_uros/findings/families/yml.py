@@ -26,7 +26,7 @@ tasks: [
         title="file that is too large or nested too deeply",
         severity=Severity.ERROR,
         rationale="Such content could exhaust the memory, so it is refused. Every use of an alias counts as a copy.",
-        remedy="Split the application, or use fewer aliases.",
+        remedy="Use fewer aliases; if the file can be trusted, set AMUROS_LIMITS=4 in the environment for four times as much.",
     ),
     FindingKind(
         id="YML003",

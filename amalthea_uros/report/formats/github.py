@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import IO, TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.report.escape import visible
 from amalthea_uros.report.findings import relative
 
 if TYPE_CHECKING:
@@ -28,6 +29,6 @@ def write(result: CheckResult, stream: IO[str]) -> None:
 
 
 def _escaped(text: str, properties: bool = True) -> str:
-    """Text in the form that workflow commands expect."""
-    text = text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    """Text in the form that workflow commands expect; hidden characters, and so line ends, are shown as escapes."""
+    text = visible(text).replace("%", "%25")
     return text.replace(":", "%3A").replace(",", "%2C") if properties else text

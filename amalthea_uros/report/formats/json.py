@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import IO
 
 from amalthea_uros._version import __version__
 from amalthea_uros.report.by_result import module_for, rendered_in
+from amalthea_uros.report.escape import write_json
 
 RENDERS = rendered_in("json")
 
@@ -14,5 +14,4 @@ RENDERS = rendered_in("json")
 def write(result: object, stream: IO[str]) -> None:
     """Write one object, with the version of the tool."""
     content = module_for(result, "json").content(result)
-    json.dump({"amuros": __version__, **content}, stream, indent=2, ensure_ascii=False)
-    stream.write("\n")
+    write_json({"amuros": __version__, **content}, stream)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import IO, TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding, Severity, worst
+from amalthea_uros.report.escape import output_line, visible
 from amalthea_uros.report.findings import joined, profile_name
 from amalthea_uros.report.wording import counted
 
@@ -23,7 +24,7 @@ def write(result: CheckResult, stream: IO[str]) -> None:
         by_rule.setdefault(finding.rule, []).append(finding)
     failing = {rule for rule, found in by_rule.items() if any(f.severity is not Severity.INFO for f in found)}
     suites = ElementTree.Element("testsuites")
-    suite = ElementTree.SubElement(suites, "testsuite", name=f"amuros check {joined(result.paths)}")
+    suite = ElementTree.SubElement(suites, "testsuite", name=visible(f"amuros check {joined(result.paths)}"))
     suite.attrib |= {"tests": str(len(by_rule)), "failures": str(len(failing)), "errors": "0"}
     for rule, found in by_rule.items():
         case = ElementTree.SubElement(suite, "testcase", classname=f"amuros.{profile_name(rule)}", name=rule)
@@ -33,6 +34,6 @@ def write(result: CheckResult, stream: IO[str]) -> None:
             text = ElementTree.SubElement(case, "system-out")
         else:
             continue
-        text.text = "\n".join(map(str, found))
+        text.text = "\n".join(output_line(str(finding)) for finding in found)
     stream.write('<?xml version="1.0" encoding="UTF-8"?>\n')
     stream.write(ElementTree.tostring(suites, encoding="unicode") + "\n")

@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import IO, TYPE_CHECKING
 
+from amalthea_uros.report.escape import visible
+
 if TYPE_CHECKING:
     from amalthea_uros.services.migrate import MigrationResult
 
@@ -51,4 +53,4 @@ def _table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterato
 
 def _escaped(text: str) -> str:
     """Text that cannot end the cell, nor be taken for markup."""
-    return " ".join(_SPECIAL.sub(r"\\\g<0>", text).splitlines())
+    return visible(_SPECIAL.sub(r"\\\g<0>", text))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import os
 from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -11,6 +11,7 @@ from urllib.parse import quote
 from amalthea_uros._internal.files import resolved
 from amalthea_uros._version import __version__
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.report.escape import write_json
 from amalthea_uros.report.findings import profile_name, relative
 
 if TYPE_CHECKING:
@@ -38,8 +39,7 @@ def write(result: CheckResult, stream: IO[str]) -> None:
         "results": [_result(entry, used.index(entry.finding.rule)) for entry in entries],
     }
     log = {"$schema": "https://json.schemastore.org/sarif-2.1.0.json", "version": "2.1.0", "runs": [run]}
-    json.dump(log, stream, indent=2, ensure_ascii=False)
-    stream.write("\n")
+    write_json(log, stream)
 
 
 def documentation() -> str | None:
@@ -98,7 +98,7 @@ def _result(entry: Entry, index: int) -> dict[str, Any]:
 
 def _place(path: Path, line: int | None, column: int | None) -> dict[str, Any]:
     below = relative(path)
-    artifact = {"uri": resolved(path).as_uri()} if below is None else {"uri": quote(below), "uriBaseId": _ROOT}
+    artifact = {"uri": resolved(path).as_uri()} if below is None else {"uri": quote(os.fsencode(below)), "uriBaseId": _ROOT}
     place: dict[str, Any] = {"artifactLocation": artifact}
     if line:
         place["region"] = {"startLine": line, "startColumn": column or 1}

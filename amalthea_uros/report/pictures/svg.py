@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from typing import NewType
 from xml.sax.saxutils import escape, quoteattr
 
+from amalthea_uros.report.escape import visible
+
 #: Text that is well-formed SVG.
 Markup = NewType("Markup", str)
-
-#: What XML 1.0 does not allow at all, section 2.2.
-_NOT_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-_REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
 
 
 def text(content: str) -> Markup:
     """Characters, with those escaped that XML gives a meaning."""
-    return Markup(escape(_NOT_XML.sub(_REPLACEMENT, content)))
+    return Markup(escape(visible(content)))
 
 
 def element(tag: str, *children: Markup, **attributes: str | float) -> Markup:
@@ -48,4 +45,4 @@ def number(value: float) -> str:
 
 
 def _attribute(value: str | float) -> str:
-    return quoteattr(_NOT_XML.sub(_REPLACEMENT, value)) if isinstance(value, str) else f'"{number(value)}"'
+    return quoteattr(visible(value)) if isinstance(value, str) else f'"{number(value)}"'

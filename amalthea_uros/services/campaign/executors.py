@@ -82,11 +82,12 @@ class _Pool:
 
     def submit(self, runs: Sequence[Run]) -> Future[list[Outcome]]:
         """Have some runs executed."""
-        try:
-            return self._pool.submit(_execute_installed, runs)
-        except BrokenProcessPool:
-            self._pool = self._start()
-            return self._pool.submit(_execute_installed, runs)
+        with _blocked_interrupts():
+            try:
+                return self._pool.submit(_execute_installed, runs)
+            except BrokenProcessPool:
+                self._pool = self._start()
+                return self._pool.submit(_execute_installed, runs)
 
     def close(self) -> None:
         """End the processes, also those that still work."""
@@ -97,6 +98,19 @@ class _Pool:
         # Its semaphores belong to cycles of objects. The command line ends without collecting them, and Python would complain of leaks.
         del self._pool
         gc.collect()
+
+
+@contextmanager
+def _blocked_interrupts() -> Iterator[None]:
+    """A process that is started meanwhile inherits that Ctrl-C is blocked: it would report the interrupt while it imports."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    former = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, former)
 
 
 #: The job of a worker process: it is sent once, not with each run.

@@ -1,0 +1,43 @@
+"""How much is read at most, so that no file exhausts the memory; `docs/check.md` tells users of it.
+
+The largest published model has 6 MB and 76,000 elements. `AMUROS_LIMITS=4` in the environment allows four times as much of everything.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+
+#: The environment variable with the factor; the environment is up to the user, and not to the files that are read.
+VARIABLE = "AMUROS_LIMITS"
+
+
+def _factor() -> int:
+    given = os.environ.get(VARIABLE) or "1"
+    if re.fullmatch("[1-9][0-9]{0,3}", given) is None:
+        raise ValueError(f"{VARIABLE} must be a whole number from 1 to 9999, not {given[:40]!r}; e.g. {VARIABLE}=4")
+    return int(given)
+
+
+_FACTOR = _factor()
+#: What to do about a file that is too large, as a sentence.
+ADVICE = f"If you trust the file, raise all limits by a factor: {VARIABLE}={4 * _FACTOR} in the environment."
+
+#: In bytes, unpacked.
+MODEL_SIZE = _FACTOR * 256 * 2**20
+#: Elements of a model take up to 900 bytes each, however short they are written.
+MODEL_ELEMENTS = _FACTOR * 1_000_000
+#: Ids in attributes with several.
+MODEL_REFERENCES = _FACTOR * 4_000_000
+#: In bytes.
+DESCRIPTION_SIZE = _FACTOR * 5 * 2**20
+#: Values of a description, those of expanded aliases included.
+DESCRIPTION_VALUES = _FACTOR * 400_000
+#: Settings of a project, in bytes.
+SETTINGS_SIZE = _FACTOR * 2**20
+#: Rules of a user, in bytes.
+RULES_SIZE = _FACTOR * 5 * 2**20
+#: In bytes: a million findings.
+BASELINE_SIZE = _FACTOR * 128 * 2**20
+#: Characters of a line of a trace; traces themselves are read part by part, and may be of any size.
+TRACE_LINE = _FACTOR * 2**16

@@ -1,0 +1,91 @@
+"""The command as a process of its own: how it ends, whatever happens.
+
+It imports next to nothing before it can handle Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from types import FrameType
+from typing import Any
+
+from amalthea_uros.cli.ends import INTERRUPTED, failed, say
+
+#: Signals after which everything is cleaned up; one that the caller ignores, as `nohup` does, remains ignored.
+_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
+#: Somebody who sends so many signals does not want to wait for that.
+_INSISTENCE = 3
+#: The signals so far.
+_received: list[int] = []
+
+
+def run() -> None:
+    """Run the command line; end at once, because to free a large model object by object takes a fifth of a run."""
+    try:
+        code = _code()
+    except KeyboardInterrupt:
+        code = INTERRUPTED
+    os._exit(128 + _received[0] if _received else code)
+
+
+def _code() -> int:
+    """Run the command line to the end of its output; the exit code."""
+    _prepare()
+    code = 0
+    try:
+        from amalthea_uros.cli.main import main
+
+        main()
+    except SystemExit as end:
+        if not isinstance(end.code, int):
+            raise
+        code = end.code
+    except MemoryError:
+        say("not enough memory; the input is too large for this computer, or for its limits")
+        code = 2
+    try:
+        for stream in filter(None, (sys.stdout, sys.stderr)):
+            stream.flush()
+    except OSError as error:
+        code = failed(error)
+    return code
+
+
+def _prepare() -> None:
+    """Have signals end the process, and let the standard streams take every text."""
+    for name in _SIGNALS:
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _interrupt)
+    sys.unraisablehook = _repeat_interrupt
+    if sys.stderr is None:
+        from io import StringIO
+
+        sys.stderr = StringIO()  # closed by the caller, who wants no messages
+    for stream in (sys.stdout, sys.stderr):
+        # An encoding may lack letters of a name, and file names are of any bytes.
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _interrupt(number: int, _frame: FrameType | None) -> None:
+    _received.append(number)
+    if len(_received) >= _INSISTENCE:
+        os._exit(128 + number)
+    raise KeyboardInterrupt
+
+
+def _repeat_interrupt(ignored: Any) -> None:
+    """Interrupt again a little later where Python or a library could not pass on an interrupt, as in a finalizer."""
+    if not issubclass(ignored.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(ignored)
+        return
+    from _thread import interrupt_main
+    from threading import Timer
+
+    _received.clear()
+    timer = Timer(0.01, interrupt_main)
+    timer.daemon = True
+    timer.start()

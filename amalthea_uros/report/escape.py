@@ -1,0 +1,70 @@
+r"""Text from files as it is shown: what could act on a terminal, or on the log of a CI system, becomes an escape such as `\n`.
+
+A name may contain anything: line ends that make up lines of our output, escape sequences of terminals, marks that reverse the direction
+of the text (Boucher and Anderson, "Trojan Source", 2021), and bytes of a file name that are no text.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import IO, Any
+
+#: Control and format characters, surrogates, and what XML 1.0 does not allow (section 2.2).
+_HIDDEN = re.compile(
+    "[\x00-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u2069\ud800-\udfff\ufeff\ufff9-\ufffb\ufffe\uffff"
+    "\U000e0000-\U000e007f]"
+)
+_SHORT = {"\t": r"\t", "\n": r"\n", "\r": r"\r"}
+#: The bytes of file names that are no text, as Python has them (PEP 383).
+_BYTES = range(0xDC80, 0xDD00)
+
+#: What a runner takes for a command: of GitHub at the start of a line, or of GitHub's first form and Azure Pipelines anywhere.
+_COMMAND = re.compile(r"^(\s*):(?=:)|#(?=#(?:\[|vso\[))")
+
+
+def visible(text: str) -> str:
+    r"""A text in one line without hidden characters.
+
+    >>> visible("a\nb\x1b[31m\u202e")
+    'a\\nb\\x1b[31m\\u202e'
+    """
+    return text if text.isascii() and text.isprintable() else _HIDDEN.sub(_escape, text)
+
+
+def output_line(text: str) -> str:
+    """A line of output: visible text that no CI system takes for a command."""
+    shown = visible(text)
+    return _COMMAND.sub(_harmless, shown) if "::" in shown or "##" in shown else shown
+
+
+def write_json(content: Any, stream: IO[str]) -> None:
+    """Write a value as JSON that can be shown, too: hidden characters, and those that the stream lacks, are escapes of JSON."""
+    import json
+
+    shown = json.dumps(content, indent=2, ensure_ascii=False)
+    lines = (_HIDDEN.sub(_json_escape, line) for line in shown.split("\n"))
+    text = "\n".join(lines) + "\n"
+    try:
+        text.encode(getattr(stream, "encoding", None) or "utf-8")
+    except UnicodeEncodeError:
+        text = json.dumps(content, indent=2) + "\n"
+    stream.write(text)
+
+
+def _escape(match: re.Match[str]) -> str:
+    character = match[0]
+    code = ord(character)
+    if code in _BYTES:
+        code -= 0xDC00
+    return _SHORT.get(character) or (
+        f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+    )
+
+
+def _json_escape(match: re.Match[str]) -> str:
+    units = match[0].encode("utf-16-be", "surrogatepass").hex()
+    return "".join(f"\\u{units[i : i + 4]}" for i in range(0, len(units), 4))
+
+
+def _harmless(match: re.Match[str]) -> str:
+    return rf"{match[1]}\x3a" if match[1] is not None else r"\x23"
