@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import gc
 import os
 import sys
 from importlib import import_module
@@ -29,6 +30,9 @@ COMMANDS = {
     "simulate": "Simulate the system, once or for many variants and seeds.",
 }
 
+
+#: How many more objects there are before garbage is collected; usually 700, so that imports alone are scanned dozens of times.
+GARBAGE_THRESHOLD = 50_000
 
 #: The exit code that shells give a process that Ctrl-C ended: 128 and the number of the signal.
 INTERRUPTED = 130
@@ -75,6 +79,7 @@ def run() -> None:
     """The command as a process of its own: it ends at once, because to free a large model object by object takes a fifth of a run."""
     if sys.stderr is None:
         sys.stderr = StringIO()  # closed by the caller, who wants no messages
+    gc.set_threshold(GARBAGE_THRESHOLD)
     code = 0
     try:
         main()

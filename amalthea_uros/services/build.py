@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.services.paths import StrPath
 from amalthea_uros.uros.assemble import Assembly, assemble
+
+if TYPE_CHECKING:
+    from amalthea_uros.metamodel.model import Document, Model
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,7 +15,10 @@ from amalthea_uros.spec.nodes import Mapping, Node, Sequence, Source
 class Section(BaseModel):
     """A mapping of the file."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True, protected_namespaces=())
+    # Only the sections that something is validated by are built, with those in them, when that happens first.
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, use_attribute_docstrings=True, protected_namespaces=(), defer_build=True
+    )
 
     _where: tuple[Mapping, Source] | None = PrivateAttr(None)
 
