@@ -51,12 +51,10 @@ def disconnect(parser: Any) -> None:
 
 def has_character_data(text: str) -> bool:
     """Whether there may be text between the tags; models have white space only, and to be called for that takes long."""
-    found = islice(_BETWEEN_TAGS.finditer(text), _MOST_LOOKED_AT)
-    looked_at = 0
-    for looked_at, match in enumerate(found, start=1):
-        if not _is_in_value(text, match.start()):
-            return True
-    return looked_at == _MOST_LOOKED_AT or _CDATA in text
+    found = _BETWEEN_TAGS.finditer(text)
+    if not all(_is_in_value(text, match.start()) for match in islice(found, _MOST_LOOKED_AT)):
+        return True
+    return next(found, None) is not None or _CDATA in text
 
 
 def _is_in_value(text: str, place: int) -> bool:

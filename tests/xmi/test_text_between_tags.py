@@ -1,72 +1,38 @@
-"""Text between the elements is found, and a `>` in values is not taken for the end of a tag."""
+"""Text between tags is found wherever it stands, although files without any are read without looking at their white space."""
 
-from xml.parsers import expat
+from __future__ import annotations
+
+from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from amalthea_uros.xmi import handlers
-from amalthea_uros.xmi.handlers import has_character_data
+from amalthea_uros import load
+
+_NAMESPACES = 'xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmi:version="2.0"'
 
 
+@pytest.mark.parametrize(("version", "rule"), [("3.3.0", "XMI015"), ("0.7.2", "XMI009")])
 @pytest.mark.parametrize(
     "text",
     [
-        '<a name="Size > 3" b="x">\n  <b name="c>"/>\n</a>\n',
-        '<a name=">"/>',
-        "<a>\n\t<!-- nothing -->\n</a>",
+        "<swModel>word</swModel>",
+        "<swModel> <labels name='L'/> word</swModel>",
+        "<swModel><![CDATA[word]]></swModel>",
+        "<swModel>\n  <!-- a comment --> word\n</swModel>",
+        "<swModel>&#119;ord</swModel>",
+        "<swModel><?tool data?>word</swModel>",
     ],
 )
-def test_models_have_white_space_only_whatever_their_values_contain(text):
-    assert not has_character_data(text)
+def test_text_is_reported(tmp_path: Path, text: str, version: str, rule: str) -> None:
+    path = tmp_path / "m.amxmi"
+    path.write_text(f'<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/{version}" {_NAMESPACES}>{text}</am:Amalthea>')
+    assert [finding.rule for finding in load(path).findings if finding.rule == rule] == [rule]
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "<a>text</a>",
-        '<a name="b">\n text</a>',
-        '<a><!-- say "hello -->text</a>',
-        '<a><!-- <b name="c -->text</a>',
-        '<a><?say "hello?>text</a>',
-        "<a name='\"'>text</a>",
-        "<a><![CDATA[text]]></a>",
-    ],
-)
-def test_text_is_found_after_tags_comments_and_instructions(text):
-    assert has_character_data(text)
-
-
-PIECES = [
-    "<b/>",
-    '<b c="d"/>',
-    '<b c=">"/>',
-    "<b c='\"'/>",
-    '<b c="\'>x"/>',
-    '<!-- " -->',
-    "<!-- > < ' -->",
-    '<?d "?>',
-    " ",
-    "text",
-    '"',
-    "'",
-    ">",
-]
-
-
-@given(st.lists(st.sampled_from(PIECES), max_size=8))
-def test_no_text_is_missed(pieces):
-    text = f"<a>{''.join(pieces)}</a>"
-    found = []
-    parser = expat.ParserCreate()
-    parser.CharacterDataHandler = lambda data: found.append(data.strip())
-    parser.Parse(text, True)
-    assert has_character_data(text) or not any(found)
-
-
-def test_many_values_with_such_characters_are_not_all_looked_at(monkeypatch):
-    looked_at = []
-    monkeypatch.setattr(handlers, "_is_in_value", lambda *place: looked_at.append(place) or True)
-    assert has_character_data('<b c=">d"/>' * 100_000)
-    assert len(looked_at) <= 2_000
+def test_a_greater_than_sign_in_a_value_is_no_text(tmp_path: Path) -> None:
+    path = tmp_path / "m.amxmi"
+    model = (
+        f'<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0" {_NAMESPACES}>\n  <swModel>\n    <labels name="a>b" '
+    )
+    path.write_text(f'{model}xmi:id="a%3Eb?type=Label"/>\n  </swModel>\n</am:Amalthea>\n')
+    assert not load(path).findings
