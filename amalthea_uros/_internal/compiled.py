@@ -1,21 +1,23 @@
 """Hot loops: the same functions as machine code, where numba is installed (`pip install amuros[fast]`).
 
-Loading numba takes a few tenths of a second, which small models would not earn back. So a function runs as Python until that has
-taken about as long.
+A function runs as Python until that has taken about as long as machine code of it takes to get.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import update_wrapper
-from importlib.util import find_spec
+from math import inf
+from pathlib import Path
 from typing import Generic, ParamSpec, TypeVar, cast
+
+from amalthea_uros._internal.machine_code import LOADING, Effort, is_available
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
-#: About how long it takes to load numba, in microseconds.
-LOADING = 400_000
+#: About how long numba takes to compile a function of such loops, with what it does before the first one, in seconds.
+COMPILING = 2.5
 
 
 class Compiled(Generic[P, R]):
@@ -23,6 +25,7 @@ class Compiled(Generic[P, R]):
 
     Attributes
     ----------
+    effort : what it has taken as Python
     is_compiled : whether it is machine code by now, which works on arrays; Python is faster on lists
     """
 
@@ -30,30 +33,36 @@ class Compiled(Generic[P, R]):
         update_wrapper(self, function)
         self._function = function
         self._cost = cost
-        self._left = LOADING if find_spec("numba") else None
+        name = function.__name__
+        self.effort = Effort(name, [Path(function.__code__.co_filename)], name, COMPILING)
+        #: Seconds as Python after which machine code is considered.
+        self._limit = LOADING
         self.is_compiled = False
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Call it."""
-        if self._left is not None:
+        if self._limit < inf:
             self.expect(self._cost)
         return self._function(*args, **kwargs)
 
     def expect(self, microseconds: int) -> None:
-        """Count work that is to be done as Python; when all of it together takes longer than loading numba, compile."""
-        if self._left is not None:
-            self._left -= microseconds
-            if self._left < 0:
+        """Count work that is to be done as Python; when all of it together takes longer than compiling, compile."""
+        self.effort.spent += microseconds * 1e-6
+        if self.effort.spent > self._limit:
+            if self.effort.pays_compiling():
+                self.effort.report(is_used=True)
                 self.compile()
+            else:
+                self._limit = self.effort.compiling if self._limit < self.effort.compiling else inf
 
     def keep_python(self) -> None:
         """Do not compile it, however much there is to do."""
-        self._left = None
+        self._limit = inf
 
     def compile(self) -> None:
         """Make it machine code from now on, if numba is there."""
-        self._left = None
-        if find_spec("numba") and not self.is_compiled:
+        self._limit = inf
+        if is_available() and not self.is_compiled:
             from numba import njit
 
             try:

@@ -64,6 +64,29 @@ class OutputType(click.ParamType[Output]):
         return Output(name, output_path(path) if path else STANDARD_OUTPUT)
 
 
+def verbose_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The option that shows on standard error what the library logs."""
+    return click.option(
+        "-v",
+        "--verbose",
+        is_flag=True,
+        expose_value=False,
+        callback=_show_log,
+        help="Show on standard error whether machine code is used, and why.",
+    )(command)
+
+
+def _show_log(_context: click.Context, _parameter: click.Parameter, value: bool) -> None:
+    if not value:
+        return
+    import logging
+
+    handler = logging.StreamHandler()
+    logger = logging.getLogger("amalthea_uros")
+    logger.handlers, logger.propagate = [handler], False
+    logger.setLevel(logging.INFO)
+
+
 def output_option(result: type) -> Callable[[Any], Any]:
     """The option for a command: its formats are those that can write its result."""
     names = formats.formats_for(result)

@@ -5,6 +5,7 @@ It imports next to nothing before it can handle Ctrl-C.
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -15,6 +16,8 @@ from amalthea_uros.cli.ends import INTERRUPTED, failed, say
 
 #: Signals after which everything is cleaned up; one that the caller ignores, as `nohup` does, remains ignored.
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
+#: How many more objects there are before garbage is collected; usually 700, so that imports alone are scanned dozens of times.
+GARBAGE_THRESHOLD = 50_000
 #: Somebody who sends so many signals does not want to wait for that.
 _INSISTENCE = 3
 #: The signals so far.
@@ -54,7 +57,8 @@ def _code() -> int:
 
 
 def _prepare() -> None:
-    """Have signals end the process, and let the standard streams take every text."""
+    """Have signals end the process, and let the standard streams take every text; collect garbage rarely."""
+    gc.set_threshold(GARBAGE_THRESHOLD)
     for name in _SIGNALS:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros.analyze.response_times.kernel import report_machine_code
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
@@ -96,6 +97,7 @@ def analyze_files(
     system = opened.system
     require_settings(settings, system)
     analysis = analyze_system(system, settings)
+    report_machine_code()
     return AnalysisResult(
         paths=files,
         system=system,

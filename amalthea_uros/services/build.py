@@ -11,11 +11,11 @@ from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import AmurosError, ReadError, WriteError
 from amalthea_uros.findings.suppression import unsuppressed
-from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.services.paths import StrPath, folder_of
 from amalthea_uros.uros.assemble import Assembly, assemble
 
 if TYPE_CHECKING:
+    from amalthea_uros.metamodel.model import Document, Model
     from amalthea_uros.spec.description import Description
 
 

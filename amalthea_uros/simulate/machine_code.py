@@ -6,13 +6,12 @@ import sys
 from collections.abc import Callable
 from functools import cache
 from hashlib import blake2b
-from importlib.util import find_spec
 from inspect import getsource
-from os import environ
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, TypeAlias
 
+from amalthea_uros._internal.machine_code import LOADING, Effort
 from amalthea_uros.simulate import layout, operations
 from amalthea_uros.simulate.kernel import (
     accounts,
@@ -34,33 +33,25 @@ Play: TypeAlias = Callable[[Memory], int]
 _MODULES = (accounts, activation, budgets, conditions, cores, following, jobs, loop, waiting, watching)
 
 
-#: Seconds after which the speed of a run is known; to load machine code, with numba itself; and of a run that is worth making it.
-_KNOWN, _LOADING, _WORTH_MAKING = 0.2, 1.0, 5.0
+#: Seconds after which the speed of a run is known, and about how long numba takes to compile the kernel.
+_KNOWN, _COMPILING = 0.2, 25.0
+
+#: With what the name of the compiled function begins.
+_PREFIX = "play_"
 
 
-def is_available() -> bool:
-    """Whether numba is installed."""
-    return find_spec("numba") is not None
+@cache
+def effort() -> Effort:
+    """What the kernel has taken as Python in this process: the runs of a campaign count together."""
+    sources = [Path(str(module.__file__)) for module in (loop, *_MODULES, layout, operations, sys.modules[__name__])]
+    return Effort("the simulation", sources, f"{_PREFIX}*", _COMPILING)
 
 
 def is_worth_it(seconds: float, seconds_left: float) -> bool:
-    """Whether to go on with machine code, after some seconds interpreted and with an estimated rest.
-
-    Making it takes about 20 seconds, but only once: numba keeps it.
-    """
+    """Whether to go on with machine code, after some seconds of a run as Python and with an estimated rest."""
     if compiled.cache_info().currsize:
         return True
-    if seconds < _KNOWN or seconds_left < _LOADING or not is_available():
-        return False
-    return seconds_left > _WORTH_MAKING or _is_kept()
-
-
-def _is_kept() -> bool:
-    """Whether numba has kept the machine code, as far as that can be seen without loading numba."""
-    folders = [Path(loop.__file__).parent / "__pycache__"]
-    if chosen := environ.get("NUMBA_CACHE_DIR"):
-        folders.append(Path(chosen))
-    return any(next(folder.glob(f"**/loop.{_name()}-*.nbi"), None) for folder in folders)
+    return seconds >= _KNOWN and seconds_left > LOADING and effort().pays_compiling(seconds_left)
 
 
 @cache
@@ -101,7 +92,7 @@ def _is_in(value: object, machine: dict[FunctionType, Any]) -> bool:
 def _name() -> str:
     """A name that changes with every change of the kernel."""
     sources = "".join(getsource(module) for module in (*_MODULES, layout, operations, sys.modules[__name__]))
-    return f"play_{blake2b(sources.encode(), digest_size=8).hexdigest()}"
+    return f"{_PREFIX}{blake2b(sources.encode(), digest_size=8).hexdigest()}"
 
 
 def _as_play(function: Play) -> Play:

@@ -120,13 +120,18 @@ class Player:
         ------
         EndlessJobError : a job goes on forever without taking time.
         """
+        began = perf_counter()
         try:
-            self._play_to_the_end()
+            self._play_to_the_end(began)
         finally:
             self._await_taker()
+            if not self.is_compiled:
+                effort = machine_code.effort()
+                effort.spent += perf_counter() - began
+                effort.report(is_used=False)
 
-    def _play_to_the_end(self) -> None:
-        time, window, began = 0, max(1, self.until // 1024), perf_counter()
+    def _play_to_the_end(self, began: float) -> None:
+        time, window = 0, max(1, self.until // 1024)
         self._consider_machine_code(0, 0)
         edges = sorted({edge for edge in (*self.traced, self.until) if 0 < edge <= self.until})
         for edge in edges:
@@ -166,6 +171,7 @@ class Player:
         seconds, times_left : what the run has taken so far, and how many times as much is left
         """
         if machine_code.is_worth_it(seconds, seconds * times_left):
+            machine_code.effort().report(is_used=True, left=seconds * times_left)
             self._take_rows()
             self.memory = cast(Memory, np.array(self.memory, np.int64))
             self.is_compiled = True

@@ -18,7 +18,10 @@ EXTENSION = "x-"
 class Section(BaseModel):
     """A mapping of the file."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True, protected_namespaces=())
+    # Only the sections that something is validated by are built, with those in them, when that happens first.
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, use_attribute_docstrings=True, protected_namespaces=(), defer_build=True
+    )
 
     _where: tuple[Mapping, Source] | None = PrivateAttr(None)
 

@@ -5,11 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 from xml.parsers import expat
 
-#: Something else than white space between two tags. It also finds `>` in values and comments; then the handler is called for nothing.
+#: Something else than white space between two tags, or a `>` in a value or a comment.
 _BETWEEN_TAGS = re.compile(r">[ \t\r\n]*+[^<]")
+
+#: So many `>` are looked at, in tags of at most so many characters: more would take longer than calls of the handler for nothing.
+_MOST_LOOKED_AT, _LONGEST_TAG = 2_000, 2_000
 
 _CDATA = "<![CDATA["
 
@@ -49,4 +53,19 @@ def disconnect(parser: Any) -> None:
 
 def has_character_data(text: str) -> bool:
     """Whether there may be text between the tags; models have white space only, and to be called for that takes long."""
-    return _BETWEEN_TAGS.search(text) is not None or _CDATA in text
+    found = _BETWEEN_TAGS.finditer(text)
+    if not all(_is_in_value(text, match.start()) for match in islice(found, _MOST_LOOKED_AT)):
+        return True
+    return next(found, None) is not None or _CDATA in text
+
+
+def _is_in_value(text: str, place: int) -> bool:
+    """Whether a `>` is certainly part of a value of an attribute, or of a comment that goes on after it."""
+    start = text.rfind("<", max(0, place - _LONGEST_TAG), place)
+    return (
+        start >= 0
+        and text.count('"', start, place) % 2 == 1
+        and text.find("'", start, place) < 0
+        # The end of a comment or an instruction that has quotes in it.
+        and text[place - 1] not in "-?"
+    )

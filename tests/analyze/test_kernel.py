@@ -78,20 +78,31 @@ def test_the_same_schedule(rows):
 
 
 def test_only_what_is_used_much_is_compiled(monkeypatch):
-    monkeypatch.setattr("amalthea_uros._internal.compiled.LOADING", 25)
-    seen = []
-
-    @compiled(cost=10)
+    # Kept machine code would pay after half a second, new one after 2.5 s.
+    @compiled(cost=1_000_000)
     def double(number):
         return number * 2
 
+    seen = []
     monkeypatch.setattr(double, "compile", lambda: seen.append("compiled"))
     assert [double(1), double(2), *seen] == [2, 4]
     assert [double(3), *seen] == [6, "compiled"]
 
 
+def test_what_is_kept_from_an_earlier_run_is_used_sooner(monkeypatch):
+    monkeypatch.setattr("amalthea_uros._internal.machine_code.Effort.is_kept", lambda _: True)
+
+    @compiled(cost=400_000)
+    def double(number):
+        return number * 2
+
+    seen = []
+    monkeypatch.setattr(double, "compile", lambda: seen.append("compiled"))
+    assert [double(1), *seen, double(2), *seen] == [2, 4, "compiled"]
+
+
 def test_without_numba_everything_stays_python(monkeypatch):
-    monkeypatch.setattr("amalthea_uros._internal.compiled.find_spec", lambda _: None)
+    monkeypatch.setattr("amalthea_uros._internal.machine_code.find_spec", lambda _: None)
 
     @compiled(cost=10**9)
     def double(number):

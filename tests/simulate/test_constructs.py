@@ -1,5 +1,7 @@
 """Models with every construct of the language are simulated, and nothing occurs that is known not to occur."""
 
+from importlib.util import find_spec
+
 import numpy as np
 import pytest
 from opponent.observation import Horizon
@@ -8,7 +10,6 @@ from opponent.to_perf import MICROSECOND, to_perf
 from opponent.vectors import facts, needs_vectors, plain_systems
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Mode, Options
 
 FACTS = facts() if not needs_vectors.args[0] else {}
@@ -52,7 +53,7 @@ def different(fact, runs, steady):
 
 
 @needs_vectors
-@pytest.mark.skipif(not machine_code.is_available(), reason="numba is not installed")
+@pytest.mark.skipif(find_spec("numba") is None, reason="numba is not installed")
 def test_machine_code_plays_as_the_interpreted_kernel_does():
     for name in sorted(FACTS)[::12]:
         options = Options(duration=500 * MICROSECOND, seed=3, traced=(0, 300 * MICROSECOND))

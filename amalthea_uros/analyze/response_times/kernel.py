@@ -6,6 +6,7 @@ Only the first `count` rows of an array are used, so that all priorities share o
 from __future__ import annotations
 
 from heapq import heapify, heappop, heappush, heapreplace
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -149,3 +150,12 @@ def dispatch(
                 slices.append((job, now, end))
         now = end
     return slices
+
+
+LOOPS = (demand_in, least_fixed_point, greatest_fixed_point, dispatch)
+
+
+def report_machine_code() -> None:
+    """Log why there is no machine code, if there is none; when something is compiled, that is logged then."""
+    if not any(loop.is_compiled for loop in LOOPS):
+        max((loop.effort for loop in LOOPS), key=attrgetter("spent")).report(is_used=False)

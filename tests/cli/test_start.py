@@ -1,0 +1,94 @@
+"""Commands start fast: they import no library that they do not use."""
+
+import subprocess
+import sys
+
+import pytest
+from support import ROOT
+
+SAMPLES = ROOT / "samples"
+MODEL, YAML = SAMPLES / "executor.amxmi", SAMPLES / "bodas-test-simple.yaml"
+
+#: Of the libraries and of the package, what takes long to import.
+HEAVY = {
+    *("numpy", "numba", "scipy", "pandas", "networkx", "pydantic", "yaml", "xmlschema", "lxml", "jinja2", "dask"),
+    *(
+        "asyncio",
+        "concurrent.futures",
+        "multiprocessing",
+        "email",
+        "http",
+        "socket",
+        "logging",
+        "tomllib",
+        "importlib.metadata",
+    ),
+    *("amalthea_uros.metamodel.classes", "amalthea_uros.findings.catalogue", "amalthea_uros.validate", "amalthea_uros.xmi"),
+    *(
+        "amalthea_uros.bridge",
+        "amalthea_uros.perf",
+        "amalthea_uros.timing",
+        "amalthea_uros.analyze",
+        "amalthea_uros.simulate.kernel",
+    ),
+}
+MODELS = {"amalthea_uros.metamodel.classes", "amalthea_uros.xmi"}
+SYSTEMS = {"amalthea_uros.perf", "amalthea_uros.timing"}
+#: pydantic looks for plugins in the distributions that are installed.
+DESCRIPTIONS = {"pydantic", "yaml", "email", "socket", "importlib.metadata"}
+#: So do the rules of users; the settings of a project are TOML.
+RULES = {
+    "amalthea_uros.validate",
+    "amalthea_uros.findings.catalogue",
+    "tomllib",
+    "lxml",
+    "email",
+    "socket",
+    "importlib.metadata",
+}
+
+
+@pytest.mark.parametrize(
+    ("command", "needed"),
+    [
+        (["--help"], set()),
+        (["--version"], set()),
+        (["info", MODEL], MODELS),
+        (["analyze", MODEL], MODELS | SYSTEMS | {"amalthea_uros.bridge", "amalthea_uros.analyze", "numpy"}),
+        (["analyze", YAML], DESCRIPTIONS | SYSTEMS | {"amalthea_uros.analyze", "numpy"}),
+        (["check", MODEL], MODELS | SYSTEMS | RULES | {"amalthea_uros.bridge"}),
+    ],
+    ids=lambda value: " ".join(str(getattr(word, "name", word)) for word in value) if isinstance(value, list) else "",
+)
+def test_a_command_imports_only_what_it_needs(command, needed):
+    assert imported_by(*map(str, command)) & HEAVY <= needed
+
+
+def imported_by(*arguments):
+    code = (
+        "import sys; from amalthea_uros.cli.main import main\n"
+        f"sys.argv = {['amuros', *arguments]}\n"
+        "try: main()\nexcept SystemExit as end: assert end.code == 0, end.code\n"
+        "print(*sys.modules)"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(run.stdout.splitlines()[-1].split())
+
+
+def test_imports_are_not_scanned_for_garbage():
+    # `run` is the command as a process of its own; a threshold of a library would be that of its users.
+    code = (
+        "import gc, os, sys; from amalthea_uros.cli.process import run\n"
+        "sys.argv = ['amuros', '--version']; os._exit = lambda code: print(gc.get_threshold()[0]); run()"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert int(run.stdout.split()[-1]) > 10_000
+
+
+@pytest.mark.parametrize("command", ["analyze", "simulate"])
+def test_verbose_commands_say_whether_machine_code_is_used(command):
+    code = "from amalthea_uros.cli.main import main; main()"
+    run = subprocess.run([sys.executable, "-c", code, command, str(MODEL), "-v"], capture_output=True, text=True, check=False)
+    lines = [line for line in run.stderr.splitlines() if line.startswith("machine code of ")]
+    assert len(lines) == 1
+    assert ": not used, 0." in lines[0]
