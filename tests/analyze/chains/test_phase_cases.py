@@ -11,9 +11,12 @@ from test_chain_systems import END, START, at, read, system, ticks, write
 
 from amalthea_uros import analyze_system, describe
 from amalthea_uros.analyze import system as analyses
+from amalthea_uros.analyze.chains import job_chains
+from amalthea_uros.analyze.chains.job_chains import JobBudget
 from amalthea_uros.analyze.phase_cases import PhaseCases, least_rotation
 from amalthea_uros.analyze.phases import Phases
 from amalthea_uros.analyze.propagation import solve
+from amalthea_uros.analyze.results import Claim
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.constraints import Bound, Constraints, LatencyConstraint, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.events import EventChain
@@ -23,7 +26,6 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.phases import unknown_phases
 from amalthea_uros.units import MICROSECOND as US
 
-#: Any counters, runnables that are called with them, and tasks on two cores; most jobs end in the slot of 10 in which they are released.
 PRESCALERS = st.sampled_from([2, 2, 3, 4, 6])
 
 
@@ -35,6 +37,7 @@ def cases_of(built) -> PhaseCases:
 
 @st.composite
 def systems(draw):
+    """Calls with counters in tasks on two cores; most jobs end in the slot of 10 in which they are released."""
     tasks, runnables, combinations = [], [], 1
     for number in range(draw(st.integers(1, 3))):
         name = f"T{number}"
@@ -102,8 +105,8 @@ def test_few_combinations_of_the_sample_are_evaluated(monkeypatch):
     analysis = analyses._analysis
     monkeypatch.setattr(analyses, "_analysis", lambda *arguments: evaluated.append(1) or analysis(*arguments))
     found = analyze_system(describe(ROOT / "samples" / "rclc-in-executor.yaml").system)
-    # 10 * 2 * 50 phases repeat every 50 jobs, so that 20 are different; the chain also tells the 2 phases of its last callback apart. For
-    # the timer in a task of its own only matters which of the three calls are in the job of the executor with which it is released.
+    # 10 * 2 * 50 phases repeat every 50 jobs, so that 20 are different; the chain also tells the 2 phases of its last callback apart.
+    # For the timer in its own task only matters which of the three calls are in the job of the executor with which it is released.
     cases = cases_of(describe(ROOT / "samples" / "rclc-in-executor.yaml").system)
     assert sorted(map(len, cases.of_processes.values())) == [8, 20]
     assert list(map(len, cases.of_chains)) == [40]
@@ -145,3 +148,18 @@ def test_each_combination_counts_if_jobs_end_after_the_next_release():
 def test_the_least_rotation(row):
     start = least_rotation(row)
     assert row[start:] + row[:start] == min(row[at:] + row[:at] for at in range(len(row)))
+
+
+def test_phases_without_job_chains_are_an_assumption(monkeypatch):
+    built = one_task(2, 3, work=5)
+    (exact,) = analyze_system(built).chains
+    assert {value.claim for value in exact.values} == {Claim.EXACT}
+    needed = []
+    count = job_chains.job_count
+    monkeypatch.setattr(job_chains, "job_count", lambda *chain: needed.append(count(*chain)) or needed[-1])
+    analyze_system(built)
+    # Enough for each of the phases, but not for all of them.
+    monkeypatch.setattr(analyses, "JobBudget", lambda: JobBudget(jobs=sum(needed) - 1))
+    found = analyze_system(built)
+    assert Claim.EXACT not in {value.claim for value in found.chains[0].values}
+    assert any(job_chains.TOO_MANY_JOBS in assumption for assumption in found.assumptions)
