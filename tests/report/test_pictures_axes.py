@@ -116,7 +116,7 @@ def test_elided_text_fits_and_keeps_both_ends(content, room):
 
 
 def test_text_and_attributes_are_escaped():
-    assert element("text", text('<&">\0'), name_='<&">') == "<text name='&lt;&amp;\"&gt;'>&lt;&amp;\"&gt;\ufffd</text>"
+    assert element("text", text('<&">\0'), name_='<&">') == "<text name='&lt;&amp;\"&gt;'>&lt;&amp;\"&gt;\\x00</text>"
 
 
 def test_coordinates_have_two_decimals_without_zeros():
