@@ -233,6 +233,7 @@ def test_the_slices_of_a_long_schedule_are_built_only_if_they_are_needed(monkeyp
     monkeypatch.setattr(schedule, "RECORDED_JOBS", 3)
     schedules = CoreSchedules(solve(TimingContext.of(system([[ticks(9)] for _ in range(HERE)]))))
     without, with_slices = schedules.of("c0", with_slices=False), schedules.of("c0", with_slices=True)
-    assert without is not None and with_slices is not None
+    assert without is not None
+    assert with_slices is not None
     assert not any(len(jobs.execution_slices) for jobs in without.worst.values())
     assert all(len(jobs.execution_slices) for jobs in with_slices.worst.values())
