@@ -95,7 +95,10 @@ def _chain(chain: EventChain, evaluation: ChainEvaluator) -> ChainResult:
     solutions = solutions_for_phases(evaluation.solution, passed) if passed else []
     if not solutions:
         return evaluation.chain(chain)
-    return merged_chain([ChainEvaluator(solution).chain(chain) for solution in solutions])
+    results = [ChainEvaluator(solution).chain(chain) for solution in solutions]
+    for solution in solutions:
+        evaluation.context.notes.include(solution.context.notes)
+    return merged_chain(results)
 
 
 def _note_ignored(solution: Solution) -> None:
