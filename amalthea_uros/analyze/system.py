@@ -101,7 +101,10 @@ def _chain(chain: EventChain, evaluation: ChainEvaluator) -> ChainResult:
     if phases is None:
         return evaluation.chain(chain)
     cases = phases.cases.of_chain(chain)
-    results = [ChainEvaluator(solution, evaluation.budget).chain(chain) for _, solution in phases.solutions(cases)]
+    results = []
+    for _, solution in phases.solutions(cases):
+        results.append(ChainEvaluator(solution, evaluation.budget).chain(chain))
+        evaluation.context.notes.include(solution.context.notes)
     return merged_chain(results, list(cases.values()))
 
 

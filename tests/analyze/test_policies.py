@@ -455,6 +455,15 @@ class TestEventsThatActivate:
         # Both may be there before the first one is served.
         assert self.respond(CustomEvent(name="event"), *twice) == 13
 
+    @pytest.mark.parametrize("times", [0.5, 2.5, Count(least=0, mean=2.0, most=0)])
+    def test_an_average_number_of_accesses_has_no_maximum(self, times):
+        """Ten accesses in one of twenty jobs are 0.5 on average; if only a mean is stated, the maximum is not 0."""
+        written = LabelEvent(name="event", label="L", change=LabelChange.WRITE)
+        averaged = LabelAccess(label="L", kind=AccessKind.WRITE, times=times)
+        unknown = "the maximum number of times that a job of 'first' triggers it is unknown"
+        assert self.respond(written, averaged) == unknown
+        assert self.respond(written, LabelAccess(label="L", kind=AccessKind.WRITE), averaged) == unknown
+
     def test_events_from_outside(self):
         assert "no activity in the model raises" in self.respond(CustomEvent(name="event"))
 

@@ -12,7 +12,7 @@ from amalthea_uros import analyze_system
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.event_windows import EventWindows
 from amalthea_uros.analyze.results import Verdict
-from amalthea_uros.perf.activities import Call, Chance, Communication, Group, ProbabilitySwitch, Trigger
+from amalthea_uros.perf.activities import Call, Chance, Communication, Count, Group, ProbabilitySwitch, Trigger
 from amalthea_uros.perf.constraints import Constraints, EventSynchronization, LatencyConstraint, LatencyKind
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.events import RunnableChange, RunnableEvent
@@ -184,8 +184,22 @@ class TestOrderWithinAJob:
         tasks = [("A", 10, [ticks(1), switch]), ("B", 10, [read("L"), ticks(1)])]
         chain, values, _, rules = evaluate(system(tasks, [at("A", START), at("B", END)]))
         assert "max_reaction_time" not in values
-        assert chain.reason == "jobs of 'A' can take a branch without the access or event of the chain"
+        assert chain.reason == "jobs of 'A' can end without the access or event of the chain"
         assert rules == ["CHN003"]
+
+    @pytest.mark.parametrize("times", [0.5, 1.5, Count(least=0, mean=1.0, most=2)])
+    def test_an_access_that_need_not_occur_gives_no_bound(self, times):
+        """Any number of jobs without an access can have an average of 1.5, too."""
+        tasks = [("A", 10, [ticks(1), replace(write("L"), times=times)]), ("B", 10, [read("L"), ticks(1)])]
+        chain, values, _, _ = evaluate(system(tasks, [at("A", START), at("B", END)]))
+        assert "max_reaction_time" not in values
+        assert chain.reason == "jobs of 'A' can end without the access or event of the chain"
+
+    @pytest.mark.parametrize("times", [None, 1.0, Count(least=1, mean=1.5, most=2)])
+    def test_an_access_that_always_occurs_gives_a_bound(self, times):
+        tasks = [("A", 10, [ticks(1), replace(write("L"), times=times)]), ("B", 10, [read("L"), ticks(1)])]
+        _, values, _, _ = evaluate(system(tasks, [at("A", START), at("B", END)]))
+        assert "max_reaction_time" in values
 
 
 class TestTimesUpToAnAccess:
