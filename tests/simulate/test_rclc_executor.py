@@ -1,7 +1,8 @@
 """Callbacks that an executor calls itself, as rclc does: in their order, with LET or ROS semantics, under trigger conditions."""
 
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from support import ROOT
 
@@ -121,7 +122,7 @@ def sample():
 
 
 @given(seed=st.integers(1, 10_000), mode=st.sampled_from(list(Mode)))
-@settings(max_examples=15, deadline=None)
+@examples(15)
 def test_no_bound_is_exceeded(sample, seed, mode):
     """Phases of messages and timers are independent of each other, and random."""
     system, bounds = sample
