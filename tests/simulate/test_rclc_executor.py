@@ -4,9 +4,9 @@ import pytest
 from effort import examples
 from hypothesis import given
 from hypothesis import strategies as st
-from support import ROOT
+from support import ROOT, analysis_of
 
-from amalthea_uros import analyze_system, describe
+from amalthea_uros import describe
 from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.results import ChainQuantity
@@ -117,8 +117,7 @@ def test_a_callback_that_is_not_due_takes_no_part_in_a_chain(described):
 
 @pytest.fixture(scope="module")
 def sample():
-    system = describe(SAMPLE).system
-    return system, analyze_system(system)
+    return describe(SAMPLE).system, analysis_of(SAMPLE)
 
 
 @given(seed=st.integers(1, 10_000), mode=st.sampled_from(list(Mode)))
