@@ -51,6 +51,7 @@ def assign(tasks, deadlines):
     return None if unfitting else [names.index(name) for name in order]
 
 
+@examples(30)
 @given(ROWS)
 def test_there_is_an_assignment_if_and_only_if_one_of_all_orders_is_one(rows):
     tasks = [
