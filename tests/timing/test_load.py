@@ -3,6 +3,7 @@
 from fractions import Fraction
 
 import pytest
+from effort import examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import MODEL, ROOT, SHARED, analysis_of, corpus, hand_written
@@ -245,6 +246,7 @@ def systems(draw):
     )
 
 
+@examples(30)
 @given(systems())
 def test_the_load_of_random_systems(system):
     model = build_model(system)
