@@ -4,7 +4,8 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from system_strategies import systems
 
@@ -483,7 +484,7 @@ def test_periodic_releases_and_a_server_are_no_exact_schedule():
     assert claims == {"T": "bound", "I": "bound"}
 
 
-@settings(max_examples=200)
+@examples(60)
 @given(systems(), st.sampled_from(Memory))
 def test_no_system_is_too_strange(system, memory):
     analysis = analyze_system(system, Settings(memory=memory))

@@ -4,7 +4,8 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from test_chain_systems import END, START, at, evaluate, read, system, ticks, write
 
@@ -100,7 +101,7 @@ class TestCounters:
 
     COUNTERS = st.builds(Counter, prescaler=st.integers(1, 5), offset=st.integers(0, 7))
 
-    @settings(max_examples=60)
+    @examples(60)
     @given(
         first=COUNTERS, then=COUNTERS, is_first_before=st.booleans(), communication=st.sampled_from(["implicit", "explicit"])
     )
