@@ -5,7 +5,6 @@ from __future__ import annotations
 import codecs
 import io
 import os
-import shutil
 import stat
 import sys
 from collections.abc import Collection, Iterator, Mapping
@@ -314,8 +313,10 @@ def _put(staged: Path, path: Path) -> None:
     if not _stays(target, staged):
         staged.replace(target)
         return
+    from shutil import copyfileobj
+
     with staged.open("rb") as new, target.open("r+b") as old:
-        shutil.copyfileobj(new, old)
+        copyfileobj(new, old)
         old.truncate()
         old.flush()
         os.fsync(old.fileno())
@@ -324,12 +325,14 @@ def _put(staged: Path, path: Path) -> None:
 
 def _copied(path: Path, undo: ExitStack) -> Path | None:
     """A copy beside a file, None if it does not exist."""
+    from shutil import copystat
+
     try:
         if not path.exists():
             return None
         copy = _beside(path, undo)
         _write_new(copy, path.read_bytes())
-        shutil.copystat(path, copy)
+        copystat(path, copy)
     except OSError as error:
         raise not_writable(path, error) from None
     return copy

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from importlib.resources import files
+from pathlib import Path
 
 from amalthea_uros.metamodel.factfile import Block, ClassFact, EnumFact, FeatureFact, Kind, NumberFact, blocks
+
+_FACTS = Path(__file__).with_name("facts")
 
 NAMESPACE_PREFIX = "http://app4mc.eclipse.org/amalthea/"
 
@@ -40,17 +42,14 @@ def version_key(version: str) -> tuple[int, ...]:
 
 @cache
 def _blocks() -> tuple[Block, ...]:
-    folder = files(__package__) / "facts"
-    names = sorted(entry.name for entry in folder.iterdir() if entry.name != "versions.txt")
-    return tuple(
-        block for name in names for block in blocks(name.removesuffix(".txt"), (folder / name).read_text(encoding="utf-8"))
-    )
+    paths = sorted(path for path in _FACTS.iterdir() if path.name != "versions.txt")
+    return tuple(block for path in paths for block in blocks(path.stem, path.read_text(encoding="utf-8")))
 
 
 @cache
 def known_versions() -> tuple[str, ...]:
     """Every version with facts, oldest first."""
-    return tuple((files(__package__) / "facts" / "versions.txt").read_text(encoding="utf-8").split())
+    return tuple((_FACTS / "versions.txt").read_text(encoding="utf-8").split())
 
 
 def supported_versions() -> tuple[str, ...]:

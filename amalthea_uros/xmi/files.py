@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import re
-import zipfile
-import zlib
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,15 +16,7 @@ from amalthea_uros.errors import ReadError, WriteError
 #: Name that EMF gives to the only entry of a zipped resource.
 ZIP_ENTRY = "ResourceContents"
 
-#: How the directory entry of a packed file begins. The bytes occur in packed data by chance, but not that often.
-_DIRECTORY_ENTRY, _MOST_ENTRIES = b"PK\x01\x02", 1000
-_UNPACK = "Unpack it and load the directory."
-#: How EMF compresses. Others unpack without a limit to what comes out at a time: a few bytes of bzip2 become a megabyte.
-_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _DECLARED = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
-
-#: What `zipfile` raises; an index error where an entry has no name.
-_DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, OSError, ValueError, IndexError)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,14 +85,20 @@ def not_writable(error: FileError) -> WriteError:
 def _data(content: FileText) -> bytes:
     # A character that the encoding lacks is written as a character reference of XML.
     data = files.encode(content.text, content.encoding, "xmlcharrefreplace")
-    return data if content.zip_entry is None else _zip(content.zip_entry, data)
+    if content.zip_entry is None:
+        return data
+    from amalthea_uros.xmi.archives import packed
+
+    return packed(content.zip_entry, data)
 
 
 def _read_text(path: Path, max_size: int) -> FileText:
     data = files.read_bytes(path, max_size)
     entry = None
     if data.startswith(b"PK\x03\x04"):
-        entry, data = _unzip(path, data, max_size)
+        from amalthea_uros.xmi.archives import unpacked
+
+        entry, data = unpacked(path, data, max_size)
     encoding = files.marked_encoding(data) or _declared_encoding(data)
     try:
         text = files.decode(data, encoding)
@@ -121,35 +116,6 @@ def _check_elements(path: Path, text: str, limit: int) -> None:
     # Comments count too, since they are kept.
     if text.count("<") - text.count("</") > limit:
         raise FileTooLargeError(path, f"the file has more than {limit:,} elements", ADVICE)
-
-
-def _unzip(path: Path, data: bytes, max_size: int) -> tuple[str, bytes]:
-    if data.count(_DIRECTORY_ENTRY) > _MOST_ENTRIES:
-        raise FileError(path, f"the archive contains more than {_MOST_ENTRIES:,} files, expected one", _UNPACK)
-    try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            entries = [info for info in archive.infolist() if not info.is_dir()]
-            if len(entries) != 1:
-                raise FileError(path, f"the archive contains {len(entries)} files, expected one", _UNPACK)
-            if entries[0].compress_type not in _METHODS:
-                reason = "the archive is compressed by a method that AMALTHEA tools do not use"
-                raise FileError(path, reason, "Compress it again with the method Deflate.")
-            with archive.open(entries[0]) as stream:
-                # Never trust the size that the archive declares: stop when too much has come out.
-                content = files.read_up_to(stream, max_size + 1)
-    except _DAMAGED as error:
-        raise FileError(path, f"the archive is damaged or not supported: {error}") from None
-    if len(content) > max_size:
-        raise files.larger(path, max_size, "the unpacked content")
-    return entries[0].filename, content
-
-
-def _zip(entry: str, data: bytes) -> bytes:
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        # A fixed date: the same model gives the same file.
-        archive.writestr(zipfile.ZipInfo(entry), data, zipfile.ZIP_DEFLATED)
-    return packed.getvalue()
 
 
 def _declared_encoding(data: bytes) -> str:
