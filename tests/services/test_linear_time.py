@@ -37,14 +37,30 @@ CONTENTS = {
     "equal names": lambda n: '<labels name="L"/>' * n,
     "wrong ids": lambda n: repeated('<labels name="L#" xmi:id="none#"/>', n),
 }
-CHECKED = ("dangling references in one list", "unknown attributes of many objects", "equal names")
+#: They add no rules to those that other contents fire.
+READ_ONLY = {"dangling references of one object", "wrong ids"}
+CHECKED = [name for name in CONTENTS if name not in READ_ONLY]
+FORMATTED = ("dangling references in one list", "unknown attributes of many objects")
 
 
-def files(folder, content):
-    """Models of the sizes."""
-    paths = [folder / f"{size}.amxmi" for size in SIZES]
+DESCRIPTION = "amuros: 1\nname: x\n"
+NODE = DESCRIPTION + "application: {nodes: [{name: n, timers: ["
+TIMER = "{name: t#, period: 10 ms, execution_time: 1 us}"
+#: Descriptions of a size.
+DESCRIPTIONS = {
+    "unknown keys": lambda n: DESCRIPTION + repeated("none#: 1\n", n),
+    "decimal commas": lambda n: f"{DESCRIPTION}hardware: {{cores: 1, {repeated('# ms', n, ', ')}}}\n",
+    "wrong values": lambda n: f"{NODE}{repeated('{name: t#, period: often, execution_time: 1 us}', n, ', ')}]}}]}}\n",
+    "equal names": lambda n: f"{NODE}{repeated(TIMER.replace('t#', 't'), n, ', ')}]}}]}}\n",
+    "many timers": lambda n: f"{NODE}{repeated(TIMER, n, ', ')}]}}]}}\n",
+}
+
+
+def files(folder, content, suffix=".amxmi"):
+    """Files of the sizes."""
+    paths = [folder / f"{size}{suffix}" for size in SIZES]
     for path, size in zip(paths, SIZES, strict=True):
-        path.write_text(f"{START}{content(size)}</swModel></am:Amalthea>\n")
+        path.write_text(f"{START}{content(size)}</swModel></am:Amalthea>\n" if suffix == ".amxmi" else content(size))
     return paths
 
 
@@ -58,6 +74,11 @@ def test_checking(name, tmp_path):
     assert growth(lambda path: check_files([path]), files(tmp_path, CONTENTS[name])) < 2.5
 
 
-@pytest.mark.parametrize("name", CHECKED)
+@pytest.mark.parametrize("name", FORMATTED)
 def test_formatting(name, tmp_path):
     assert growth(lambda path: format_files([path]), files(tmp_path, CONTENTS[name])) < 2.5
+
+
+@pytest.mark.parametrize("name", DESCRIPTIONS)
+def test_checking_descriptions(name, tmp_path):
+    assert growth(lambda path: check_files([path]), files(tmp_path, DESCRIPTIONS[name], ".yaml")) < 2.5
