@@ -3,6 +3,7 @@
 import pytest
 
 from amalthea_uros import load
+from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.check import check_files
 from amalthea_uros.services.format import format_files
 from tests.growth import SIZES, growth
@@ -72,6 +73,32 @@ def test_reading(name, tmp_path):
 @pytest.mark.parametrize("name", CHECKED)
 def test_checking(name, tmp_path):
     assert growth(lambda path: check_files([path]), files(tmp_path, CONTENTS[name])) < 2.5
+
+
+def system(count):
+    """The rest of a model: each task on a core of its own."""
+    schedulers = repeated('<taskSchedulers name="S#"/>', count)
+    modules = '<modules xsi:type="am:ProcessingUnit" name="C#" definition="D?type=ProcessingUnitDefinition"/>'
+    allocation = (
+        '<schedulerAllocation scheduler="S#?type=TaskScheduler" responsibility="C#?type=ProcessingUnit"/>'
+        '<taskAllocation task="T#?type=Task" scheduler="S#?type=TaskScheduler"/>'
+    )
+    return (
+        repeated('<tasks name="T#" stimuli="P?type=PeriodicStimulus"><activityGraph/></tasks>', count)
+        + '</swModel><hwModel><definitions xsi:type="am:ProcessingUnitDefinition" name="D"/>'
+        f'<structures name="E">{repeated(modules, count)}</structures></hwModel>'
+        f'<osModel><operatingSystems name="O">{schedulers}</operatingSystems></osModel>'
+        '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="P">'
+        '<recurrence value="10" unit="ms"/></stimuli></stimuliModel>'
+        f"<mappingModel>{repeated(allocation, count)}</mappingModel><swModel>"
+    )
+
+
+@pytest.mark.parametrize(
+    "action", [lambda path: check_files([path]), lambda path: analyze_files([path])], ids=["check", "analyze"]
+)
+def test_many_cores(action, tmp_path):
+    assert growth(action, files(tmp_path, system)) < 2.5
 
 
 @pytest.mark.parametrize("name", FORMATTED)
