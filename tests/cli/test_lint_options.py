@@ -182,19 +182,11 @@ def test_junit_has_a_case_for_each_rule_that_was_checked(amuros, two_tasks, tmp_
     assert [case.get("name") for case in ElementTree.fromstring(run.stdout).iter("testcase")] == ["XMI001"]
 
 
-def test_sarif_links_rules_to_the_documentation_that_the_package_states(amuros, two_tasks, monkeypatch):
-    def rules():
-        run = json.loads(amuros("check", two_tasks, "--select", "TIM-STIMULUS", "--output", "sarif").stdout)["runs"][0]
-        return run["tool"]["driver"]["rules"]
-
-    stated = metadata("amuros")
-    assert "Documentation" not in str(stated.get_all("Project-URL"))
-    # An address that does not exist would be worse than none.
-    assert all("helpUri" not in rule for rule in rules())
-    stated["Project-URL"] = "Documentation, https://example.org/docs"
-    monkeypatch.setattr(sarif, "metadata", lambda _name: stated)
-    (rule,) = rules()
-    assert rule["helpUri"] == "https://example.org/docs/check.md#TIM-STIMULUS"
+def test_sarif_links_rules_to_the_documentation_that_the_package_states(amuros, two_tasks):
+    run = json.loads(amuros("check", two_tasks, "--select", "TIM-STIMULUS", "--output", "sarif").stdout)["runs"][0]
+    assert metadata("amuros").get_all("Project-URL") == [f"Documentation, {sarif.DOCUMENTATION}"]
+    (rule,) = run["tool"]["driver"]["rules"]
+    assert rule["helpUri"] == f"{sarif.DOCUMENTATION}#TIM-STIMULUS"
 
 
 ITEA = "http://www.amalthea.itea2.org/model/1.3.0/sw"

@@ -79,7 +79,7 @@ def test_no_text_of_a_model_is_markup_in_the_report(tmp_path):
     assert len(rows) == 2
     for row in rows:
         assert row.endswith(" |")
-        assert r"a b\|c\<b\>\_x_y\_ \_\_z \`k\` \&lt;  R \~\~s\~\~ \*s\* \[l\](u)" in row
+        assert r"a\nb\|c\<b\>\_x_y\_ \_\_z \`k\` \&lt; \rR \~\~s\~\~ \*s\* \[l\](u) \u2028\\" in row
         assert len(re.findall(r"(?<!\\)\|", row)) == (5 if "Amalthea" in row else 6)
 
 

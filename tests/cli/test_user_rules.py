@@ -89,7 +89,7 @@ def test_a_file_that_is_broken(text, place, message, model, tmp_path):
 
 
 def test_a_file_that_is_not_there(tmp_path):
-    with pytest.raises(ReadError, match="RUL001 error: the rules cannot be read"):
+    with pytest.raises(ReadError, match="RUL001 error: file not found"):
         rules_of_file(tmp_path / "none.py")
 
 

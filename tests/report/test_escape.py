@@ -34,6 +34,7 @@ def result(name):
         presentation=present([finding], set()),
         fail_on=Severity.ERROR,
         is_readable=True,
+        rules=(),
     )
 
 

@@ -2,7 +2,6 @@
 
 import os
 import signal
-from pathlib import Path
 from random import Random
 
 import pytest
@@ -12,8 +11,6 @@ from fuzzing.shrinking import minimal, shrunk
 from support import ROOT
 
 HOSTILE = ROOT / "tests" / "hostile"
-#: Files that still break a command; one that no longer does moves up one folder.
-UNSOLVED = sorted((HOSTILE / "unsolved").iterdir())
 
 
 class TestCases:
@@ -84,14 +81,7 @@ class TestSandbox:
         assert failure.reason.startswith("MemoryError")
 
 
-@pytest.mark.parametrize(
-    "path",
-    [
-        *sorted(filter(Path.is_file, HOSTILE.iterdir())),
-        *(pytest.param(path, marks=pytest.mark.xfail(strict=False)) for path in UNSOLVED),
-    ],
-    ids=lambda path: path.name,
-)
+@pytest.mark.parametrize("path", sorted(HOSTILE.iterdir()), ids=lambda path: path.name)
 def test_no_hostile_file_breaks_a_command(path, tmp_path):
     for invariant in invariants.invariants_of(path):
         folder = tmp_path / invariant.__name__

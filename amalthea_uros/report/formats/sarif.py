@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from functools import cache
-from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -22,6 +21,9 @@ if TYPE_CHECKING:
 
 RENDERS = ("CheckResult",)
 
+#: Where the product is documented, as in the metadata of the package; addresses must be absolute (SARIF 2.1.0, 3.49.12).
+DOCUMENTATION = "https://pypi.org/project/amuros/"
+
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 
 #: The base of relative paths; viewers replace it by the root of the repository.
@@ -32,11 +34,10 @@ def write(result: CheckResult, stream: IO[str]) -> None:
     """Write one run, with the rules that fired and where."""
     entries = result.presentation.entries()
     used = sorted({entry.finding.rule for entry in entries})
-    base = documentation()
     artifact = cache(_artifact)  # Thousands of findings may be in one file.
-    driver = {"name": "amuros", "version": __version__, **({"informationUri": base} if base else {})}
+    driver = {"name": "amuros", "version": __version__, "informationUri": DOCUMENTATION}
     run = {
-        "tool": {"driver": {**driver, "rules": [_rule(rule, base) for rule in used]}},
+        "tool": {"driver": {**driver, "rules": [_rule(rule) for rule in used]}},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {_ROOT: {"uri": Path.cwd().as_uri() + "/"}},
         "results": [_result(entry, used.index(entry.finding.rule), artifact) for entry in entries],
@@ -45,33 +46,18 @@ def write(result: CheckResult, stream: IO[str]) -> None:
     write_json(log, stream)
 
 
-def documentation() -> str | None:
-    """The address of the pages in `docs/` that the metadata of the package states as its documentation; None if there is none.
-
-    The addresses of rules must be absolute (SARIF 2.1.0, 3.49.12), so that paths in the repository are of no use.
-    """
-    try:
-        stated = metadata("amuros").get_all("Project-URL") or []
-    except PackageNotFoundError:
-        return None
-    addresses = dict(url.split(", ", 1) for url in stated)
-    return f"{addresses['Documentation'].rstrip('/')}/" if "Documentation" in addresses else None
-
-
-def _rule(identifier: str, base: str | None) -> dict[str, Any]:
+def _rule(identifier: str) -> dict[str, Any]:
     from amalthea_uros.validate import registry
-    from amalthea_uros.validate.rule import Rule
 
     kind = registry.kind(identifier)
     if kind is None:
         return {"id": identifier}
-    page = "check.md" if isinstance(kind, Rule) else "findings.md"
     return {
         "id": kind.id,
         "shortDescription": {"text": kind.title},
         "fullDescription": {"text": kind.rationale},
         "help": {"text": f"{kind.remedy} `amuros explain {identifier}` shows more."},
-        **({"helpUri": f"{base}{page}#{quote(identifier)}"} if base else {}),
+        "helpUri": f"{DOCUMENTATION}#{quote(identifier)}",
         "defaultConfiguration": {"level": _LEVELS[kind.severity]},
         "properties": {"tags": [profile_name(identifier)]},
     }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from amalthea_uros.report.escape import visible
+
 #: Advance widths in parts of the font size, for characters up to that width. They are those of DejaVu Sans, rounded up: it is the
 #: widest of the fonts that are usual on screens.
 _CLASSES = {
@@ -19,11 +21,12 @@ ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 
 def text_width(content: str, size: float, *, is_bold: bool = False) -> float:
     """The most pixels that a text takes in a font of a size."""
-    return sum(_WIDTHS.get(character, _WIDEST) for character in content) * size * (_BOLD if is_bold else 1)
+    return sum(_WIDTHS.get(character, _WIDEST) for character in visible(content)) * size * (_BOLD if is_bold else 1)
 
 
 def elided(content: str, size: float, room: float, *, is_bold: bool = False) -> str:
     """The text, without its middle if it does not fit: names often differ at their ends only."""
+    content = visible(content)
     if text_width(content, size, is_bold=is_bold) <= room:
         return content
     for kept in range(len(content) - 1, 0, -1):

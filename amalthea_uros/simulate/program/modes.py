@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -25,6 +26,7 @@ from amalthea_uros.simulate.layout import (
     LITERALS,
     MODE_SIZE,
     MODE_VALUE,
+    NEVER,
     RELATION,
     RIGHT_CONSTANT,
     RIGHT_VALUE,
@@ -40,6 +42,7 @@ _RELATIONS = {
     Relation.GREATER: conditions.GREATER,
     Relation.GREATER_OR_EQUAL: conditions.GREATER_OR_EQUAL,
 }
+_WHOLE_NUMBER = re.compile(r"[+-]?\d{1,19}", re.ASCII)
 #: A literal that no enumeration has.
 _NO_LITERAL = -1
 
@@ -51,6 +54,7 @@ class Modes:
     Attributes
     ----------
     known : values of mode labels that do not change
+    _unset : why the values of mode labels are not known at first
     """
 
     system: System
@@ -59,7 +63,7 @@ class Modes:
     labels: dict[str, int] = field(default_factory=dict)
     channels: dict[str, int] = field(default_factory=dict)
     _literals: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    _unset: set[str] = field(default_factory=set)
+    _unset: dict[str, str] = field(default_factory=dict)
     _conditions: dict[Condition, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -75,9 +79,12 @@ class Modes:
         value = self.known.get(label.name, label.initial)
         fields = {LITERALS: len(self._literals[label.name]), IS_CONSTANT: int(label.name in self.known)}
         if value is None:
-            self._unset.add(label.name)
+            self._unset[label.name] = "no initial value"
         else:
-            fields[MODE_VALUE] = self.value(label.name, value)
+            try:
+                fields[MODE_VALUE] = self.value(label.name, value)
+            except NotSimulatedError:
+                self._unset[label.name] = f"the initial value {value!r}, which is no whole number, or too large"
         return self.image.record(MODE_SIZE, fields)
 
     def label(self, name: str) -> int:
@@ -97,10 +104,9 @@ class Modes:
         literals = self._literals.get(label, ())
         if literals:
             return literals.index(text) if text in literals else _NO_LITERAL
-        try:
-            return int(text)
-        except ValueError:
-            raise NotSimulatedError(f"the value {text!r} of the mode label {label!r} is not a whole number") from None
+        if _WHOLE_NUMBER.fullmatch(text) is None or abs(int(text)) >= NEVER:
+            raise NotSimulatedError(f"the value {text!r} of the mode label {label!r} is no whole number, or too large")
+        return int(text)
 
     def condition(self, condition: Condition) -> int:
         """The place of a condition."""
@@ -139,7 +145,7 @@ class Modes:
     def _compared(self, label: str, relation: Relation) -> int:
         place = self.label(label)
         if label in self._unset:
-            raise NotSimulatedError(f"the mode label {label!r}, on which a condition depends, has no initial value")
+            raise NotSimulatedError(f"the mode label {label!r}, on which a condition depends, has {self._unset[label]}")
         if self._literals[label] and relation not in (Relation.EQUAL, Relation.NOT_EQUAL):
             raise NotSimulatedError(f"the literals of the mode label {label!r} have no order, but are compared by {relation}")
         return place + MODE_VALUE
