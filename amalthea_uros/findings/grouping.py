@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, insort
 from collections import defaultdict
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,6 +16,9 @@ from amalthea_uros.findings.naming import likeness, names_in, names_of_events
 
 #: Findings whose object is not the qualified name of an object of the model.
 _WITHOUT_OBJECT = ("XSD001",)
+
+#: How many kinds of findings at a place are compared with another one; more than this is no model that somebody wrote.
+_SEARCHED = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,47 +118,100 @@ def _group(members: Iterable[_Item], effects: Iterable[_Item]) -> Group:
     return Group(same, tuple(item.finding for item in sorted(effects, key=lambda item: item.position)))
 
 
+class _Alike(NamedTuple):
+    """What findings have in common that a search cannot tell apart, unless by their lines."""
+
+    place: Hashable
+    object: str
+    names: frozenset[str]
+
+
+#: A line, the position of a finding, and the findings that belong together with it.
+_Entry = tuple[int, int, list[_Item]]
+
+
+#: The part of the names that is the same, the distance in lines as a negative number, and whether the object fits exactly.
+_Nearness = tuple[float, int, bool]
+_NEAREST: _Nearness = (1.0, 0, True)
+
+
 class _Index:
-    """Finds what may belong to a finding: what is reported at the same place, about the same object or name."""
+    """Finds what may belong to a finding: what is reported at the same place, about the same object or name.
+
+    A file may have thousands of flaws at one place, e.g. all in one line; no search looks at all of them.
+    """
 
     def __init__(self, in_file: bool, same_name: bool, of_events: bool = False) -> None:
         self.in_file = in_file
         self.same_name = same_name
         self.of_events = of_events
-        self._found: dict[Hashable, list[list[_Item]]] = defaultdict(list)
+        self._entries: dict[_Alike, list[_Entry]] = {}
+        self._found: dict[Hashable, dict[_Alike, None]] = defaultdict(dict)
 
     def add(self, cluster: list[_Item]) -> None:
         """Add findings that belong together, to be found by the first of them."""
         item = cluster[0]
-        keys = self._names(item) if self.same_name else (item.object, None)
-        for key in keys:
-            self._found[item.place(self.in_file), key].append(cluster)
+        alike = self._alike(item)
+        if alike not in self._entries:
+            self._entries[alike] = []
+            for key in self._keys(alike, (alike.object, None)):
+                self._found[key][alike] = None
+        insort(self._entries[alike], (item.line, item.position, cluster))
 
-    def near(self, item: _Item) -> list[list[_Item]]:
-        """The findings that may belong to another one, the most similar ones first."""
-        place = item.place(self.in_file)
-        keys: Iterable[Hashable] = (None,) if self.in_file or not item.object else (item.object, "")
-        if self.same_name:
-            keys = self._names(item)
-        found = {id(cluster): cluster for key in keys for cluster in self._found.get((place, key), ())}
-        fitting = (cluster for cluster in found.values() if self._fits(cluster[0], item))
-        return sorted(fitting, key=lambda cluster: self._closeness(cluster[0], item), reverse=True)
+    def nearest(self, item: _Item) -> list[_Item] | None:
+        """The findings that are the most similar ones to another one, if any may belong to it."""
+        best = self._best(item)
+        return self._entries[best[0]][best[1]][-1] if best else None
 
-    def _names(self, item: _Item) -> frozenset[str]:
-        names = names_in(item.finding)
-        return names_of_events(names) if self.of_events else names
+    def take(self, item: _Item) -> list[_Item] | None:
+        """The same findings, which are not found again until they are added again."""
+        best = self._best(item)
+        if best is None:
+            return None
+        alike, index = best
+        *_, cluster = self._entries[alike].pop(index)
+        if not self._entries[alike]:
+            del self._entries[alike]
+            for key in self._keys(alike, (alike.object, None)):
+                del self._found[key][alike]
+        return cluster
 
-    def _fits(self, one: _Item, other: _Item) -> bool:
-        if self.in_file:
-            return not self.same_name or self._likeness(one, other) == 1
-        return "" in (one.object, other.object) or one.object == other.object
+    def _alike(self, item: _Item) -> _Alike:
+        return _Alike(item.place(self.in_file), item.object, names_in(item.finding))
 
-    def _closeness(self, one: _Item, other: _Item) -> tuple[float, int]:
-        """How much two findings have in common: names, then lines."""
-        return self._likeness(one, other), -abs(one.line - other.line)
+    def _keys(self, alike: _Alike, objects: Iterable[str | None]) -> list[Hashable]:
+        """What findings are found by: their place, object (None: of any object) and each name (None: of any name)."""
+        names: frozenset[str | None] = names_of_events(alike.names) if self.of_events else alike.names
+        names = names if self.same_name else names | {None}
+        return [(alike.place, name, about) for about in objects for name in names]
 
-    def _likeness(self, one: _Item, other: _Item) -> float:
-        return likeness(names_in(one.finding), names_in(other.finding), self.of_events)
+    def _best(self, item: _Item) -> tuple[_Alike, int] | None:
+        """Where the findings are that are nearest to another one; of several the first ones."""
+        best = max(self._near(item), key=lambda near: near[:2], default=None)
+        return best[2:] if best else None
+
+    def _near(self, item: _Item) -> Iterator[tuple[_Nearness, int, _Alike, int]]:
+        """What may belong to a finding, and how near it is; no more once nothing can be nearer."""
+        own = self._alike(item)
+        keys = self._keys(own, (None,) if self.in_file or not item.object else (item.object, ""))
+        # What few findings name says most.
+        keys.sort(key=lambda key: len(self._found.get(key, ())))
+        for alike in islice(chain.from_iterable(self._found.get(key, ()) for key in keys), _SEARCHED):
+            common = likeness(alike.names, own.names, self.of_events)
+            if self.in_file and self.same_name and common < 1:
+                continue
+            distance, position, index = _nearest_line(self._entries[alike], item.line)
+            nearness = (common, -distance, self.in_file or alike.object == own.object)
+            yield nearness, -position, alike, index
+            if nearness == _NEAREST:
+                return
+
+
+def _nearest_line(entries: Sequence[_Entry], line: int) -> tuple[int, int, int]:
+    """Distance, position and index of the entry that is nearest to a line, of several the first one."""
+    after = bisect_left(entries, (line,))
+    before = bisect_left(entries, entries[after - 1][:1]) if after else 0
+    return min((abs(entries[i][0] - line), entries[i][1], i) for i in {before, after} if i < len(entries))
 
 
 def _clusters(flaw: Flaw, by_id: _ById) -> list[list[_Item]]:
@@ -163,17 +221,19 @@ def _clusters(flaw: Flaw, by_id: _ById) -> list[list[_Item]]:
     index = _Index(flaw.in_file, flaw.same_name, flaw.of_events)
     clusters: list[list[_Item]] = []
     for source in flaw.sources:
-        fresh = []
-        for item in _of(source, by_id):
-            cluster = next((near for near in index.near(item) if near[-1].finding.rule != source.id), None)
-            if cluster is not None:
-                cluster.append(item)
-            else:
-                fresh.append([item])
-        for cluster in fresh:
+        reported = [_with(index.take(item), item) for item in _of(source, by_id)]
+        for cluster in reported:
             index.add(cluster)
-        clusters += fresh
+        clusters += (cluster for cluster in reported if len(cluster) == 1)
     return clusters
+
+
+def _with(cluster: list[_Item] | None, item: _Item) -> list[_Item]:
+    """The findings of a flaw with another one."""
+    if cluster is None:
+        return [item]
+    cluster.append(item)
+    return cluster
 
 
 def _of(source: Source, by_id: _ById) -> Iterator[_Item]:
@@ -204,9 +264,9 @@ def _caused(consequence: Consequence, by_id: _ById) -> Iterator[tuple[_Item, _It
     for source in consequence.effects:
         for item in _of(source, by_id):
             is_explained = not explained.isdisjoint((item.file, name) for name in names_in(item.finding))
-            near = [] if is_explained else index.near(item)
-            if near:
-                yield item, near[0][0]
+            near = None if is_explained else index.nearest(item)
+            if near is not None:
+                yield item, near[0]
 
 
 def _root(causes: Mapping[int, int], flaw: int) -> int:

@@ -95,11 +95,16 @@ class ContainmentList(ReferenceList[E]):
         for value in values:
             self.append(value)
 
-    def place_of(self, value: E) -> int | None:
-        """The index of a part; None if it is not one. Asking for all parts takes time in proportion to their number."""
+    def known_place(self, value: E) -> int | None:
+        """The index of a part if it is known from before; that takes no time."""
         # The reader makes lists without their constructor, so that there are no places at first.
         place = getattr(self, "_places", _NO_PLACES).get(value)
-        if place is None or place >= len(self) or self[place] is not value:
+        return place if place is not None and place < len(self) and self[place] is value else None
+
+    def place_of(self, value: E) -> int | None:
+        """The index of a part; None if it is not one. Asking for all parts takes time in proportion to their number."""
+        place = self.known_place(value)
+        if place is None:
             self._places = {part: index for index, part in enumerate(self)}
             place = self._places.get(value)
         return place

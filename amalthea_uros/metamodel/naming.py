@@ -28,6 +28,7 @@ from amalthea_uros.metamodel.classes.sw import (
     RunnableCall,
     RunnableParameter,
 )
+from amalthea_uros.metamodel.containment import ContainmentList
 from amalthea_uros.metamodel.element import Element
 
 NO_NAME = "no-name"
@@ -107,12 +108,18 @@ def place(element: Element) -> str:
 def _step(holder: Element, part: Element) -> str:
     from amalthea_uros.metamodel.features import containments_of
 
+    lists: list[tuple[str, ContainmentList[Element]]] = []
     for feature in containments_of(type(holder)):
         held = holder.__dict__.get(feature.name)
         if held is part:
             return feature.xml_name
-        if feature.many and held and (index := held.place_of(part)) is not None:
-            return f"{feature.xml_name}[{index}]"
+        if feature.many and held:
+            lists.append((feature.xml_name, held))
+    # No list is looked through again as long as another one knows the part.
+    for find in (ContainmentList.known_place, ContainmentList.place_of):
+        for name, parts in lists:
+            if (index := find(parts, part)) is not None:
+                return f"{name}[{index}]"
     raise ValueError(f"{part!r} is not a part of {holder!r}")
 
 

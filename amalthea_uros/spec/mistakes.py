@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -100,17 +100,15 @@ def intended_word(mistake: Mistake, similarity: float = _SIMILAR) -> str | None:
 
 def without_consequences(mistakes: list[Mistake]) -> list[Mistake]:
     """The mistakes without those in the number before a decimal comma, of which the rest is an unknown key."""
-    cut_off = [
-        _before(mistake) for mistake in mistakes if mistake.kind == "extra_forbidden" and _AFTER_COMMA.fullmatch(mistake.key)
-    ]
-    return [mistake for mistake in mistakes if not any(mistake.path[-1] is node for node in cut_off)]
+    rests = [mistake for mistake in mistakes if mistake.kind == "extra_forbidden" and _AFTER_COMMA.fullmatch(mistake.key)]
+    holders = {id(holder): holder for holder in (mistake.path[-2] for mistake in rests) if isinstance(holder, Mapping)}
+    cut_off = _before({id(mistake.path[-1]) for mistake in rests}, holders.values())
+    return [mistake for mistake in mistakes if id(mistake.path[-1]) not in cut_off]
 
 
-def _before(mistake: Mistake) -> Node | None:
-    """The value before an unknown key."""
-    holder, unknown = mistake.path[-2:]
-    values = list(holder.items.values()) if isinstance(holder, Mapping) else []
-    return next((value for value, following in pairwise(values) if following is unknown), None)
+def _before(nodes: set[int], holders: Iterable[Mapping]) -> set[int]:
+    """The values before some others in mappings, all by their ids: nodes that look the same are different ones."""
+    return {id(value) for holder in holders for value, following in pairwise(holder.items.values()) if id(following) in nodes}
 
 
 def _path(loc: tuple[int | str, ...], node: Node) -> Iterator[Node]:

@@ -32,7 +32,7 @@ def repair(mistakes: Iterable[Mistake], kind: type[Section]) -> set[Place] | Non
 def _repair(mistake: Mistake, holder: Mapping, kind: type[Section]) -> bool:
     """Repair a mistake in the mapping that it is in, unless that would be a guess."""
     value = mistake.path[-1]
-    key = next((key for key, item in holder.items.items() if item is value), None)
+    key = next((part for part in map(str, reversed(mistake.details["loc"])) if holder.items.get(part) is value), None)
     if key is None:
         return True  # It is also in the place of an alias, where it was repaired.
     if mistake.kind == "extra_forbidden":

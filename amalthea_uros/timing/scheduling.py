@@ -7,9 +7,11 @@ Processes below a server share its budget.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from functools import partial
 
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import SERVERS, Duration, Parameter, ParameterValue, Policy, Scheduler
@@ -164,6 +166,8 @@ class Scheduling:
     notes: Notes
     limits: Mapping[str, Time] = field(default_factory=dict)
     servers: dict[str, Server] = field(default_factory=dict)
+    _served: Counter[str] = field(init=False, default_factory=Counter)
+    _roots_of: defaultdict[str, list[str]] = field(init=False, default_factory=partial(defaultdict, list))
 
     def task(self, allocation: TaskAllocation) -> ScheduledProcess:
         """The scheduling of a task.
@@ -233,15 +237,21 @@ class Scheduling:
 
     def _serves_one(self, scheduler: Scheduler) -> bool:
         """Whether a scheduler decides for a single task or scheduler; groupings decide nothing."""
-        children = [
-            other.name
+        if not self._served:
+            self._served = Counter(self._deciders())
+        return self._served[scheduler.name] == 1
+
+    def _deciders(self) -> Iterator[str]:
+        """The schedulers that decide for each task, and for each scheduler that decides something itself."""
+        below = [
+            other.parent.scheduler
             for other in self.system.schedulers.values()
-            if other.parent is not None
-            and standard_policy(other.policy) != Policy.GROUPING
-            and _decides(scheduler, other.parent.scheduler, self.system)
+            if other.parent is not None and standard_policy(other.policy) != Policy.GROUPING
         ]
-        tasks = [task.task for task in self.system.mapping.tasks if _decides(scheduler, task.scheduler, self.system)]
-        return len(children) + len(tasks) == 1
+        for name in (*below, *(task.scheduler for task in self.system.mapping.tasks)):
+            deciding = deciding_scheduler(name, self.system)
+            if deciding is not None:
+                yield deciding.name
 
     def _policy(self, scheduler: Scheduler) -> str | None:
         """The standard name of the policy of a scheduler."""
@@ -325,13 +335,20 @@ class Scheduling:
             reason = _no_single_core(scheduler, served, wanted, cores)
             self.notes.warning("ANA002", f"tasks of the scheduler {scheduler.name!r} are not analysed: {reason}", scheduler)
             raise NotSchedulableError(reason)
-        roots = [s.name for s in self.system.schedulers.values() if s.parent is None and cores[0] in s.cores]
-        others = [name for name in roots if name != root.name]
+        others = [name for name in self._roots().get(cores[0], ()) if name != root.name]
         if others:
             message = f"the core {cores[0]!r} is shared by the schedulers {root.name!r} and {others[0]!r}"
             self.notes.warning("ANA002", message, scheduler)
             raise NotSchedulableError(f"its core {cores[0]!r} is shared by the schedulers {root.name!r} and {others[0]!r}")
         return cores[0]
+
+    def _roots(self) -> Mapping[str, Sequence[str]]:
+        """The schedulers of each core that are below no other one; asked for each task, and so found once."""
+        if not self._roots_of:
+            for scheduler in self.system.schedulers.values():
+                for core in dict.fromkeys(scheduler.cores) if scheduler.parent is None else ():
+                    self._roots_of[core].append(scheduler.name)
+        return self._roots_of
 
     def isr(self, name: str, controller_name: str, priority: int | None) -> ScheduledProcess:
         """The scheduling of an interrupt service routine; raises as `task`."""
@@ -392,11 +409,6 @@ def _rate_monotonic(scheduler: Scheduler, parameters: _Parameters, base: Schedul
 
 def _earliest_deadline_first(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
     return replace(base, equal_priority=EqualPriority.EDF, deadline=parameters.required(parameters.deadline, "deadline"))
-
-
-def _decides(scheduler: Scheduler, below: str, system: System) -> bool:
-    deciding = deciding_scheduler(below, system)
-    return deciding is not None and deciding.name == scheduler.name
 
 
 #: The policies for which what they serve needs a priority.

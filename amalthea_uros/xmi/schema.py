@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 #: Further problems are only counted.
 MAX_PROBLEMS = 100
 
+#: No class has so many attributes; for each error in some, xmlschema formats all attributes of the element.
+_MANY_ATTRIBUTES = 100
+
 #: A reason and advice, and the element concerned; texts and paths are made only for the problems that are reported.
 _Text = tuple[str, str | None]
 _Finding = tuple[etree._Element, Callable[[], _Text]]
@@ -95,18 +98,29 @@ def validate(data: bytes, version: str) -> list[SchemaProblem]:
     NoSchemaError : if there is no schema of the version.
     """
     schema = _schema(version)
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
     try:
-        root = etree.fromstring(data, parser)
+        root, is_valid = _parsed(data, schema)
     except etree.XMLSyntaxError as error:
         line, column = error.position
         return [SchemaProblem(line, column, "/", "not well-formed XML: " + error.msg.split(", line ")[0])]
     if entities := list(_entities(root)):
         return _sorted_problems(entities)
-    _drop_locations(root)
-    if schema.validate(root):
+    if is_valid:
         return []
-    return _sorted_problems(_Diagnosis(root, facts(version)).findings()) or _plain(schema)
+    _drop_locations(root)
+    return _sorted_problems(_Diagnosis(root, facts(version)).findings()) or _plain(root, schema)
+
+
+def _parsed(data: bytes, schema: etree.XMLSchema) -> tuple[etree._Element, bool]:
+    """The tree of a file, and whether it is valid.
+
+    It is validated while it is parsed: of a whole tree, lxml makes a path for each error, and counts all siblings for it.
+    """
+    parser = partial(etree.XMLParser, resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
+    try:
+        return etree.fromstring(data, parser(schema=schema)), True
+    except etree.XMLSyntaxError:
+        return etree.fromstring(data, parser()), False
 
 
 @cache
@@ -156,8 +170,9 @@ def _drop_locations(root: etree._Element) -> None:
                 del element.attrib[name]
 
 
-def _plain(schema: etree.XMLSchema) -> list[SchemaProblem]:
+def _plain(root: etree._Element, schema: etree.XMLSchema) -> list[SchemaProblem]:
     """The problems in the words of the validator."""
+    schema.validate(root)
     errors = cast("Iterable[etree._LogEntry]", schema.error_log)
     return [SchemaProblem(e.line, None, e.path or "/", re.sub(r"\{.*?\}", "", e.message)) for e in errors]
 
@@ -201,13 +216,14 @@ class _Diagnosis:
         if self.root.tag != f"{{{self.declared.namespace}}}Amalthea":
             return [(self.root, self._wrong_root)]
         found = list(self._unknown_classes())
+        surplus = list(self._surplus_attributes())
         for error in _diagnosing_schema(self.declared.version).iter_errors(self.root):
             element = cast("etree._Element", error.invalid_child if error.invalid_tag else error.elem)
             if not self._hidden(element) and not _repeats(error):
                 found.append((element, partial(self._text, element, error)))
                 if _is_of_class(error):
                     self.opaque.add(element)
-        return found
+        return found + [(element, words) for element, words in surplus if not self._hidden(element)]
 
     def _hidden(self, element: etree._Element) -> bool:
         return bool(self.opaque) and (element in self.opaque or any(e in self.opaque for e in element.iterancestors()))
@@ -239,6 +255,20 @@ class _Diagnosis:
 
     def _unknown_class(self, element: etree._Element, name: str, reason: str) -> _Text:
         return reason, self._class_advice(element, name)
+
+    def _surplus_attributes(self) -> Iterator[_Finding]:
+        """The unknown ones of a great many attributes of an element; they are removed."""
+        for element in self.root.iter("*"):
+            if len(element.attrib) <= _MANY_ATTRIBUTES:
+                continue
+            known = {*self._names(self._class_of(element), Kind.ATTRIBUTE, Kind.REFERENCE)}
+            is_known = element is self.root or self._feature(element) is not None
+            for name in map(str, element.attrib):
+                if name in known or name.startswith((_XMI, _XSI)):
+                    continue
+                del element.attrib[name]
+                if is_known:
+                    yield element, partial(self._unknown_attribute, element, name)
 
     def _class_advice(self, element: etree._Element, name: str) -> str | None:
         expected = self._declared_class(element)

@@ -11,6 +11,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.findings.flaws import CONSEQUENCES, FLAWS
 from amalthea_uros.findings.grouping import group
 from amalthea_uros.validate import registry
+from tests.growth import SIZES, growth
 
 ERROR, WARNING, INFO = Severity.ERROR, Severity.WARNING, Severity.INFO
 REQUIRED = "AM-EMF-INTRINSIC/required-feature"
@@ -164,3 +165,46 @@ def test_nothing_is_lost_and_nothing_is_shown_twice(findings):
 def test_files_in_one_line_are_grouped_in_reasonable_time():
     findings = [finding(rule, name=f"C{i}") for i in range(20_000) for rule in ("TIM-CLOCK", "INC-HW-PU-CLOCK")]
     assert len(group(findings)) == 20_000
+
+
+#: Findings of a size in one file, most of them at one place.
+AT_ONE_PLACE = {
+    "equal objects": lambda n: [finding(rule) for rule in ("AM-EMF-INTRINSIC/unique-id", "INC-IO-NAME") for _ in range(n)],
+    "one name at many objects": lambda n: [
+        finding(rule, "x refers to 'None?type=Task'", f"T{i}") for rule in (PROXY, "INC-IO-REF") for i in range(n)
+    ],
+    "many names, and one that all have": lambda n: [
+        finding(rule, f"'L' has no attribute 'a{i}'") for rule in ("XSD001", "XMI010") for i in range(n)
+    ],
+    "objects that only some know": lambda n: [
+        finding(rule, name=name and f"{name}{i}")
+        for rule, name in [("TIM-CLOCK", "C"), ("INC-HW-PU-CLOCK", "")]
+        for i in range(n)
+    ],
+    "effects of any of many causes": lambda n: [finding(rule, line=i) for rule in ("EMF-ID", "XMI022") for i in range(n)],
+    "effects of causes with names": lambda n: [
+        finding(rule, f"the id 'i{i}'", line=i) for rule in ("EMF-ID", "XMI022") for i in range(n)
+    ],
+}
+
+
+@pytest.mark.parametrize("name", AT_ONE_PLACE)
+def test_steps_grow_with_the_number_of_findings(name):
+    assert growth(group, [AT_ONE_PLACE[name](size) for size in SIZES]) < 2.5
+
+
+def test_the_object_itself_is_nearer_than_an_unknown_one():
+    unknown, known = finding("TIM-CLOCK", name=""), finding("TIM-CLOCK", name="C")
+    importer = finding("INC-HW-PU-CLOCK", name="C")
+    assert [found.same for found in group([unknown, known, importer])] == [(unknown,), (known, importer)]
+
+
+@given(st.lists(st.integers(1, 30), min_size=1, max_size=10), st.lists(st.integers(1, 30), max_size=10))
+def test_an_effect_belongs_to_the_cause_in_the_nearest_line(lines_of_causes, lines_of_effects):
+    causes = [finding("EMF-ID", name=f"C{i}", line=line) for i, line in enumerate(lines_of_causes)]
+    effects = [finding("XMI022", name=f"E{i}", line=line) for i, line in enumerate(lines_of_effects)]
+    nearest = [min(causes, key=lambda cause: abs(cause.location.line - effect.location.line)) for effect in effects]
+    found = {each.same: each.consequences for each in group([*causes, *effects])}
+    assert found == {
+        (cause,): tuple(effect for effect, its in zip(effects, nearest, strict=True) if its is cause) for cause in causes
+    }

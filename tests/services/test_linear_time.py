@@ -1,14 +1,13 @@
 """The steps that a command takes grow with the size of its input, not with its square, also for inputs that are all mistakes."""
 
-import sys
-
 import pytest
 
 from amalthea_uros import load
+from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.check import check_files
 from amalthea_uros.services.format import format_files
+from tests.growth import SIZES, growth
 
-SIZES = (50, 100, 200)
 START = (
     '<?xml version="1.0" encoding="UTF-8"?>\n<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0" '
     'xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmi:version="2.0"><swModel>'
@@ -36,49 +35,77 @@ CONTENTS = {
     "unknown attributes of many objects": lambda n: repeated('<labels name="L#" none#="1"/>', n),
     "unknown elements": lambda n: repeated("<none#/>", n),
     "wrong values": lambda n: repeated('<labels name="L#" constant="none#"/>', n),
+    "equal names": lambda n: '<labels name="L"/>' * n,
     "wrong ids": lambda n: repeated('<labels name="L#" xmi:id="none#"/>', n),
 }
-CHECKED = ("dangling references in one list", "unknown attributes of many objects")
+#: They add no rules to those that other contents fire.
+READ_ONLY = {"dangling references of one object", "wrong ids"}
+CHECKED = [name for name in CONTENTS if name not in READ_ONLY]
+FORMATTED = ("dangling references in one list", "unknown attributes of many objects")
 
 
-def steps(action, *arguments):
-    """The number of lines of Python that an action executes, each as often as it is executed."""
-    count = 0
-
-    def trace(_frame, _event, _argument):
-        nonlocal count
-        count += 1
-        return trace
-
-    before = sys.gettrace()
-    sys.settrace(trace)
-    try:
-        action(*arguments)
-    finally:
-        sys.settrace(before)
-    return count
+DESCRIPTION = "amuros: 1\nname: x\n"
+NODE = DESCRIPTION + "application: {nodes: [{name: n, timers: ["
+TIMER = "{name: t#, period: 10 ms, execution_time: 1 us}"
+#: Descriptions of a size.
+DESCRIPTIONS = {
+    "unknown keys": lambda n: DESCRIPTION + repeated("none#: 1\n", n),
+    "decimal commas": lambda n: f"{DESCRIPTION}hardware: {{cores: 1, {repeated('# ms', n, ', ')}}}\n",
+    "wrong values": lambda n: f"{NODE}{repeated('{name: t#, period: often, execution_time: 1 us}', n, ', ')}]}}]}}\n",
+    "equal names": lambda n: f"{NODE}{repeated(TIMER.replace('t#', 't'), n, ', ')}]}}]}}\n",
+    "many timers": lambda n: f"{NODE}{repeated(TIMER, n, ', ')}]}}]}}\n",
+}
 
 
-def growth(action, folder, content):
-    """How many times more steps the second doubling adds than the first one: 2 for a linear number, 4 for a square."""
-    paths = [folder / f"{size}.amxmi" for size in SIZES]
+def files(folder, content, suffix=".amxmi"):
+    """Files of the sizes."""
+    paths = [folder / f"{size}{suffix}" for size in SIZES]
     for path, size in zip(paths, SIZES, strict=True):
-        path.write_text(f"{START}{content(size)}</swModel></am:Amalthea>\n")
-    action(paths[0])  # fills the caches that do not depend on the file
-    small, medium, large = (steps(action, path) for path in paths)
-    return (large - medium) / (medium - small)
+        path.write_text(f"{START}{content(size)}</swModel></am:Amalthea>\n" if suffix == ".amxmi" else content(size))
+    return paths
 
 
 @pytest.mark.parametrize("name", CONTENTS)
 def test_reading(name, tmp_path):
-    assert growth(load, tmp_path, CONTENTS[name]) < 2.5
+    assert growth(load, files(tmp_path, CONTENTS[name])) < 2.5
 
 
 @pytest.mark.parametrize("name", CHECKED)
 def test_checking(name, tmp_path):
-    assert growth(lambda path: check_files([path]), tmp_path, CONTENTS[name]) < 2.5
+    assert growth(lambda path: check_files([path]), files(tmp_path, CONTENTS[name])) < 2.5
 
 
-@pytest.mark.parametrize("name", CHECKED)
+def system(count):
+    """The rest of a model: each task on a core of its own."""
+    schedulers = repeated('<taskSchedulers name="S#"/>', count)
+    modules = '<modules xsi:type="am:ProcessingUnit" name="C#" definition="D?type=ProcessingUnitDefinition"/>'
+    allocation = (
+        '<schedulerAllocation scheduler="S#?type=TaskScheduler" responsibility="C#?type=ProcessingUnit"/>'
+        '<taskAllocation task="T#?type=Task" scheduler="S#?type=TaskScheduler"/>'
+    )
+    return (
+        repeated('<tasks name="T#" stimuli="P?type=PeriodicStimulus"><activityGraph/></tasks>', count)
+        + '</swModel><hwModel><definitions xsi:type="am:ProcessingUnitDefinition" name="D"/>'
+        f'<structures name="E">{repeated(modules, count)}</structures></hwModel>'
+        f'<osModel><operatingSystems name="O">{schedulers}</operatingSystems></osModel>'
+        '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="P">'
+        '<recurrence value="10" unit="ms"/></stimuli></stimuliModel>'
+        f"<mappingModel>{repeated(allocation, count)}</mappingModel><swModel>"
+    )
+
+
+@pytest.mark.parametrize(
+    "action", [lambda path: check_files([path]), lambda path: analyze_files([path])], ids=["check", "analyze"]
+)
+def test_many_cores(action, tmp_path):
+    assert growth(action, files(tmp_path, system)) < 2.5
+
+
+@pytest.mark.parametrize("name", FORMATTED)
 def test_formatting(name, tmp_path):
-    assert growth(lambda path: format_files([path]), tmp_path, CONTENTS[name]) < 2.5
+    assert growth(lambda path: format_files([path]), files(tmp_path, CONTENTS[name])) < 2.5
+
+
+@pytest.mark.parametrize("name", DESCRIPTIONS)
+def test_checking_descriptions(name, tmp_path):
+    assert growth(lambda path: check_files([path]), files(tmp_path, DESCRIPTIONS[name], ".yaml")) < 2.5

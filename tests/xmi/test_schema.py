@@ -291,6 +291,23 @@ def test_a_long_list_is_cut_and_says_so():
     assert problems[-1].path == "/am:Amalthea/swModel/tasks[101]"
 
 
+def test_each_unknown_attribute_of_a_great_many_is_a_problem():
+    def element(count: int) -> bytes:
+        unknown = " ".join(f'none{number}="1"' for number in range(count))
+        return document(f'<swModel><labels name="L" constant="perhaps" {unknown}/></swModel>')
+
+    # 10,000 attributes: xmlschema alone takes minutes, because it formats all of them for each error.
+    few, many = (validate(element(count), VERSION) for count in (99, 10_000))
+    assert sorted(problem.reason for problem in few) == sorted(problem.reason for problem in many[:100])
+    assert many[-1].reason == "9901 more problems from here on, not listed"
+
+
+def test_a_great_many_attributes_of_an_element_of_an_unknown_class_are_one_problem():
+    attributes = " ".join(f'none{number}="1"' for number in range(1000))
+    problem = only_problem(f'<stimuliModel><stimuli xsi:type="am:None" {attributes}/></stimuliModel>')
+    assert problem.reason == 'xsi:type="am:None" is not a class of AMALTHEA 3.3.0'
+
+
 @pytest.mark.parametrize(
     ("data", "reason", "advice"),
     [

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Severity
@@ -18,14 +20,19 @@ _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO
 
 def write(result: CheckResult, stream: IO[str]) -> None:
     """Write a workflow command for each flaw."""
+    shown_path = cache(_shown_path)  # Thousands of findings may be in one file.
     for finding in result.presentation.shown:
         place = finding.location
         where = []
         if place is not None:
-            where = [f"file={_escaped(relative(place.path) or str(place.path))}"]
+            where = [f"file={shown_path(place.path)}"]
             where += [f"line={place.line}", f"col={place.column or 1}"] if place.line else []
         properties = ",".join([*where, f"title={_escaped(finding.rule)}"])
         stream.write(f"::{_COMMANDS[finding.severity]} {properties}::{_escaped(finding.message, properties=False)}\n")
+
+
+def _shown_path(path: Path) -> str:
+    return _escaped(relative(path) or str(path))
 
 
 def _escaped(text: str, properties: bool = True) -> str:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -32,12 +34,13 @@ def write(result: CheckResult, stream: IO[str]) -> None:
     """Write one run, with the rules that fired and where."""
     entries = result.presentation.entries()
     used = sorted({entry.finding.rule for entry in entries})
+    artifact = cache(_artifact)  # Thousands of findings may be in one file.
     driver = {"name": "amuros", "version": __version__, "informationUri": DOCUMENTATION}
     run = {
         "tool": {"driver": {**driver, "rules": [_rule(rule) for rule in used]}},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {_ROOT: {"uri": Path.cwd().as_uri() + "/"}},
-        "results": [_result(entry, used.index(entry.finding.rule)) for entry in entries],
+        "results": [_result(entry, used.index(entry.finding.rule), artifact) for entry in entries],
     }
     log = {"$schema": "https://json.schemastore.org/sarif-2.1.0.json", "version": "2.1.0", "runs": [run]}
     write_json(log, stream)
@@ -60,7 +63,7 @@ def _rule(identifier: str) -> dict[str, Any]:
     }
 
 
-def _result(entry: Entry, index: int) -> dict[str, Any]:
+def _result(entry: Entry, index: int, artifact: Callable[[Path], dict[str, str]]) -> dict[str, Any]:
     from amalthea_uros.findings.fingerprint import fingerprint
 
     finding = entry.finding
@@ -76,16 +79,13 @@ def _result(entry: Entry, index: int) -> dict[str, Any]:
     if entry.part_of is not None:
         result["properties"] = {"partOf": entry.part_of}
     if finding.location is not None:
-        result["locations"] = [
-            {"physicalLocation": _place(finding.location.path, finding.location.line, finding.location.column)}
-        ]
+        place: dict[str, Any] = {"artifactLocation": artifact(finding.location.path)}
+        if finding.location.line:
+            place["region"] = {"startLine": finding.location.line, "startColumn": finding.location.column or 1}
+        result["locations"] = [{"physicalLocation": place}]
     return result
 
 
-def _place(path: Path, line: int | None, column: int | None) -> dict[str, Any]:
+def _artifact(path: Path) -> dict[str, str]:
     below = relative(path)
-    artifact = {"uri": resolved(path).as_uri()} if below is None else {"uri": quote(os.fsencode(below)), "uriBaseId": _ROOT}
-    place: dict[str, Any] = {"artifactLocation": artifact}
-    if line:
-        place["region"] = {"startLine": line, "startColumn": column or 1}
-    return place
+    return {"uri": resolved(path).as_uri()} if below is None else {"uri": quote(os.fsencode(below)), "uriBaseId": _ROOT}
