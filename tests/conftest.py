@@ -1,15 +1,33 @@
+import gc
 import os
+import sys
+from pathlib import Path
 
+from effort import PROFILE, THOROUGH, USUAL
 from hypothesis import HealthCheck, Phase, settings
 
 settings.register_profile(
     "default",
     deadline=None,
-    max_examples=60,
+    max_examples=USUAL,
     suppress_health_check=[HealthCheck.too_slow],
     # Shrinking a whole model takes minutes and makes it no easier to read.
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
 )
 settings.register_profile("ci", settings.get_profile("default"), derandomize=True)
-settings.register_profile("thorough", settings.get_profile("default"), max_examples=1000)
-settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE") or ("ci" if os.environ.get("CI") else "default"))
+settings.register_profile("thorough", settings.get_profile("default"), max_examples=THOROUGH)
+settings.load_profile(PROFILE)
+
+# What Python and numba compile is kept in one folder, for the other workers, for the commands that tests start, and for the next run.
+# This holds also where Python shall not write beside the sources: without it, each command compiles the package again.
+COMPILED = Path(__file__).parents[1] / "build" / "compiled"
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+os.environ.setdefault("PYTHONPYCACHEPREFIX", str(COMPILED / "python"))
+os.environ.setdefault("NUMBA_CACHE_DIR", str(COMPILED / "numba"))
+sys.dont_write_bytecode, sys.pycache_prefix = False, os.environ["PYTHONPYCACHEPREFIX"]
+
+
+def pytest_collection_finish() -> None:
+    """Thousands of tests live to the end: the garbage collector need not look at them again and again."""
+    gc.collect()
+    gc.freeze()

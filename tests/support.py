@@ -1,11 +1,15 @@
 """What several tests need: real models, an independent comparison of models."""
 
 import json
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from amalthea_uros import describe, extract, load
+from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.metamodel.defaults import defaults_of
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
@@ -44,6 +48,12 @@ def hand_written() -> list[Any]:
     if not folder.exists():
         return [pytest.param(None, marks=pytest.mark.skip("the hand-written models are not at hand"))]
     return [pytest.param(path, id=path.name) for path in sorted(folder.glob("*.amxmi")) if path.stat().st_size]
+
+
+@cache
+def analysis_of(path: Path) -> Analysis:
+    """The analysis of a description or a model, which several tests look at."""
+    return analyze_system(describe(path).system if path.suffix == ".yaml" else extract(load(path)).system)
 
 
 def meaning(model: Model) -> Any:

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from operator import mul
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -246,18 +247,23 @@ def both(times: Iterable[Numbers]) -> Both:
     return best, worst
 
 
-def merged(variants: Sequence[Mapping[JobMetric, Metric]]) -> dict[JobMetric, Metric]:
-    """The metrics of a process over several phases, any of which can be the one of the system; means are means over all phases."""
+def merged(variants: Sequence[Mapping[JobMetric, Metric]], counts: Sequence[int] | None = None) -> dict[JobMetric, Metric]:
+    """The metrics of a process over several phases, any of which can be the one of the system; means are means over all phases.
+
+    Parameters
+    ----------
+    counts : how many phases each of the variants stands for; None: one
+    """
     shared = [name for name in variants[0] if all(name in metrics for metrics in variants)]
-    return {name: _merged([metrics[name] for metrics in variants]) for name in shared}
+    return {name: _merged([metrics[name] for metrics in variants], counts or [1] * len(variants)) for name in shared}
 
 
-def _merged(metrics: Sequence[Metric]) -> Metric:
+def _merged(metrics: Sequence[Metric], counts: Sequence[int]) -> Metric:
     minima, maxima, means = ([getattr(metric, name) for metric in metrics] for name in ("min", "max", "mean"))
     attained = [metric.attained for metric in metrics if metric.attained is not None]
     return Metric(
         min=None if None in minima else min(minima),
         max=None if None in maxima else max(maxima),
-        mean=None if None in means else sum(means, Fraction(0)) / len(means),
+        mean=None if None in means else sum(map(mul, means, counts), Fraction(0)) / sum(counts),
         attained=(min(low for low, _ in attained), max(high for _, high in attained)) if attained else None,
     )

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from operator import mul
 from typing import Any, TypeVar
 
 from amalthea_uros.analyze import metrics
+from amalthea_uros.analyze.phase_cases import Cases, PhaseCases
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.results import (
     Analysis,
@@ -25,7 +27,7 @@ from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.summary import summarize
 from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.phases import Occurrence, phase_count, phase_variants
+from amalthea_uros.timing.phases import Occurrence, phase_combinations, phase_count, with_phases
 from amalthea_uros.units import Time
 
 #: With more combinations of phases, or more jobs in all of them, any job can be the one that takes what comes from outside.
@@ -38,44 +40,80 @@ _WORST_FIRST = (Verdict.MISSED, Verdict.UNBOUNDED, Verdict.UNKNOWN, Verdict.MET,
 T = TypeVar("T")
 
 
-def solutions_for_phases(solution: Solution, unknown: Sequence[Occurrence]) -> list[Solution]:
-    """The solution for each combination of phases; none if there are too many."""
-    count = phase_count(unknown)
-    if count > MAX_COMBINATIONS:
-        return []
-    found: list[Solution] = []
-    for variant in phase_variants(solution.context.system, unknown):
-        found.append(solve(TimingContext.of(variant, solution.context.settings)))
-        if count * sum(response.jobs for response in found[0].responses.values()) > MAX_JOBS:
-            return []
-    return found
+@dataclass(frozen=True, slots=True)
+class Phases:
+    """The combinations of phases of a system, each of which makes a solution of its own.
+
+    Attributes
+    ----------
+    solution : for unknown phases
+    first : for the first combination
+    combinations : the first job that takes each occurrence
+    cases : those of the combinations that make a difference
+    """
+
+    solution: Solution
+    first: Solution
+    combinations: Sequence[Mapping[Occurrence, int]]
+    cases: PhaseCases
+
+    @classmethod
+    def of(cls, solution: Solution, unknown: Sequence[Occurrence]) -> Phases | None:
+        """The combinations of some unknown phases; None if there are none or too many."""
+        count = phase_count(unknown)
+        if not unknown or count > MAX_COMBINATIONS:
+            return None
+        combinations = list(phase_combinations(unknown))
+        first = _solution(solution, combinations[0])
+        if count * sum(response.jobs for response in first.responses.values()) > MAX_JOBS:
+            return None
+        return cls(solution, first, combinations, PhaseCases(solution, first, combinations))
+
+    def solutions(self, cases: Cases) -> Iterator[tuple[int, Solution]]:
+        """The numbers of the combinations of some cases, and their solutions."""
+        for number in cases:
+            yield number, _solution(self.solution, self.combinations[number]) if number else self.first
 
 
-def merged(analyses: Sequence[Analysis], solution: Solution) -> Analysis:
+def _solution(solution: Solution, combination: Mapping[Occurrence, int]) -> Solution:
+    context = solution.context
+    return solve(TimingContext.of(with_phases(context.system, combination), context.settings))
+
+
+def merged(analyses: Mapping[int, Analysis], cases: PhaseCases, solution: Solution) -> Analysis:
     """The analysis over all phases.
 
     Parameters
     ----------
-    analyses : for each combination of phases
+    analyses : by the number of the combination of phases; at least one of each case
     solution : for unknown phases
     """
-    first, *_ = analyses
-    processes, worst = [], {}
-    for each in zip(*(analysis.processes for analysis in analyses), strict=True):
-        processes.append(_process(each))
-        worst[each[0].name] = analyses[each.index(max(each, key=_badness))].solution
-    requirements = Results(_requirements(analyses))
+    first = analyses[0]
+    worst: dict[str, Solution] = {}
+    processes = []
+    for name, of_process in cases.of_processes.items():
+        results = {number: analyses[number].processes[name] for number in of_process}
+        worst[name] = analyses[max(results, key=lambda number: _badness(results[number]))].solution
+        processes.append(_process(list(results.values()), list(of_process.values())))
+    callbacks = []
+    for index, callback in enumerate(first.callbacks):
+        of_process = cases.of_processes[callback.process]
+        callbacks.append(_callback([analyses[number].callbacks[index] for number in of_process], list(of_process.values())))
+    chains = []
+    for index, of_chain in enumerate(cases.of_chains):
+        chains.append(merged_chain([analyses[number].chains[index] for number in of_chain], list(of_chain.values())))
+    requirements = Results(_requirements(list(analyses.values())))
     return replace(
         first,
         solution=solution,
         worst_solutions=worst,
         processes=Results(processes),
-        callbacks=Results(map(_callback, zip(*(analysis.callbacks for analysis in analyses), strict=True))),
-        chains=Results(map(merged_chain, zip(*(analysis.chains for analysis in analyses), strict=True))),
+        callbacks=Results(callbacks),
+        chains=Results(chains),
         requirements=requirements,
         summary=summarize(first.processors, processes, requirements),
-        assumptions=_each_once(analyses, lambda analysis: analysis.assumptions),
-        findings=_each_once(analyses, lambda analysis: analysis.findings),
+        assumptions=_each_once(analyses.values(), lambda analysis: analysis.assumptions),
+        findings=_each_once(analyses.values(), lambda analysis: analysis.findings),
     )
 
 
@@ -90,65 +128,77 @@ def _badness(result: ProcessResult | CallbackResult) -> tuple[int, int]:
     return (1, 0) if result.response.worst is None else (0, result.response.worst)
 
 
-def _process(results: Sequence[ProcessResult]) -> ProcessResult:
+def _process(results: Sequence[ProcessResult], counts: Sequence[int]) -> ProcessResult:
     worst = max(results, key=_badness)
     judged = min(results, key=lambda result: _WORST_FIRST.index(result.verdict))
-    found = metrics.merged([result.metrics for result in results])
+    found = metrics.merged([result.metrics for result in results], counts)
     worst = replace(worst, verdict=judged.verdict, failure=judged.failure, reason=judged.reason, metrics=found)
-    responses = [result.response for result in results if result.response is not None]
-    return worst if worst.response is None else replace(worst, response=_response(worst.response, responses))
+    return worst if worst.response is None else replace(worst, response=_response(worst.response, results, counts))
 
 
-def _callback(results: Sequence[CallbackResult]) -> CallbackResult:
+def _callback(results: Sequence[CallbackResult], counts: Sequence[int]) -> CallbackResult:
     worst = max(results, key=_badness)
-    worst = replace(worst, metrics=metrics.merged([result.metrics for result in results]))
+    worst = replace(worst, metrics=metrics.merged([result.metrics for result in results], counts))
+    return worst if worst.response is None else replace(worst, response=_response(worst.response, results, counts))
+
+
+def _response(worst: Response, results: Sequence[ProcessResult | CallbackResult], counts: Sequence[int]) -> Response:
+    # The worst one is known, and with it all others.
     responses = [result.response for result in results if result.response is not None]
-    return worst if worst.response is None else replace(worst, response=_response(worst.response, responses))
-
-
-def _response(worst: Response, responses: Sequence[Response]) -> Response:
     is_exact = all(response.claim is Claim.EXACT for response in responses)
     return replace(
         worst,
         best=min(response.best for response in responses),
         claim=Claim.EXACT if is_exact else Claim.BOUND,
-        method=f"{worst.method}, over all {len(responses)} phases",
+        method=_over_all(worst.method, counts),
     )
 
 
-def merged_chain(results: Sequence[ChainResult]) -> ChainResult:
-    """The values over all phases: the maximum, the minimum, and the mean of the means; none that is missing in some phase."""
+def _over_all(method: str, counts: Sequence[int]) -> str:
+    return f"{method}, over all {sum(counts)} phases"
+
+
+def merged_chain(results: Sequence[ChainResult], counts: Sequence[int]) -> ChainResult:
+    """The values over all phases: the maximum, the minimum, and the mean of the means; none that is missing in some phase.
+
+    Parameters
+    ----------
+    counts : how many phases each of the results stands for
+    """
     first, *_ = results
     bounded = next((result for result in results if any(value.claim is not Claim.EXACT for value in result.values)), first)
     return replace(
         first,
-        values=_over_all([{value.quantity: value for value in result.values} for result in results]),
-        all_values=_over_all([{(value.quantity, value.method): value for value in result.all_values} for result in results]),
+        values=_values([{value.quantity: value for value in result.values} for result in results], counts),
+        all_values=_values(
+            [{(value.quantity, value.method): value for value in result.all_values} for result in results], counts
+        ),
         why=bounded.why,
         reason=next((result.reason for result in results if result.reason), ""),
     )
 
 
-def _over_all(results: Sequence[Mapping[Any, Value]]) -> tuple[Value, ...]:
+def _values(results: Sequence[Mapping[Any, Value]], counts: Sequence[int]) -> tuple[Value, ...]:
     """Values by what they have in common, over all phases."""
     common = [key for key in results[0] if all(key in result for result in results)]
-    return tuple(_worst([result[key] for result in results]) for key in common)
+    return tuple(_worst([result[key] for result in results], counts) for key in common)
 
 
-def _worst(values: Sequence[Value]) -> Value:
+def _worst(values: Sequence[Value], counts: Sequence[int]) -> Value:
     first, *_ = values
     quantity, times = first.quantity, [value.value for value in values]
     finite = [time for time in times if time is not None]
     if len(finite) < len(times):
         return values[times.index(None)]
-    time = round(Fraction(sum(finite), len(finite))) if quantity.is_mean else (max if quantity.is_upper else min)(finite)
+    mean = round(Fraction(sum(map(mul, finite, counts)), sum(counts)))
+    time = mean if quantity.is_mean else (max if quantity.is_upper else min)(finite)
     worst = values[times.index(time)] if time in times else first
     is_exact = all(value.claim is Claim.EXACT for value in values)
     return replace(
         worst,
         value=time,
         claim=Claim.EXACT if is_exact else Claim.BOUND,
-        method=f"{worst.method}, over all {len(values)} phases",
+        method=_over_all(worst.method, counts),
     )
 
 

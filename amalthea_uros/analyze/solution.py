@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.perf.software import Task
@@ -12,6 +13,9 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.scheduling import Rank, ScheduledProcess
 from amalthea_uros.units import Time
+
+if TYPE_CHECKING:
+    from amalthea_uros.analyze.response_times.schedule import ExtremeCases, PeriodicTask
 
 
 @dataclass
@@ -28,6 +32,21 @@ class Solution:
     event_models: dict[str, EventModel] = field(default_factory=dict)
     responses: dict[str, Response] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
+    _schedules: dict[str, ExtremeCases | None] = field(default_factory=dict, repr=False)
+
+    def schedule(self, core: str, tasks: Sequence[PeriodicTask], with_slices: bool) -> ExtremeCases | None:
+        """The schedules of all tasks of a core, built once; None if they are too long or the core is overloaded.
+
+        Parameters
+        ----------
+        with_slices : whether execution slices are needed
+        """
+        from amalthea_uros.analyze.response_times.schedule import ExtremeCases
+
+        found = self._schedules.get(core)
+        if found is None or found.tasks != tasks or (with_slices and not found.has_slices):
+            found = self._schedules[core] = ExtremeCases.of(tasks, with_slices)
+        return found
 
     def mark_unknown(self, name: str, reason: str) -> None:
         """Record why the response time of a process is unknown."""

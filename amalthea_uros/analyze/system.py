@@ -10,8 +10,9 @@ from amalthea_uros.analyze.callbacks import CallbackEvaluator
 from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
 from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.chains.job_chains import JobBudget
 from amalthea_uros.analyze.metrics import MetricEvaluator
-from amalthea_uros.analyze.phases import merged, merged_chain, solutions_for_phases
+from amalthea_uros.analyze.phases import Phases, merged, merged_chain
 from amalthea_uros.analyze.process_verdicts import judged
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.requirements import evaluate_requirements
@@ -51,24 +52,29 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     solution = solve(TimingContext.of(system, settings))
     system = solution.context.system
     unknown = unknown_phases(system)
-    every = _of_all_phases(solution, unknown) if unknown else None
-    found = every or _analysis(solution)
+    every = _of_all_phases(solution, unknown)
+    found = every or _analysis(solution, JobBudget())
     phases = phase_assumptions(system, are_all_evaluated=every is not None)
     return replace(found, assumptions=tuple(dict.fromkeys((*found.assumptions, *phases))))
 
 
 def _of_all_phases(solution: Solution, unknown: Sequence[Occurrence]) -> Analysis | None:
     """The analysis over all combinations of unknown phases; None if there are too many."""
-    solutions = solutions_for_phases(solution, unknown)
-    return merged([_analysis(each) for each in solutions], solution) if solutions else None
+    phases = Phases.of(solution, unknown)
+    if phases is None:
+        return None
+    cases, budget = phases.cases, JobBudget()
+    return merged(
+        {number: _analysis(each, budget) for number, each in phases.solutions(cases.of_everything())}, cases, solution
+    )
 
 
-def _analysis(solution: Solution) -> Analysis:
+def _analysis(solution: Solution, budget: JobBudget) -> Analysis:
     """The analysis of a system; chains are evaluated for all phases of the jobs that they pass, other unknown phases are any job."""
     context = solution.context
     system = context.system
     _note_ignored(solution)
-    evaluation = ChainEvaluator(solution)
+    evaluation = ChainEvaluator(solution, budget)
     schedules = evaluation.timing.schedules
     processes = Results(_processes(solution, schedules))
     callbacks = Results(CallbackEvaluator(solution, schedules).all())
@@ -91,11 +97,15 @@ def _analysis(solution: Solution) -> Analysis:
 
 def _chain(chain: EventChain, evaluation: ChainEvaluator) -> ChainResult:
     """A chain, over all unknown phases of the jobs that it passes if these are not too many."""
-    passed = evaluation.occurrences(chain)
-    solutions = solutions_for_phases(evaluation.solution, passed) if passed else []
-    if not solutions:
+    phases = Phases.of(evaluation.solution, evaluation.occurrences(chain))
+    if phases is None:
         return evaluation.chain(chain)
-    return merged_chain([ChainEvaluator(solution).chain(chain) for solution in solutions])
+    cases = phases.cases.of_chain(chain)
+    results = []
+    for _, solution in phases.solutions(cases):
+        results.append(ChainEvaluator(solution, evaluation.budget).chain(chain))
+        evaluation.context.notes.include(solution.context.notes)
+    return merged_chain(results, list(cases.values()))
 
 
 def _note_ignored(solution: Solution) -> None:

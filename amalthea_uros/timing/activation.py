@@ -31,10 +31,16 @@ def as_activated(_process: Process, activations: Callable[[], EventModel]) -> Ev
 
 
 class Cause(NamedTuple):
-    """A process that triggers a stimulus: number of times in a job, and a counter if only every n-th time counts."""
+    """A process that triggers a stimulus.
+
+    Attributes
+    ----------
+    times : how often in a job at most; None if that is unknown
+    counter : if only every n-th time counts
+    """
 
     process: Process
-    times: int
+    times: int | None
     counter: Counter | None
 
 
@@ -57,7 +63,7 @@ class Activations:
                 self._incomplete = str(error)
                 continue
             for position in positions:
-                if isinstance(position.activity, Trigger) and position.times > 0:
+                if isinstance(position.activity, Trigger) and position.times != 0:
                     causes = self._triggers.setdefault(position.activity.stimulus, [])
                     causes.append(Cause(position.process, position.times, position.activity.counter))
 
@@ -111,7 +117,7 @@ class Activations:
             if event is None:
                 raise UnknownActivationError(f"the event {name!r} is not defined in the model")
             self._check(event)
-            causes = [Cause(p.process, p.times, None) for p in self.dataflow.events.raising(event) if p.times > 0]
+            causes = [Cause(p.process, p.times, None) for p in self.dataflow.events.raising(event) if p.times != 0]
             if not causes and isinstance(event, CustomEvent):
                 raise UnknownActivationError(f"no activity in the model raises the event {name!r}")
             found += causes
@@ -128,6 +134,10 @@ class Activations:
 
     def _caused_by(self, cause: Cause, output: Output, above: tuple[str, ...]) -> EventModel:
         """The events that a process causes between its start and its end."""
+        if cause.times is None:
+            raise UnknownActivationError(
+                f"the maximum number of times that a job of {cause.process.name!r} triggers it is unknown"
+            )
         found = output(cause.process, lambda: self._of_process(cause.process, output, above))
         return _counted(found if cause.times == 1 else Multiplied(found, cause.times), cause.counter)
 

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from math import ceil, floor, inf, isfinite
+from math import ceil, floor, inf
 
 from amalthea_uros._internal.graphs import bottom_up
 from amalthea_uros.perf.activities import (
@@ -46,10 +46,11 @@ from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.clocks import frequency_of
 from amalthea_uros.timing.counters import CallSites, UncountableError, first_effect, is_always
+from amalthea_uros.timing.counts import count_of, is_average
 from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH, ActivityPosition, TooComplexError, positions
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.timing.means import exact_sum, mean
-from amalthea_uros.timing.memory import MemoryAccess, count_of
+from amalthea_uros.timing.memory import MemoryAccess
 from amalthea_uros.timing.modes import holds
 from amalthea_uros.timing.multiframe import Frame, MultiframeDemand
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
@@ -279,10 +280,9 @@ class DemandModel:
 
     def _require_maximum(self, times: Count | float | None) -> None:
         """Check that the maximum of a number of calls or accesses is known; raises as `of_process`."""
+        if is_average(times):
+            raise UnknownDemandError(f"a number of calls or accesses, {times:g}, is an average without a maximum")
         if isinstance(times, float):
-            # It is usually measured; a fraction can only be an average.
-            if isfinite(times) and not times.is_integer():
-                raise UnknownDemandError(f"a number of calls or accesses, {times:g}, is an average without a maximum")
             self.notes.assume("a single whole number of calls or accesses is exact")
 
     def _runnable(self, runnable: Runnable, core: str, above: tuple[str, ...]) -> Sequence[Frame]:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil, floor
 
-from amalthea_uros.perf.activities import AccessKind, Count
+from amalthea_uros.perf.activities import AccessKind
 from amalthea_uros.perf.distributions import Distribution, highest, lowest
 from amalthea_uros.perf.hardware import Access, Cache, Connection, Interconnect, Latency, Memory
 from amalthea_uros.perf.named import Named
@@ -22,7 +22,7 @@ from amalthea_uros.timing.clocks import frequency_of
 from amalthea_uros.timing.means import mean
 from amalthea_uros.timing.multiframe import Frame
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
-from amalthea_uros.units import SECOND, Frequency, down, time_of_ticks, up
+from amalthea_uros.units import SECOND, Frequency, time_of_ticks
 
 #: (minimum, mean, maximum), in picoseconds.
 Times = tuple[Fraction, Fraction, Fraction]
@@ -149,30 +149,3 @@ def _whole(time: Fraction) -> int | Fraction:
 
 def _sum(first: Times, second: Times) -> Times:
     return (first[0] + second[0], first[1] + second[1], first[2] + second[2])
-
-
-#: Minimum, mean and maximum number of a single access.
-_ONCE = (1, Fraction(1), 1)
-
-
-def count_of(times: Count | float | None) -> tuple[int, Fraction, int]:
-    """Minimum, mean and maximum number of accesses that one access of the model represents.
-
-    Raises
-    ------
-    UnknownDemandError : they are negative or in the wrong order, as if only a mean is stated and the maximum is 0.
-    """
-    if times is None:
-        return _ONCE
-    try:
-        number = Fraction(1 if isinstance(times, Count) else times)
-        found = (
-            (times.least, Fraction(times.mean), times.most) if isinstance(times, Count) else (down(number), number, up(number))
-        )
-    except (ValueError, OverflowError):
-        raise UnknownDemandError("a number of calls or accesses is not finite") from None
-    if not 0 <= found[0] <= found[1] <= found[2]:
-        raise UnknownDemandError(
-            "a number of calls or accesses is negative, or its mean is not between its minimum and maximum"
-        )
-    return found

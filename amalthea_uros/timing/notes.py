@@ -34,3 +34,8 @@ class Notes:
     def assume(self, sentence: str) -> None:
         """Add an assumption on which the results are based."""
         self.assumptions[sentence] = None
+
+    def include(self, others: Notes) -> None:
+        """Add the findings and assumptions of another context, on which results of this one are based, too."""
+        self.found.update(others.found)
+        self.assumptions.update(others.assumptions)

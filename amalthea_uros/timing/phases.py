@@ -63,18 +63,22 @@ def phase_count(occurrences: Sequence[Occurrence]) -> int:
     return prod(occurrence.every for occurrence in occurrences)
 
 
-def phase_variants(system: System, occurrences: Sequence[Occurrence]) -> Iterator[System]:
-    """The system with each combination of the phases."""
+def phase_combinations(occurrences: Sequence[Occurrence]) -> Iterator[Mapping[Occurrence, int]]:
+    """For each combination of phases the first job that takes each occurrence."""
     for firsts in product(*(range(1, occurrence.every + 1) for occurrence in occurrences)):
-        chosen = dict(zip(occurrences, firsts, strict=True))
+        yield dict(zip(occurrences, firsts, strict=True))
 
-        def known(process: Process, counter: Counter, chosen: Mapping[Occurrence, int] = chosen) -> Counter:
-            first = chosen.get(Occurrence.of(process.name, counter))
-            if first is None or counter.is_phase_known:
-                return counter
-            return replace(counter, offset=first, is_phase_known=True)
 
-        yield with_counters(system, known)
+def with_phases(system: System, combination: Mapping[Occurrence, int]) -> System:
+    """The system in which some unknown phases are known."""
+
+    def known(process: Process, counter: Counter) -> Counter:
+        first = combination.get(Occurrence.of(process.name, counter))
+        if first is None or counter.is_phase_known:
+            return counter
+        return replace(counter, offset=first, is_phase_known=True)
+
+    return with_counters(system, known)
 
 
 def with_stated_phases(system: System, times: Mapping[str, Time]) -> System:

@@ -6,7 +6,8 @@ from itertools import permutations
 from math import lcm
 
 import pytest
-from hypothesis import example, given, settings
+from effort import examples
+from hypothesis import example, given
 from hypothesis import strategies as st
 from support import ROOT
 from test_system import system, ticks
@@ -50,6 +51,7 @@ def assign(tasks, deadlines):
     return None if unfitting else [names.index(name) for name in order]
 
 
+@examples(30)
 @given(ROWS)
 def test_there_is_an_assignment_if_and_only_if_one_of_all_orders_is_one(rows):
     tasks = [
@@ -197,7 +199,7 @@ class TestOffsets:
     @given(sets_with_offsets())
     # Tasks above lose activations in some orders.
     @example(([(5, 0, 3, 3), (12, 8, 2, 2), (5, 2, 1, 2)], [1, 0, 2]))
-    @settings(max_examples=150)
+    @examples(60)
     def test_a_proposal_if_and_only_if_an_order_meets_all_deadlines(self, drawn):
         rows, present = drawn
         (proposal,) = propose_priorities(analyze_system(with_offsets(rows, present)))

@@ -16,8 +16,9 @@ from amalthea_uros.analyze.requirements import evaluate_requirements
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.results import Results
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.activities import Call, RaiseEvent, Trigger
+from amalthea_uros.perf.activities import Call, Demand, Execute, RaiseEvent, Trigger
 from amalthea_uros.perf.constraints import Constraints, DataAgeConstraint, Requirement, TimeLimit, TimeMetric
+from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.events import CustomEvent, EventChain, Events, LabelChange, LabelEvent, Segment, Sequence
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
@@ -213,3 +214,26 @@ def test_a_core_is_analysed_again_only_if_its_activations_have_changed(monkeypat
 def test_a_schedule_with_slices_is_used_without_them():
     schedules = CoreSchedules(solve(TimingContext.of(system([[ticks(9)] for _ in range(HERE)]))))
     assert schedules.of("c0", with_slices=True) is schedules.of("c0", with_slices=False) is not None
+
+
+def test_each_schedule_is_built_once(monkeypatch):
+    built = []
+    build = schedule.schedule
+    monkeypatch.setattr(schedule, "schedule", lambda *arguments: built.append(arguments[2].__name__) or build(*arguments))
+    varying = Execute(demand=Demand(Boundaries(lower=7, upper=9)))
+    limit = TimeLimit(metric=TimeMetric.RESPONSE_TIME, value=500 * US)
+    stated = Constraints(requirements=(Requirement(name="R", runnable="t1", limit=limit),))
+    whole = system([[varying] for _ in range(HERE)], constraints=stated)
+    # For response times, metrics, and the callbacks, which need the execution slices.
+    assert len(analyze_system(whole).callbacks) == 1
+    assert built == ["worst_of", "best_of"]
+
+
+def test_the_slices_of_a_long_schedule_are_built_only_if_they_are_needed(monkeypatch):
+    monkeypatch.setattr(schedule, "RECORDED_JOBS", 3)
+    schedules = CoreSchedules(solve(TimingContext.of(system([[ticks(9)] for _ in range(HERE)]))))
+    without, with_slices = schedules.of("c0", with_slices=False), schedules.of("c0", with_slices=True)
+    assert without is not None
+    assert with_slices is not None
+    assert not any(len(jobs.execution_slices) for jobs in without.worst.values())
+    assert all(len(jobs.execution_slices) for jobs in with_slices.worst.values())

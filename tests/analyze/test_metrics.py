@@ -8,9 +8,8 @@ from math import lcm
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from support import ROOT
+from support import ROOT, analysis_of
 
-from amalthea_uros import describe
 from amalthea_uros.analyze import metrics
 from amalthea_uros.analyze.results import JobMetric, Metric
 from amalthea_uros.analyze.system import analyze_system
@@ -67,7 +66,7 @@ ENDLESS = {
 
 @pytest.mark.parametrize("process", FIGURE_6_6)
 def test_figure_6_6_of_the_thesis(process):
-    found = analyze_system(describe(ROOT / "samples" / "bodas-test-advanced.yaml").system)[process].metrics
+    found = analysis_of(ROOT / "samples" / "bodas-test-advanced.yaml")[process].metrics
     for name, (minimum, average, maximum) in FIGURE_6_6[process].items():
         metric = found[name]
         assert (metric.min, metric.max) == (Fraction(minimum) * US, Fraction(maximum) * US), name
@@ -355,7 +354,7 @@ class TestCallbacks:
     def test_the_executor_of_rclc(self):
         # Of 20 us for spinning, 4 us for Blink in each 50th job, 51 us to take a message of On_Imu, 23.8 us one of On_Command in each
         # 10th job, 4 us for Control in each 2nd; then On_Imu 90 us, On_Command 40 us, Control 150 to 220 us and 27.4 us to publish.
-        callbacks = analyze_system(describe(ROOT / "samples" / "rclc-in-executor.yaml").system).callbacks
+        callbacks = analysis_of(ROOT / "samples" / "rclc-in-executor.yaml").callbacks
         found = {c.name: (c.response.best / US, c.response.worst / US, c.response.claim, c.deadline / US) for c in callbacks}
         every = 20 + 51 + 90
         assert found == {

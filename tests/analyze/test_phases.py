@@ -4,6 +4,7 @@ import json
 from fractions import Fraction
 
 import pytest
+from hand_made_systems import READ, Proc, access, chain, system, ticks
 from support import ROOT, SHARED
 
 from amalthea_uros import Settings, analyze_system, build_model, describe, extract
@@ -12,6 +13,10 @@ from amalthea_uros.analyze.assignment import propose_priorities
 from amalthea_uros.analyze.explanation import shares
 from amalthea_uros.analyze.results import Claim, Verdict
 from amalthea_uros.analyze.sensitivity import max_growth
+from amalthea_uros.perf.activities import Call
+from amalthea_uros.perf.events import ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
+from amalthea_uros.perf.software import Label, Runnable
+from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import time_text
@@ -267,3 +272,26 @@ class TestAnIntervalThatIsNoMultipleOfThePeriod:
         analysis = analyze(sample(rate=self.RATE))
         assert latency(analysis, "max_reaction_time") >= 3000 + 1016
         assert {value.claim for value in analysis.chains[0].values} == {Claim.BOUND}
+
+
+def test_what_is_assumed_of_a_chain_is_reported_also_if_only_the_phases_on_its_way_are_evaluated():
+    def taking(message, every):
+        return Call(runnable="take", counter=Counter(prescaler=every, offset=1, source=message, is_phase_known=False))
+
+    others = [Proc(f"other {n}", (taking(f"message {n}", 7),), period=1000, priority=10 + n) for n in range(4)]
+    built = system(
+        Proc("taker", (taking("message", 3),), period=1000, priority=3),
+        Proc("reader", (access("read by nobody else", READ), ticks(10)), period=1000, priority=1),
+        *others,
+        labels=(Label(name="read by nobody else"),),
+        runnables=(Runnable(name="take", activities=(ticks(1),)),),
+        events=(
+            RunnableEvent(name="taken", runnable="take", change=RunnableChange.START, process="taker"),
+            ProcessEvent(name="done", process="reader", change=ProcessChange.TERMINATE),
+        ),
+        chains=(chain("gap", "taken", "done"),),
+    )
+    assert phases.MAX_COMBINATIONS < 3 * 7**4
+    analysis = analyze_system(built)
+    assert all(value.method.endswith("over all 3 phases") for value in analysis.chains["gap"].values)
+    assert "CHN002" in {finding.rule for finding in analysis.findings}

@@ -4,7 +4,8 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from system_strategies import systems
 
@@ -455,6 +456,15 @@ class TestEventsThatActivate:
         # Both may be there before the first one is served.
         assert self.respond(CustomEvent(name="event"), *twice) == 13
 
+    @pytest.mark.parametrize("times", [0.5, 2.5, Count(least=0, mean=2.0, most=0)])
+    def test_an_average_number_of_accesses_has_no_maximum(self, times):
+        """Ten accesses in one of twenty jobs are 0.5 on average; if only a mean is stated, the maximum is not 0."""
+        written = LabelEvent(name="event", label="L", change=LabelChange.WRITE)
+        averaged = LabelAccess(label="L", kind=AccessKind.WRITE, times=times)
+        unknown = "the maximum number of times that a job of 'first' triggers it is unknown"
+        assert self.respond(written, averaged) == unknown
+        assert self.respond(written, LabelAccess(label="L", kind=AccessKind.WRITE), averaged) == unknown
+
     def test_events_from_outside(self):
         assert "no activity in the model raises" in self.respond(CustomEvent(name="event"))
 
@@ -474,7 +484,7 @@ def test_periodic_releases_and_a_server_are_no_exact_schedule():
     assert claims == {"T": "bound", "I": "bound"}
 
 
-@settings(max_examples=200)
+@examples(60)
 @given(systems(), st.sampled_from(Memory))
 def test_no_system_is_too_strange(system, memory):
     analysis = analyze_system(system, Settings(memory=memory))

@@ -5,7 +5,8 @@ from itertools import product
 from typing import NamedTuple
 
 import pytest
-from hypothesis import example, given, settings
+from effort import examples
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from amalthea_uros.analyze.response_times import priority_levels
@@ -116,7 +117,7 @@ SHARING = st.lists(
 
 
 @given(st.one_of(SHARING, st.builds(lambda high, rows: [high, *rows], HIGH, SHARING)))
-@settings(max_examples=100)
+@examples(100)
 # Two jobs of a task are pending at a time, and each begins a slice of its own.
 @example([Row(3, 1, 4), Row(30, 8, 1), Row(30, 6, 4)])
 def test_no_response_is_longer_than_its_bound(rows):

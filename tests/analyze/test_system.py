@@ -5,9 +5,9 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from support import ROOT, SHARED
+from support import ROOT, SHARED, analysis_of
 
-from amalthea_uros import describe, extract, load
+from amalthea_uros import extract, load
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.perf import stimuli as perf_stimuli
@@ -35,12 +35,12 @@ class TestTheThesis:
     """Section 7 of its figures: simulated values of both models, which the exact analysis meets at its ends."""
 
     def test_simple(self):
-        analysis = analyze_system(describe(SAMPLES / "bodas-test-simple.yaml").system)
+        analysis = analysis_of(SAMPLES / "bodas-test-simple.yaml")
         control = by_name(analysis)["Control_Function"].response
         assert (control.best, control.worst, control.claim) == (16 * US, 16 * US, "exact")
 
     def test_advanced(self):
-        analysis = analyze_system(describe(SAMPLES / "bodas-test-advanced.yaml").system)
+        analysis = analysis_of(SAMPLES / "bodas-test-advanced.yaml")
         processes = by_name(analysis)
         executor, control = processes["Executor_Task"], processes["Control_Function"]
         assert (executor.response.best, executor.response.worst) == (12 * US, 25 * US)
@@ -54,9 +54,7 @@ class TestTheThesis:
 
     def test_the_built_model_gives_the_same_as_its_description(self):
         for sample in SAMPLES.glob("*.yaml"):
-            described = analyze_system(describe(sample).system)
-            read = analyze_system(extract(load(sample.with_suffix(".amxmi"))).system)
-            assert read == described
+            assert analysis_of(sample.with_suffix(".amxmi")) == analysis_of(sample)
 
 
 def waters():

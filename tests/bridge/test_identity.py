@@ -1,7 +1,8 @@
 """perf -> amxmi -> perf is the identity."""
 
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from support import MODEL, ROOT, corpus, hand_written
 from system_strategies import systems
@@ -31,14 +32,14 @@ def file(tmp_path_factory):
 
 
 @given(system=systems())
-@settings(max_examples=100)
+@examples(40)
 def test_every_system_comes_back(file, system):
     assert there_and_back(system, file) == system
     assert validate(file.read_bytes(), "3.3.0") == []
 
 
 @given(system=systems(most=1), version=st.sampled_from(VERSIONS))
-@settings(max_examples=100)
+@examples(40)
 def test_a_system_comes_back_from_an_older_version_or_is_refused_by_name(file, system, version):
     file.unlink(missing_ok=True)
     try:

@@ -4,8 +4,8 @@ import json
 import shutil
 
 import pytest
+from command import amuros
 from support import ROOT
-from test_cli import amuros
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
 RCLC = ROOT / "samples" / "rclc-in-executor.yaml"

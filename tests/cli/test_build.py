@@ -7,8 +7,8 @@ from pathlib import Path
 import jsonschema
 import pytest
 import yaml
+from command import amuros
 from support import ROOT
-from test_cli import amuros
 
 import amalthea_uros
 from amalthea_uros.am import PeriodicStimulus, ProcessingUnit, Task, Ticks

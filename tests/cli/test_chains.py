@@ -1,8 +1,8 @@
 """`amuros chains` as its user sees it."""
 
 import pytest
+from command import amuros
 from support import ROOT
-from test_cli import amuros
 
 import amalthea_uros
 

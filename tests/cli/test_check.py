@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 
 import pytest
 import yaml
+from command import amuros
 from support import MODEL, ROOT
-from test_cli import amuros
 
 INCHRON = ("--profile", "inchron")
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"

@@ -4,9 +4,9 @@ import json
 
 import jsonschema
 import pytest
+from command import amuros
 from junitparser import JUnitXml
 from support import DATA, MODEL
-from test_cli import amuros
 
 from amalthea_uros.validate.rule import Profile
 

@@ -6,16 +6,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from command import amuros
 from support import DATA
 
 import amalthea_uros
 
 BRAKE = DATA / "brake.amxmi"
-
-
-def amuros(*arguments, cwd=None):
-    command = [sys.executable, "-m", "amalthea_uros", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=cwd)
 
 
 @pytest.fixture

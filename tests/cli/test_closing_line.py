@@ -3,8 +3,8 @@
 import json
 
 import pytest
+from command import amuros
 from support import ROOT
-from test_cli import amuros
 
 HEAD = "amuros: 1\nname: app\nhardware: {platform: single-core, frequency: 100 MHz}\n"
 LATE = (

@@ -3,8 +3,8 @@
 from collections import Counter
 
 import pytest
+from command import amuros
 from support import DATA, MODEL, ROOT, meaning
-from test_cli import amuros
 
 from amalthea_uros import load
 from amalthea_uros.services.check import check_files

@@ -7,7 +7,7 @@ from io import StringIO
 
 import pytest
 from click.testing import CliRunner
-from test_cli import amuros
+from command import amuros
 
 from amalthea_uros.cli.migrate import command
 from amalthea_uros.xmi.migrate.versions import VERSIONS, version_of

@@ -12,9 +12,9 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from command import amuros
 from lxml import etree
 from support import ROOT
-from test_cli import amuros
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.cli.main import main

@@ -5,17 +5,13 @@ import subprocess
 import sys
 
 import pytest
+from command import amuros
 from support import DATA, MODEL, ROOT
 
 DESCRIPTION = ROOT / "samples" / "bodas-test-simple.yaml"
 BUILT = ROOT / "samples" / "bodas-test-simple.amxmi"
 OLDER = ROOT / "samples" / "pump-1.2.0.amxmi"
 CHECKED = MODEL.format("<swModel><tasks/></swModel>")
-
-
-def amuros(*arguments, given="", **options):
-    command = [sys.executable, "-m", "amalthea_uros", *map(str, arguments)]
-    return subprocess.run(command, input=given, capture_output=True, text=True, check=False, encoding="utf-8", **options)
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,8 @@
 """Rules that users make."""
 
 import pytest
+from command import amuros
 from support import MODEL, ROOT
-from test_cli import amuros
 
 from amalthea_uros import check
 from amalthea_uros.errors import ReadError

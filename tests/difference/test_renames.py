@@ -1,7 +1,8 @@
 """Renames that depend on each other are told as such, in as few words as possible."""
 
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from strategies import parse
 from support import MODEL
@@ -82,7 +83,7 @@ def test_a_namespace_and_a_renamed_user():
     assert told(old, new) == {("name", "T", "U"), ("namespace", "unset", "N")}
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(st.permutations(range(6)))
 def test_any_permutation_of_names_is_told_as_renames(order):
     def system(names):

@@ -4,6 +4,7 @@
 """
 
 import pytest
+from effort import every
 from opponent.claims import Tally, false_claims
 from opponent.constructs import constructs_of
 from opponent.generator import random_system
@@ -23,7 +24,7 @@ EXCEPTIONS: dict[str, float] = {}
 @pytest.mark.parametrize("first", range(0, SEEDS, BLOCK))
 def test_no_claim_is_refuted(first):
     found = {}
-    for seed in range(first, first + BLOCK):
+    for seed in every(3, range(first, first + BLOCK)):
         if claims := false_claims(random_system(seed), PLAYS):
             found[seed] = [str(claim) for claim in claims]
     assert found == {}

@@ -1,6 +1,7 @@
 """The player agrees with published facts, which somebody else's player found, and with systems played by hand."""
 
 import pytest
+from effort import every
 from opponent.observation import Observation, observe
 from opponent.systems import PlainSystem, has_open_choices
 from opponent.vectors import facts, needs_vectors, plain_systems
@@ -87,7 +88,7 @@ SYSTEMS = plain_systems() if FACTS else {}
 @needs_vectors
 @pytest.mark.parametrize("block", range(8))
 def test_the_published_facts_occur(block):
-    names = sorted(FACTS)[block::8]
+    names = every(3, sorted(FACTS)[block::8])
     wrong = [text for name in names for text in contradictions(name)]
     assert wrong == []
 

@@ -4,7 +4,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from effort import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from amalthea_uros.perf.distributions import Boundaries, Bucket, Constant, Gauss, Histogram, Sampling, Statistics, Uniform
@@ -299,7 +300,7 @@ def earliest_by_relaxation(stimulus, count):
     return None
 
 
-@settings(max_examples=25)  # the relaxation takes long
+@examples(10)  # the relaxation takes long
 @given(CURVE)
 def test_the_worst_case_of_an_arrival_curve_is_as_early_as_its_borders_allow(stimulus):
     expected = earliest_by_relaxation(stimulus, 40)

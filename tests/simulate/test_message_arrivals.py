@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from support import ROOT
 
@@ -58,14 +59,14 @@ class Recorded(list):
 
 
 @given(st.integers(0, 39))
-@settings(max_examples=10, deadline=None)
+@examples(10)
 def test_regular_arrivals_on_the_grid_are_the_counter(phase):
     stated = f"Message_Factor.phase={phase}ms"
     assert observed(simulate(stated, "Message_Factor.arrival_jitter=0ms")) == observed(simulate(stated))
 
 
 @given(st.integers(1, 20 * MS), st.booleans())
-@settings(max_examples=10, deadline=None)
+@examples(10)
 def test_a_job_takes_what_arrived_before_its_activation(phase, is_queued):
     changes = [f"Message_Factor.phase={phase}ps", *(["Message_Factor.arrival_jitter=0ms"] if is_queued else [])]
     next_activation = f"Message_Factor.phase={-(-phase // MS)}ms"
@@ -144,7 +145,7 @@ def test_without_sampling_the_first_possibility_counts():
 
 
 @given(st.integers(0, 45_000), st.integers(700, 45_000), st.integers(1, 1000))
-@settings(max_examples=25, deadline=None)
+@examples(25)
 def test_no_bound_is_exceeded(jitter, period, seed):
     """Microseconds; the analysis knows period and jitter, and nothing else."""
     changes = [f"Message_Factor.arrival_jitter={jitter}us", f"Message_Factor.arrival_period={period}us"]

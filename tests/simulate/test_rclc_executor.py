@@ -1,11 +1,12 @@
 """Callbacks that an executor calls itself, as rclc does: in their order, with LET or ROS semantics, under trigger conditions."""
 
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
-from support import ROOT
+from support import ROOT, analysis_of
 
-from amalthea_uros import analyze_system, describe
+from amalthea_uros import describe
 from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.results import ChainQuantity
@@ -116,12 +117,11 @@ def test_a_callback_that_is_not_due_takes_no_part_in_a_chain(described):
 
 @pytest.fixture(scope="module")
 def sample():
-    system = describe(SAMPLE).system
-    return system, analyze_system(system)
+    return describe(SAMPLE).system, analysis_of(SAMPLE)
 
 
 @given(seed=st.integers(1, 10_000), mode=st.sampled_from(list(Mode)))
-@settings(max_examples=15, deadline=None)
+@examples(15)
 def test_no_bound_is_exceeded(sample, seed, mode):
     """Phases of messages and timers are independent of each other, and random."""
     system, bounds = sample

@@ -1,6 +1,7 @@
 """The activities that raise an event are found by what they access."""
 
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from system_strategies import systems
 
 from amalthea_uros.perf.activities import AccessKind, Call, Group, LabelAccess, RaiseEvent
@@ -11,7 +12,7 @@ from amalthea_uros.timing.dataflow.events import EventLocator, UnresolvedError, 
 
 
 @given(systems())
-@settings(deadline=None, max_examples=50)
+@examples(50)
 def test_they_are_those_that_a_look_at_each_activity_finds(system):
     locator = EventLocator(system)
     try:

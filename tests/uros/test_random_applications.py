@@ -4,7 +4,8 @@ import random
 
 import pytest
 import yaml
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from inchron import problems
 from support import ROOT
@@ -114,7 +115,7 @@ WISHES |= {"INC-HW-ACCESS", "INC-SW-TICKS-BETA", "INC-SW-TICKS-DEFAULT", "INC-SW
 
 
 @given(description=applications())
-@settings(max_examples=80)
+@examples(40)
 def test_a_random_application(file, description):
     file.write_text(yaml.safe_dump(description))
     built, findings = built_or_refused(file)

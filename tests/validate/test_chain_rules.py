@@ -7,10 +7,10 @@ from itertools import permutations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support import ROOT, corpus, hand_written
+from support import ROOT, analysis_of, corpus, hand_written
 from test_rules import model
 
-from amalthea_uros import analyze_system, build_model, check, extract, load
+from amalthea_uros import build_model, check, load
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.activities import (
     AccessKind,
@@ -53,10 +53,10 @@ from amalthea_uros.units import MILLISECOND as MS
 RULE = "TIM-CHAIN-CARRIED"
 
 
-def told_by_analysis(system):
+def told_by_analysis(analysis):
     """(chain, from, to) where nothing carries, and the chains that are not evaluated."""
     gaps, skipped = set(), set()
-    for finding in analyze_system(system).findings:
+    for finding in analysis.findings:
         if finding.rule == "CHN002":
             gaps.add(tuple(re.findall(r"'([^']*)'", finding.message)))
         elif finding.rule == "CHN001":
@@ -79,7 +79,7 @@ def test_the_gaps_are_those_of_the_analysis(path):
         read = load(path)
     except ReadError:
         pytest.skip("the file cannot be read")
-    gaps, skipped = told_by_analysis(extract(read).system)
+    gaps, skipped = told_by_analysis(analysis_of(path))
     assert {gap for gap in told_by_rule(read) if gap[0] not in skipped} == gaps
 
 

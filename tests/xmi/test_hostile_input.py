@@ -9,7 +9,8 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros import ReadError, WriteError, load, save
@@ -398,7 +399,7 @@ def test_a_zip_with_changed_bytes_is_read_or_refused(tmp_path):
             check_refusal(error, path)
 
 
-@settings(max_examples=200)
+@examples(200)
 @given(st.binary(max_size=60))
 def test_any_bytes_behind_a_declared_encoding_are_read_or_refused(tmp_path_factory, data):
     path = tmp_path_factory.getbasetemp() / "bytes.amxmi"

@@ -1,7 +1,8 @@
 """What a model does not know is written again so that everything is read as before, and what would not be is not written."""
 
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from scrambler import Scrambler
 from strategies import meaning, models, parse
@@ -121,7 +122,7 @@ class Hostile(Scrambler):
         ]
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(model=models(12), rng=st.randoms(use_true_random=False))
 def test_the_canonical_form_of_any_file_is_a_fixed_point(model, rng):
     document = model.documents[0]

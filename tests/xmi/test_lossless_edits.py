@@ -4,7 +4,8 @@ import re
 from collections import Counter
 
 import pytest
-from hypothesis import assume, given, settings
+from effort import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scrambler import ENCODINGS, Scrambler
 from strategies import Builder, as_list, concrete, meaning, models, parse, stored_features, value_for
@@ -41,14 +42,14 @@ def said(model) -> object:
     return meaning(document.root, version=document.version)
 
 
-@settings(max_examples=50)
+@examples(30)
 @given(scrambled())
 def test_an_ugly_file_says_the_same(case):
     loaded, model, _ = case
     assert said(loaded) == said(model)
 
 
-@settings(max_examples=100)
+@examples(40)
 @given(scrambled())
 def test_merging_unchanged_objects_changes_nothing(case):
     loaded, _, _ = case
@@ -56,7 +57,7 @@ def test_merging_unchanged_objects_changes_nothing(case):
     assert text_of(loaded) == loaded.documents[0].source.text
 
 
-@settings(max_examples=50)
+@examples(30)
 @given(scrambled())
 def test_the_canonical_form_of_an_ugly_file_says_the_same_and_is_canonical(case):
     loaded, model, _ = case
@@ -68,7 +69,7 @@ def test_the_canonical_form_of_an_ugly_file_says_the_same_and_is_canonical(case)
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
 @pytest.mark.parametrize("newline", ["\n", "\r\n"])
-@settings(max_examples=10)
+@examples(10)
 @given(rng=st.randoms(use_true_random=False))
 def test_saving_unchanged_gives_the_same_bytes(encoding, newline, rng, tmp_path_factory):
     path = tmp_path_factory.mktemp("model") / "ugly.amxmi"
@@ -255,7 +256,7 @@ def check_edit(loaded, rng) -> None:
     assert sorted(set(marks) - set(gone)) == sorted(MARK.findall(new_source.text))
 
 
-@settings(max_examples=200)
+@examples(60)
 @given(scrambled())
 def test_an_edit_changes_what_was_edited_and_nothing_else(case):
     loaded, _, rng = case

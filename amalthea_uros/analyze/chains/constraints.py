@@ -18,7 +18,7 @@ from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.implausible_limits import note_implausible
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, RequirementResult, Value
 from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
-from amalthea_uros.perf.activities import Call, LabelAccess
+from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.constraints import (
     ChainEnd,
     ChainSynchronization,
@@ -145,7 +145,7 @@ class ConstraintEvaluator:
         readers = {
             position.process.name
             for position in self.evaluation.context.dataflow.events.raising(reading)
-            if isinstance(position.activity, LabelAccess) and position.process.name != occurrence.process.name
+            if position.process.name != occurrence.process.name
         }
         releases = known_releases(occurrence.process, self.evaluation.context.system)
         cycle = releases.period if releases is not None else None

@@ -10,7 +10,6 @@ from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core import periodic_tasks
 from amalthea_uros.analyze.response_times.schedule import Jobs, PeriodicTask
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.units import Time
 
 
@@ -63,18 +62,14 @@ class CoreSchedules:
         tasks = periodic_tasks(core, self.solution)
         if not tasks:
             return None
-        cycle, start = schedule.hyperperiod(tasks), schedule.steady_state_start(tasks)
-        if not schedule.fits(tasks, start + 2 * cycle):
+        found = self.solution.schedule(core, tasks, with_slices)
+        if found is None:
             return None
-        recorded = [with_slices] * len(tasks)
-        worst = schedule.schedule(tasks, start + 2 * cycle, MultiframeDemand.worst_of, recorded)
-        is_constant = all(frame.worst == frame.best for task in tasks for frame in task.demand.frames)
-        best = worst if is_constant else schedule.schedule(tasks, start + 2 * cycle, MultiframeDemand.best_of, recorded)
-        names = [task.name for task in tasks]
+        cycle, names = schedule.hyperperiod(tasks), [task.name for task in tasks]
         return CoreSchedule(
             tasks=dict(zip(names, tasks, strict=True)),
-            worst=dict(zip(names, worst, strict=True)),
-            best=dict(zip(names, best, strict=True)),
-            steady_state_start=start + cycle,
+            worst=dict(zip(names, found.worst, strict=True)),
+            best=dict(zip(names, found.best, strict=True)),
+            steady_state_start=schedule.steady_state_start(tasks) + cycle,
             cycle=cycle,
         )

@@ -90,20 +90,26 @@ class ChainEvaluator:
 
     def occurrences(self, chain: EventChain) -> tuple[Occurrence, ...]:
         """What comes from outside with an unknown phase and is taken by the jobs of a chain; nothing if it cannot be evaluated."""
-        unknown, events_by_name = self._unknown_phases, self.context.system.events_by_name
+        unknown = self._unknown_phases
         if not unknown:
             return ()
+        found = {
+            Occurrence.of(stage.process.name, counter) for stage in self.stages(chain) if (counter := stage.counter) is not None
+        }
+        return tuple(sorted(filter(unknown.__contains__, found), key=unknown.__getitem__))
+
+    def stages(self, chain: EventChain) -> list[Stage]:
+        """The stages of all ways through a chain; nothing if it cannot be evaluated."""
+        events_by_name = self.context.system.events_by_name
         try:
-            found = {
-                Occurrence.of(stage.process.name, counter)
+            return [
+                stage
                 for events in sequences(unfold(chain, self.context.system)[0])
                 for route in routes([events_by_name[name] for name in events], self.context.dataflow)
                 for stage in self._stages(route)
-                if (counter := stage.counter) is not None
-            }
+            ]
         except (UnfoldError, UnresolvedError):
-            return ()
-        return tuple(sorted(filter(unknown.__contains__, found), key=unknown.__getitem__))
+            return []
 
     def _evaluated(self, ways: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
         """The values of each way through a chain, and the reasons."""

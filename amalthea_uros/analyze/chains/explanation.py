@@ -17,7 +17,7 @@ from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, reach
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
-from amalthea_uros.analyze.phases import solutions_for_phases
+from amalthea_uros.analyze.phases import Phases
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity, Value
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
@@ -110,8 +110,8 @@ def _evaluators(chain: EventChain, analysis: Analysis) -> Iterator[ChainEvaluato
     solution = analysis.solution
     evaluation = ChainEvaluator(solution)
     for occurrences in (unknown_phases(solution.context.system), evaluation.occurrences(chain)):
-        if occurrences:
-            yield from map(ChainEvaluator, solutions_for_phases(solution, occurrences))
+        if phases := Phases.of(solution, occurrences):
+            yield from (ChainEvaluator(each) for _, each in phases.solutions(phases.cases.of_chain(chain)))
     yield evaluation
 
 

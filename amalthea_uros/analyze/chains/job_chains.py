@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
 
 SOURCE = "Günzel and others 2021, 2023"
-#: The job chains of all chains of a system together have at most so many jobs; for the others, other methods give bounds.
+#: All job chains of a system together, in all phases, have at most so many jobs; for the others, other methods give bounds.
 MAX_JOBS = 10_000_000
-TOO_MANY_JOBS = f"the job chains of all chains together would have more than {MAX_JOBS:,} jobs"
+TOO_MANY_JOBS = f"the job chains of all chains together, in all phases, would have more than {MAX_JOBS:,} jobs"
 
 
 @dataclass(slots=True)

@@ -190,7 +190,7 @@ class StageTiming:
             if stage.counter is None:
                 return f"it is unknown which jobs of {stage.process.name!r} take part"
             if any(can_be_skipped(position, system, modes) for position in stage.positions):
-                return f"jobs of {stage.process.name!r} can take a branch without the access or event of the chain"
+                return f"jobs of {stage.process.name!r} can end without the access or event of the chain"
         return ""
 
     def _why_irregular(self, process: Process) -> str:

@@ -131,10 +131,11 @@ class _CoreAnalysis:
     def exact(self, here: Sequence[ScheduledProcess]) -> list[Response] | None:
         """The exact response times by the schedule, if all releases are known and there is no blocking."""
         tasks = self.released(here)
-        found = schedule.response_times(tasks) if tasks else None
-        if found is not None:
-            self.context.notes.assume("periodic tasks are released at their offsets; the default offset is 0")
-        return found
+        found = self.solution.schedule(self.core, tasks, with_slices=False) if tasks else None
+        if found is None:
+            return None
+        self.context.notes.assume("periodic tasks are released at their offsets; the default offset is 0")
+        return found.response_times()
 
     def released(self, here: Sequence[ScheduledProcess]) -> list[schedule.PeriodicTask]:
         """The processes, if all releases are known and there is no blocking; otherwise nothing."""

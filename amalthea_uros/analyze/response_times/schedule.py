@@ -30,6 +30,8 @@ METHOD = "schedule over the hyperperiod, fixed priorities, preemptive"
 SOURCE = "Leung, Whitehead 1982"
 #: Schedules with more jobs are not computed; busy windows give bounds.
 MAX_JOBS = 300_000
+#: The execution slices of schedules with at most so many jobs are always recorded: that is quicker than another schedule with them.
+RECORDED_JOBS = 10_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -154,16 +156,51 @@ def fits(tasks: Sequence[PeriodicTask], until: Time) -> bool:
     return sum(task.demand.mean_worst / task.period for task in tasks) <= 1
 
 
+@dataclass(frozen=True, slots=True)
+class ExtremeCases:
+    """The schedules of all worst and of all best cases, up to the end of the second hyperperiod in which everything repeats.
+
+    Attributes
+    ----------
+    worst, best : the jobs of each task
+    has_slices : whether execution slices are recorded
+    """
+
+    tasks: Sequence[PeriodicTask]
+    worst: Sequence[Jobs]
+    best: Sequence[Jobs]
+    has_slices: bool
+
+    @classmethod
+    def of(cls, tasks: Sequence[PeriodicTask], with_slices: bool) -> ExtremeCases | None:
+        """The schedules of some tasks; None if they are too long or the core is overloaded.
+
+        Parameters
+        ----------
+        with_slices : whether execution slices are needed; those of short schedules are recorded anyway
+        """
+        until = steady_state_start(tasks) + 2 * hyperperiod(tasks)
+        if not fits(tasks, until):
+            return None
+        has_slices = with_slices or sum(until // task.period for task in tasks) <= RECORDED_JOBS
+        recorded = [has_slices] * len(tasks)
+        worst = schedule(tasks, until, MultiframeDemand.worst_of, recorded)
+        is_constant = all(frame.is_certain and frame.worst == frame.best for task in tasks for frame in task.demand.frames)
+        best = worst if is_constant else schedule(tasks, until, MultiframeDemand.best_of, recorded)
+        return cls(tasks, worst, best, has_slices)
+
+    def response_times(self) -> list[Response]:
+        """The exact response times."""
+        # Only tasks of at least the same priority have an effect.
+        uncertain = max((task.priority for task in self.tasks if not task.demand.is_certain), default=-inf)
+        rows = zip(self.tasks, self.worst, self.best, strict=True)
+        return [_response(task, worst, best, task.priority > uncertain) for task, worst, best in rows]
+
+
 def response_times(tasks: Sequence[PeriodicTask]) -> list[Response] | None:
     """The exact response times; None if the schedule is too long or the core is overloaded."""
-    until = steady_state_start(tasks) + 2 * hyperperiod(tasks)
-    if not fits(tasks, until):
-        return None
-    worst = schedule(tasks, until, MultiframeDemand.worst_of)
-    best = schedule(tasks, until, MultiframeDemand.best_of)
-    # Only tasks of at least the same priority have an effect.
-    uncertain = max((task.priority for task in tasks if not task.demand.is_certain), default=-inf)
-    return [_response(task, w, b, task.priority > uncertain) for task, w, b in zip(tasks, worst, best, strict=True)]
+    found = ExtremeCases.of(tasks, with_slices=False)
+    return None if found is None else found.response_times()
 
 
 def _response(task: PeriodicTask, worst: Jobs, best: Jobs, is_certain: bool) -> Response:

@@ -172,10 +172,11 @@ class Dataflow:
     def fired_at(self, stimulus: str) -> list[ActivityPosition]:
         """The positions at which processes fire a stimulus."""
         if self._fired_at is None:
-            self._fired_at = {}
+            found: dict[str, list[ActivityPosition]] = {}
             for process in self.system.processes:
                 for firing in self.firings(process):
-                    self._fired_at.setdefault(firing.stimulus, []).append(firing.position)
+                    found.setdefault(firing.stimulus, []).append(firing.position)
+            self._fired_at = found
         return self._fired_at.get(stimulus, [])
 
     def _stimuli(self, process: str) -> tuple[str, ...]:

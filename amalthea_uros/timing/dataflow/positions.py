@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import ceil
 from typing import NamedTuple, TypeAlias
 
 from amalthea_uros.perf.activities import (
@@ -22,6 +21,7 @@ from amalthea_uros.perf.software import Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.counters import ALWAYS, CallSites, UncountableError, reached
+from amalthea_uros.timing.counts import bounds_of
 
 #: Processes with more activities, or deeper calls, are not analysed.
 MAX_POSITIONS = 200_000
@@ -49,7 +49,7 @@ class ActivityPosition(NamedTuple):
     outer : the lists of activities that contain it
     counter : in which jobs it is reached, apart from branches; None if unknown, because other processes or branches count, too
     is_certain : whether each job reaches it at the same point, apart from the counter
-    times : how often a job executes it at most
+    times : how often a job executes it at most; None if that is unknown
     conditions : those that are tested when a job reaches it
     """
 
@@ -61,7 +61,7 @@ class ActivityPosition(NamedTuple):
     outer: Nesting
     counter: Counter | None
     is_certain: bool
-    times: int
+    times: int | None
     conditions: tuple[Condition, ...] = ()
 
 
@@ -91,7 +91,7 @@ class _Branch:
     outer: Nesting = ()
     counter: Counter | None = ALWAYS
     is_certain: bool = True
-    times: int = 1
+    times: int | None = 1
     above: tuple[str, ...] = ()
     calls: tuple[Call, ...] = ()
 
@@ -114,7 +114,7 @@ class _Walk:
                 self.found.append(self._access(activity, branch, outer))
                 continue
             if isinstance(activity, Call):
-                times *= _max_times(activity.times)
+                times = _repeated(times, activity.times)
                 counter = self._counter((*branch.calls, activity), branch)
             # Its last number is known only after its inner activities.
             self.found.append(None)
@@ -142,7 +142,7 @@ class _Walk:
 
     def _access(self, access: LabelAccess, branch: _Branch, outer: Nesting) -> ActivityPosition:
         """The position of an access, as most activities are: nothing is within it."""
-        number, times = len(self.found) + 1, branch.times * _max_times(access.times)
+        number, times = len(self.found) + 1, _repeated(branch.times, access.times)
         certain = branch.is_certain
         return ActivityPosition(self.process, number, number, access, branch.runnable, outer, branch.counter, certain, times)
 
@@ -166,7 +166,9 @@ def _too_complex(process: Process) -> TooComplexError:
     return TooComplexError(f"{process.name!r} has too many calls, or too deeply nested calls, to be analysed")
 
 
-def _of_call(call: Call, called: Runnable, branch: _Branch, outer: Nesting, counter: Counter | None, times: int) -> _Branch:
+def _of_call(
+    call: Call, called: Runnable, branch: _Branch, outer: Nesting, counter: Counter | None, times: int | None
+) -> _Branch:
     is_certain = branch.is_certain and call.times is None and called.condition is None
     return _Branch(called.name, outer, counter, is_certain, times, (*branch.above, called.name), (*branch.calls, call))
 
@@ -184,7 +186,7 @@ def _conditions(activity: Activity, system: System) -> tuple[Condition, ...]:
     return tuple(condition for condition in found if condition is not None)
 
 
-def _max_times(times: Count | float | None) -> int:
-    if times is None:
-        return 1
-    return times.most if isinstance(times, Count) else ceil(times)
+def _repeated(outer: int | None, times: Count | float | None) -> int | None:
+    """The maximum number of executions of an activity within others; None if it is unknown."""
+    _, most = bounds_of(times)
+    return None if outer is None or most is None else outer * most

@@ -5,7 +5,8 @@ from itertools import pairwise
 from random import Random
 
 import pytest
-from hypothesis import assume, example, given, settings
+from effort import examples
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from test_chain_systems import END, START, at, evaluate, read, system, ticks, write
 
@@ -224,21 +225,21 @@ ANY = [Preemption.PREEMPTIVE, Preemption.NON_PREEMPTIVE]
 
 
 @pytest.mark.parametrize("communication", Communication)
-@settings(max_examples=80)
+@examples(30)
 @given(systems(["one"], ALWAYS, varying=True, triggered=False))
 def test_one_core(communication, drawn):
     check(drawn, communication)
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@settings(max_examples=80)
+@examples(30)
 @given(systems(["one", "two"], ANY, varying=True, triggered=False))
 def test_two_cores_and_tasks_that_are_not_interrupted(communication, drawn):
     check(drawn, communication)
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@settings(max_examples=80)
+@examples(30)
 @given(systems(["one", "two"], ANY, varying=True, triggered=True))
 # The triggered task writes before it executes anything.
 @example(
@@ -256,7 +257,7 @@ def test_triggers(communication, drawn):
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@settings(max_examples=80)
+@examples(30)
 @given(systems(["one", "two"], ALWAYS, varying=False, triggered=False))
 def test_constant_execution_times_are_met_exactly(communication, drawn):
     tasks, chain = drawn

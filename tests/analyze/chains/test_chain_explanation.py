@@ -4,7 +4,8 @@ from dataclasses import replace
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from support import ROOT
 from test_brute_force import ALWAYS, ANY, built, run, systems
@@ -36,7 +37,7 @@ def check_sums(explanation):
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@settings(max_examples=40)
+@examples(20)
 @given(systems(["one", "two"], ALWAYS, varying=False, triggered=False))
 def test_the_jobs_of_exact_values_are_those_of_a_run(communication, drawn):
     tasks, chain = drawn
@@ -65,13 +66,13 @@ def test_the_jobs_of_exact_values_are_those_of_a_run(communication, drawn):
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@settings(max_examples=40)
+@examples(20)
 @given(systems(["one", "two"], ANY, varying=True, triggered=True), st.booleans())
 def test_the_hops_of_bounds_add_up(communication, drawn, controllers):
     check_all_hops(communication, drawn, controllers)
 
 
-@settings(max_examples=40)
+@examples(20)
 @given(systems(["one", "two"], ANY, varying=True, triggered=False), st.booleans())
 def test_the_hops_of_logical_times_add_up(drawn, controllers):
     check_all_hops(Communication.LET, drawn, controllers)

@@ -6,7 +6,7 @@ import pytest
 from test_chain_systems import END, START, at, producer_and_consumer, read, system, ticks, write
 
 from amalthea_uros import analyze_system
-from amalthea_uros.perf.activities import Call
+from amalthea_uros.perf.activities import AccessKind, Call, SenderReceiverAccess
 from amalthea_uros.perf.constraints import (
     ChainEnd,
     ChainSynchronization,
@@ -139,6 +139,22 @@ def test_how_long_data_are_valid(limits, expected):
         runnables=[Runnable(name="make", activities=(ticks(1), write("L")))],
     )
     assert evaluate(built=built, data_ages=[DataAgeConstraint(name="A", runnable="make", label="L", **limits)]) == expected
+
+
+def test_data_that_several_processes_read_by_different_means_have_an_age_in_each():
+    # The writer ends at 1 and 11 of every 20; the first reader reads at 5, the second one, by sender-receiver communication, at 18.
+    receive = SenderReceiverAccess(label="L", kind=AccessKind.READ)
+    built = system(
+        [
+            ("writer", 10, [Call(runnable="make")]),
+            ("reader", 20, [read("L"), ticks(1)], "core", 5),
+            ("receiver", 20, [receive, ticks(1)], "core", 18),
+        ],
+        [at("writer", END), at("reader", START)],
+        runnables=[Runnable(name="make", activities=(ticks(1), write("L")))],
+    )
+    age = DataAgeConstraint(name="A", runnable="make", label="L", latest=5 * US)
+    assert evaluate(built=built, data_ages=[age]) == [("data age", 4, "met"), ("data age", 7, "missed")]
 
 
 @pytest.mark.parametrize(

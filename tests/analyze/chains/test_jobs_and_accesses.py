@@ -4,7 +4,8 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from hypothesis import given, settings
+from effort import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from test_chain_systems import END, START, at, evaluate, read, system, ticks, write
 
@@ -12,7 +13,7 @@ from amalthea_uros import analyze_system
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.event_windows import EventWindows
 from amalthea_uros.analyze.results import Verdict
-from amalthea_uros.perf.activities import Call, Chance, Communication, Group, ProbabilitySwitch, Trigger
+from amalthea_uros.perf.activities import Call, Chance, Communication, Count, Group, ProbabilitySwitch, Trigger
 from amalthea_uros.perf.constraints import Constraints, EventSynchronization, LatencyConstraint, LatencyKind
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.events import RunnableChange, RunnableEvent
@@ -100,7 +101,7 @@ class TestCounters:
 
     COUNTERS = st.builds(Counter, prescaler=st.integers(1, 5), offset=st.integers(0, 7))
 
-    @settings(max_examples=60)
+    @examples(60)
     @given(
         first=COUNTERS, then=COUNTERS, is_first_before=st.booleans(), communication=st.sampled_from(["implicit", "explicit"])
     )
@@ -184,8 +185,22 @@ class TestOrderWithinAJob:
         tasks = [("A", 10, [ticks(1), switch]), ("B", 10, [read("L"), ticks(1)])]
         chain, values, _, rules = evaluate(system(tasks, [at("A", START), at("B", END)]))
         assert "max_reaction_time" not in values
-        assert chain.reason == "jobs of 'A' can take a branch without the access or event of the chain"
+        assert chain.reason == "jobs of 'A' can end without the access or event of the chain"
         assert rules == ["CHN003"]
+
+    @pytest.mark.parametrize("times", [0.5, 1.5, Count(least=0, mean=1.0, most=2)])
+    def test_an_access_that_need_not_occur_gives_no_bound(self, times):
+        """Any number of jobs without an access can have an average of 1.5, too."""
+        tasks = [("A", 10, [ticks(1), replace(write("L"), times=times)]), ("B", 10, [read("L"), ticks(1)])]
+        chain, values, _, _ = evaluate(system(tasks, [at("A", START), at("B", END)]))
+        assert "max_reaction_time" not in values
+        assert chain.reason == "jobs of 'A' can end without the access or event of the chain"
+
+    @pytest.mark.parametrize("times", [None, 1.0, Count(least=1, mean=1.5, most=2)])
+    def test_an_access_that_always_occurs_gives_a_bound(self, times):
+        tasks = [("A", 10, [ticks(1), replace(write("L"), times=times)]), ("B", 10, [read("L"), ticks(1)])]
+        _, values, _, _ = evaluate(system(tasks, [at("A", START), at("B", END)]))
+        assert "max_reaction_time" in values
 
 
 class TestTimesUpToAnAccess:

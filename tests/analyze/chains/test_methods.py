@@ -9,7 +9,8 @@ from random import Random
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from effort import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import SHARED
 
@@ -268,7 +269,7 @@ def backward(chain_times):
             yield start if others else read, write, next_write
 
 
-@settings(max_examples=150)
+@examples(100)
 @given(rows=ROWS, data=st.data())
 def test_no_run_is_worse_than_a_bound(rows, data):
     tasks = drawn(rows)

@@ -1,0 +1,279 @@
+"""Which combinations of phases give the same results, so that one of them is enough.
+
+Time is divided into slots of equal length. If all jobs that are released in a slot also end in it, whatever their phases, the slots do
+not affect each other, and the schedule is a row of slots that repeats from the start, without a transient. What happens to a process
+then follows from the slots in which it is released: from the jobs of at least its priority in them, and from what these execute.
+Two combinations of phases with the same row of slots, except for where in the cycle it begins, are schedules that are shifted by
+some slots: the jobs of a process have the same times relative to their releases, in the same cyclic order. Where the row begins has
+no effect, because all evaluations cover whole cycles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import gcd, lcm
+from typing import TypeAlias
+
+from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.response_times.core import periodic_tasks
+from amalthea_uros.analyze.response_times.schedule import fits, hyperperiod, steady_state_start
+from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.perf.activities import Call, Trigger, walk
+from amalthea_uros.perf.constraints import LatencyConstraint
+from amalthea_uros.perf.events import EventChain
+from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
+from amalthea_uros.timing.counters import first_effect
+from amalthea_uros.timing.phases import Occurrence, own_counters
+from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.units import Time
+
+#: The number of the first combination of each case, and how many combinations the case has.
+Cases: TypeAlias = Mapping[int, int]
+
+
+@dataclass(frozen=True)
+class PhaseCases:
+    """The cases of the combinations of phases.
+
+    Attributes
+    ----------
+    solution : for unknown phases; its response times bound those for all of them
+    first : for the first combination
+    combinations : the first job that takes each occurrence
+    """
+
+    solution: Solution
+    first: Solution
+    combinations: Sequence[Mapping[Occurrence, int]]
+
+    def of_everything(self) -> Cases:
+        """The cases of a whole system: combinations of one case can differ in no result."""
+        constraints = self.first.context.system.constraints
+        if constraints.data_ages or not all(isinstance(each, LatencyConstraint) for each in constraints.constraints):
+            return self._single
+        first = {number for cases in (*self.of_processes.values(), *self.of_chains) for number in cases}
+        return dict.fromkeys(sorted(first), 1)
+
+    @cached_property
+    def of_processes(self) -> Mapping[str, Cases]:
+        """The cases of the jobs of each process, and of the callbacks in them."""
+        return {name: self._of_process(name) for name in self.first.context.system.processes}
+
+    @cached_property
+    def of_chains(self) -> Sequence[Cases]:
+        """The cases of the latencies of each chain."""
+        return [self.of_chain(chain) for chain in self.first.context.system.events.chains]
+
+    def _of_process(self, name: str) -> Cases:
+        if self._is_untouched(name):
+            return self._same
+        slots = self._slots([name])
+        return self._single if slots is None else self._by_key([slots.row(each, name) for each in self.combinations])
+
+    def of_chain(self, chain: EventChain) -> Cases:
+        """The cases of the latencies of a chain."""
+        passed = list(dict.fromkeys(stage.process.name for stage in self._evaluation.stages(chain)))
+        if all(map(self._is_untouched, passed)):
+            return self._same
+        slots = self._slots(passed)
+        if slots is None:
+            return self._single
+        # Some bounds depend on the first jobs that take part.
+        taken = self._evaluation.occurrences(chain)
+        return self._by_key(
+            [(slots.row(each), *(each[occurrence] for occurrence in taken if occurrence in each)) for each in self.combinations]
+        )
+
+    @cached_property
+    def _evaluation(self) -> ChainEvaluator:
+        return ChainEvaluator(self.solution)
+
+    @property
+    def _same(self) -> Cases:
+        """All combinations are one case."""
+        return {0: len(self.combinations)}
+
+    @property
+    def _single(self) -> Cases:
+        """Each combination is a case of its own."""
+        return dict.fromkeys(range(len(self.combinations)), 1)
+
+    def _by_key(self, keys: Sequence[Hashable]) -> Cases:
+        first: dict[Hashable, int] = {}
+        found: dict[int, int] = {}
+        for number, key in enumerate(keys):
+            of_case = first.setdefault(key, number)
+            found[of_case] = found.get(of_case, 0) + 1
+        return found
+
+    def _is_untouched(self, name: str) -> bool:
+        """Whether no phase can have an effect on a process."""
+        context = self.first.context
+        scheduled = context.scheduled.get(name)
+        return scheduled is None or scheduled.core not in self._touched_cores
+
+    @cached_property
+    def _touched_cores(self) -> frozenset[str]:
+        """The cores on which something takes an occurrence, or depends on other processes."""
+        context = self.first.context
+        if context.system.os.semaphores:
+            return frozenset(context.system.cores)
+        return frozenset(
+            item.core for name, item in context.scheduled.items() if name in self._taking or self._is_triggered(name)
+        )
+
+    @cached_property
+    def _taking(self) -> frozenset[str]:
+        return frozenset(occurrence.process for occurrence in self.combinations[0])
+
+    def _is_triggered(self, name: str) -> bool:
+        system = self.first.context.system
+        stimuli = [system.stimuli_by_name.get(stimulus) for stimulus in system.processes[name].stimuli]
+        return any(isinstance(stimulus, InterProcess | EventTriggered) for stimulus in stimuli)
+
+    @cached_property
+    def _has_inner_counters(self) -> bool:
+        """Whether runnables count what they do, so that the counters of a process do not say all about its jobs."""
+        return any(
+            isinstance(activity, Call | Trigger) and activity.counter is not None
+            for runnable in self.first.context.system.software.runnables
+            for activity in walk(runnable.activities)
+        )
+
+    def _slots(self, names: Sequence[str]) -> _Slots | None:
+        """The slots of some processes and all that precede them; None if slots affect each other, or if that is unknown."""
+        context = self.first.context
+        places = [context.scheduled.get(name) for name in names]
+        tasks: dict[str, _Task] = {}
+        for place in places:
+            if place is None or not self._is_exact(place.core):
+                return None
+            for scheduled in context.on_core(place.core):
+                if scheduled.rank >= place.rank:
+                    task = self._task(scheduled.name)
+                    if task is None:
+                        return None
+                    tasks[scheduled.name] = task
+        periods = [task.releases.period for task in tasks.values()]
+        lengths = sorted({gcd(*periods), *periods, lcm(*periods)})
+        length = next((length for length in lengths if all(task.ends_in_slots(length) for task in tasks.values())), None)
+        return None if length is None else _Slots(tasks, length)
+
+    def _is_exact(self, core: str) -> bool:
+        """Whether the schedule of a core is evaluated for each combination, and repeats from the start."""
+        if self._has_inner_counters:
+            return False
+        tasks = periodic_tasks(core, self.first)
+        start = steady_state_start(tasks)
+        return bool(tasks) and fits(tasks, start + 2 * hyperperiod(tasks)) and start == max(task.offset for task in tasks)
+
+    def _task(self, name: str) -> _Task | None:
+        """A process; None if its jobs do not repeat from the start, or if their response times are unbounded."""
+        system, response = self.solution.context.system, self.solution.responses.get(name)
+        process = system.processes[name]
+        releases, counters = known_releases(process, system), tuple(own_counters(process))
+        if releases is None or releases.offset >= releases.period or response is None or response.worst is None:
+            return None
+        for counter in counters:
+            if counter.is_phase_known:
+                is_repeating = first_effect(counter) <= counter.prescaler
+            else:
+                is_repeating = Occurrence.of(name, counter) in self.combinations[0]
+            if not is_repeating:
+                return None
+        return _Task(name, releases, response.worst, counters)
+
+
+@dataclass(frozen=True, slots=True)
+class _Task:
+    """A process with known releases, the bound of its response times for all phases, and what counts its jobs."""
+
+    name: str
+    releases: Periodic
+    response: Time
+    counters: Sequence[Counter]
+
+    @property
+    def cycle(self) -> Time:
+        return self.releases.period * lcm(*(counter.prescaler for counter in self.counters))
+
+    def ends_in_slots(self, length: Time) -> bool:
+        """Whether each job ends in the slot in which it is released: releases are at all multiples of a step in the slots."""
+        step = gcd(length, self.releases.period)
+        return self.releases.offset % step + self.response <= step
+
+    def executed(self, phases: Sequence[int], jobs: int) -> list[tuple[bool, ...]]:
+        """For each of the first jobs, which of the counters let it do something."""
+        each = list(zip(phases, (counter.prescaler for counter in self.counters), strict=True))
+        return [tuple((job - phase) % prescaler == 0 for phase, prescaler in each) for job in range(1, jobs + 1)]
+
+    def phases(self, combination: Mapping[Occurrence, int]) -> tuple[int, ...]:
+        """The first job that each counter selects."""
+        return tuple(
+            first_effect(each) if each.is_phase_known else combination[Occurrence.of(self.name, each)] for each in self.counters
+        )
+
+
+class _Slots:
+    """The slots of some tasks over a cycle."""
+
+    def __init__(self, tasks: Mapping[str, _Task], length: Time) -> None:
+        self._tasks = tasks
+        self._length = length
+        self._cycle = lcm(length, *(task.cycle for task in tasks.values()))
+        self._executed: dict[tuple[str, tuple[int, ...]], list[tuple[bool, ...]]] = {}
+        self._contents: dict[tuple[Hashable, ...], int] = {}
+        self._rows: dict[tuple[int, ...], tuple[int, ...]] = {}
+
+    def row(self, combination: Mapping[Occurrence, int], name: str | None = None) -> tuple[int, ...]:
+        """What happens in each slot, by numbers, from the first slot on that makes the row the least one.
+
+        Parameters
+        ----------
+        name : only slots in which this process is released count; None: all
+        """
+        found: list[list[Hashable]] = [[] for _ in range(self._cycle // self._length)]
+        is_counted = [name is None] * len(found)
+        for task in self._tasks.values():
+            period, offset = task.releases.period, task.releases.offset
+            for job, executed in enumerate(self._jobs(task, combination)):
+                slot, at = divmod(offset + job * period, self._length)
+                found[slot].append((task.name, at, executed))
+                is_counted[slot] |= task.name == name
+        contents = (tuple(jobs) if counts else () for jobs, counts in zip(found, is_counted, strict=True))
+        row = tuple(self._contents.setdefault(jobs, len(self._contents)) for jobs in contents)
+        if row not in self._rows:
+            start = least_rotation(row)
+            self._rows[row] = row[start:] + row[:start]
+        return self._rows[row]
+
+    def _jobs(self, task: _Task, combination: Mapping[Occurrence, int]) -> Sequence[tuple[bool, ...]]:
+        """What each job of a cycle does."""
+        phases = task.phases(combination)
+        key = (task.name, phases)
+        if key not in self._executed:
+            self._executed[key] = task.executed(phases, self._cycle // task.releases.period)
+        return self._executed[key]
+
+
+def least_rotation(row: Sequence[int]) -> int:
+    """The start of the lexicographically least rotation of a row, in linear time.
+
+    Of two candidates, the one that is found to be greater rules out all starts up to the difference (Y. Shiloach, "Fast canonization of
+    circular strings", Journal of Algorithms 2, 1981).
+    """
+    one, other, same = 0, 1, 0
+    while max(one, other, same) < len(row):
+        first, second = row[(one + same) % len(row)], row[(other + same) % len(row)]
+        if first == second:
+            same += 1
+            continue
+        if first > second:
+            one += same + 1
+        else:
+            other += same + 1
+        other += one == other
+        same = 0
+    return min(one, other)

@@ -1,0 +1,58 @@
+"""The command `amuros` in a process of its own, as its user starts it."""
+
+import os
+import runpy
+import subprocess
+import sys
+import traceback
+from contextlib import suppress
+from pathlib import Path
+from tempfile import TemporaryFile
+from typing import IO, NoReturn
+
+from effort import IS_THOROUGH
+
+
+def amuros(*arguments: object, given: str = "", cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run the command to its end, with a text at its standard input.
+
+    Python and the package take longer to start than most commands to run: where the system allows it, the process is a copy of this
+    one, which has loaded them. A thorough run starts each command anew.
+    """
+    words = list(map(str, arguments))
+    if IS_THOROUGH or not hasattr(os, "fork"):
+        command = [sys.executable, "-m", "amalthea_uros", *words]
+        return subprocess.run(command, input=given, capture_output=True, check=False, encoding="utf-8", cwd=cwd)
+    reader, writer = os.pipe()
+    with TemporaryFile("w+b") as out, TemporaryFile("w+b") as err:
+        child = os.fork()
+        if child == 0:
+            os.close(writer)
+            _become(words, cwd, (reader, out.fileno(), err.fileno()))
+        os.close(reader)
+        with suppress(BrokenPipeError), os.fdopen(writer, "wb") as stream:
+            stream.write(given.encode())
+        _, status = os.waitpid(child, 0)
+        return subprocess.CompletedProcess(words, os.waitstatus_to_exitcode(status), _text(out), _text(err))
+
+
+def _become(words: list[str], cwd: Path | None, streams: tuple[int, int, int]) -> NoReturn:
+    """What `python -m amalthea_uros` does in this process, with these standard streams."""
+    try:
+        if cwd is not None:
+            os.chdir(cwd)
+        for number, stream in enumerate(streams):
+            os.dup2(stream, number)
+        sys.stdin, sys.stdout, sys.stderr = open(0), open(1, "w"), open(2, "w")  # noqa: SIM115 - open up to the end of the process
+        sys.argv = ["amuros", *words]
+        runpy.run_module("amalthea_uros", run_name="__main__", alter_sys=True)
+    except BaseException:
+        traceback.print_exc()
+        sys.stderr.flush()
+    finally:
+        os._exit(1)
+
+
+def _text(file: IO[bytes]) -> str:
+    file.seek(0)
+    return file.read().decode().replace("\r\n", "\n")
