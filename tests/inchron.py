@@ -310,7 +310,7 @@ def no_overhead(model):
 @row("INC-OS-SEMA-TYPE", "W")
 def semaphores_are_plain(model):
     plain = (None, "_undefined_", "CountingSemaphore")
-    special = [s for s in model.all(am.Semaphore) if s.priority_ceiling_protocol or s.ownership]
+    special = [s for s in model.all(am.Semaphore) if s.priority_ceiling_protocol or s.effective("ownership")]
     return special + [s for s in model.all(am.Semaphore) if s.semaphore_type not in plain]
 
 

@@ -74,8 +74,14 @@ def describe(path: StrPath, platform: str | None = None) -> Assembly:
 def _assembled(description: Description, folder: Path, platform: str | None) -> Assembly:
     from amalthea_uros.spec.platforms import whole_hardware
 
-    hardware, name = whole_hardware(description.hardware, folder, platform)
-    return assemble(description, hardware, name)
+    hardware, name, findings = whole_hardware(description.hardware, folder, platform)
+    try:
+        assembly = assemble(description, hardware, name)
+    except ReadError as error:
+        raise ReadError([*findings, *error.findings]) from None
+    if findings:
+        raise ReadError(findings)
+    return assembly
 
 
 def build(path: StrPath, version: str | None = None, platform: str | None = None) -> BuildResult:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
 from amalthea_uros._internal.resources import PLATFORMS
 from amalthea_uros._internal.similar import similar
@@ -10,6 +11,7 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.hardware import Hardware, Platform
 from amalthea_uros.spec.read import read_section
+from amalthea_uros.spec.repair import CERTAIN
 
 _SUFFIXES = (".yaml", ".yml")
 
@@ -19,8 +21,22 @@ def known_platforms() -> list[str]:
     return sorted(path.stem for path in PLATFORMS.glob("*.yaml"))
 
 
-def whole_hardware(stated: Hardware, folder: Path, other: str | None = None) -> tuple[Hardware, str | None]:
-    """The hardware of an application, completed by its platform, and the name of the platform.
+class WholeHardware(NamedTuple):
+    """The hardware of an application, completed by its platform.
+
+    Attributes
+    ----------
+    platform : name of the platform; None if there is none
+    findings : a misspelled platform, in whose place the one that was probably meant is used
+    """
+
+    hardware: Hardware
+    platform: str | None
+    findings: tuple[Finding, ...] = ()
+
+
+def whole_hardware(stated: Hardware, folder: Path, other: str | None = None) -> WholeHardware:
+    """The hardware of an application, completed by its platform.
 
     Parameters
     ----------
@@ -33,28 +49,46 @@ def whole_hardware(stated: Hardware, folder: Path, other: str | None = None) -> 
     """
     named = other or stated.platform
     if named is None:
-        return stated, None
-    platform = read_section(_file(stated, named, folder), Platform)
+        return WholeHardware(stated, None)
+    path, findings = _file(stated, named, folder)
+    platform = read_section(path, Platform)
+    _refuse_base(platform)
     added = {key: getattr(platform.hardware, key) for key in platform.hardware.model_fields_set - stated.model_fields_set}
     if stated.frequency is not None and "cores" in added:
         # One clock for all cores, whatever the platform says.
         added["cores"] = [core.model_copy(update={"frequency": None}) for core in added["cores"]]
-    return stated.model_copy(update=added), platform.platform
+    return WholeHardware(stated.model_copy(update=added), platform.platform, findings)
 
 
-def _file(stated: Hardware, name: str, folder: Path) -> Path:
+def _refuse_base(platform: Platform) -> None:
+    if platform.hardware.platform is not None:
+        message = f"the platform {platform.platform!r} refers to another platform, {platform.hardware.platform!r}"
+        advice = "Describe the whole hardware in the platform file."
+        raise ReadError([Finding("APP003", Severity.ERROR, message, platform.hardware.location("platform"), advice)])
+
+
+def _file(stated: Hardware, name: str, folder: Path) -> tuple[Path, tuple[Finding, ...]]:
+    """The file of a platform, and what is wrong with its name if it is clear which one is meant."""
     if name.endswith(_SUFFIXES):
         path = folder / name
         if path.is_file():
-            return path
+            return path, ()
         message, advice = f"platform file {str(path)!r} not found", "Give a path relative to the directory of this file."
-    else:
-        known = known_platforms()
-        if name in known:
-            return PLATFORMS / f"{name}.yaml"
-        near = similar(name, known)
-        message = f"unknown platform {name!r}"
-        advice = (
-            f"Did you mean {near[0]!r}?" if near else f"Known platforms: {', '.join(known)}; or give a file, e.g. ./mine.yaml."
-        )
-    raise ReadError([Finding("APP001", Severity.ERROR, message, stated.location("platform"), advice)])
+        raise ReadError([_undefined(stated, message, advice)])
+    known = known_platforms()
+    if name in known:
+        return _known_file(name), ()
+    near = similar(name, known)
+    advice = f"Did you mean {near[0]!r}?" if near else f"Known platforms: {', '.join(known)}; or give a file, e.g. ./mine.yaml."
+    finding = _undefined(stated, f"unknown platform {name!r}", advice)
+    if not similar(name, known, cutoff=CERTAIN):
+        raise ReadError([finding])
+    return _known_file(near[0]), (finding,)
+
+
+def _known_file(name: str) -> Path:
+    return PLATFORMS / f"{name}.yaml"
+
+
+def _undefined(stated: Hardware, message: str, advice: str) -> Finding:
+    return Finding("APP001", Severity.ERROR, message, stated.location("platform"), advice)

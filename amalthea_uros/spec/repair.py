@@ -9,7 +9,7 @@ from amalthea_uros.spec.nodes import Mapping, Place, Scalar
 from amalthea_uros.spec.section import Section
 
 #: Similarity of words from which on one is taken for a misspelling of the other.
-_CERTAIN = 0.8
+CERTAIN = 0.8
 
 
 def repair(mistakes: Iterable[Mistake], kind: type[Section]) -> set[Place] | None:
@@ -36,9 +36,9 @@ def _repair(mistake: Mistake, holder: Mapping, kind: type[Section]) -> bool:
     if key is None:
         return True  # It is also in the place of an alias, where it was repaired.
     if mistake.kind == "extra_forbidden":
-        return _rename(holder, key, intended_key(mistake, kind, _CERTAIN))
+        return _rename(holder, key, intended_key(mistake, kind, CERTAIN))
     if mistake.kind == "literal_error":
-        word = intended_word(mistake, _CERTAIN)
+        word = intended_word(mistake, CERTAIN)
         if word is None:
             del holder.items[key]
         else:

@@ -2,14 +2,18 @@
 
 import os
 import signal
+import sys
 from random import Random
 
 import pytest
 from effort import every
-from fuzzing import cases, invariants, line_mutations, sandbox
+from fuzzing import cases, commands, invariants, line_mutations, sandbox
 from fuzzing.cases import Case
+from fuzzing.contradictions import contradictions
 from fuzzing.shrinking import minimal, shrunk
 from support import ROOT
+
+from amalthea_uros import analyze_files, simulate
 
 HOSTILE = ROOT / "tests" / "hostile"
 
@@ -80,6 +84,45 @@ class TestSandbox:
         monkeypatch.setattr(invariants, "_OF_MODELS", (greedy,))
         ((_, (failure,)),) = sandbox.failures([Case("case.amxmi", b"")], 1)
         assert failure.reason.startswith("MemoryError")
+
+
+class TestCommands:
+    @pytest.mark.parametrize("text", ["\x1b[31mred", "a\u202eb", "::error::x", "  ::set-env::x", "##vso[task]", "a\rb"])
+    def test_what_acts_on_a_terminal_or_runner_is_a_failure(self, text, monkeypatch):
+        monkeypatch.setattr(commands, "main", lambda: sys.stdout.write(text))
+        with pytest.raises(commands.InvariantError):
+            commands.run("check")
+
+    def test_standard_output_for_programs_is_raw(self, monkeypatch):
+        monkeypatch.setattr(commands, "main", lambda: sys.stdout.write("\x1b[31mred"))
+        assert commands.run("fmt", "--diff", is_raw=True).out == "\x1b[31mred"
+
+
+class TestContradictions:
+    """A system agrees with its own simulation; one whose jobs take longer than what was analysed does not."""
+
+    TASKS = """
+amuros: 1
+name: app
+hardware: {platform: single-core, frequency: 100 MHz}
+tasks:
+  - {name: Writer, period: 10 ms, execution_time: 1 ms, writes: [a]}
+  - {name: Reader, period: 10 ms, execution_time: 1 ms, reads: [a]}
+chains:
+  - {name: chain, path: [Writer, Reader]}
+requirements:
+  - {process: Writer, response_time: 3 ms}
+"""
+
+    def test_only_what_is_beyond_a_claim(self, tmp_path):
+        short, long = tmp_path / "short.yaml", tmp_path / "long.yaml"
+        short.write_text(self.TASKS)
+        long.write_text(self.TASKS.replace("1 ms", "4 ms"))
+        analysis = analyze_files(short).analysis
+        assert list(contradictions(analysis, simulate(short, "50 ms"))) == []
+        found = list(contradictions(analysis, simulate(long, "50 ms")))
+        for name in ("response time 4000000000 of Writer", "max_reaction_time", " of Writer, is met"):
+            assert any(name in text for text in found), found
 
 
 @pytest.mark.parametrize("path", sorted(HOSTILE.iterdir()), ids=lambda path: path.name)

@@ -149,3 +149,16 @@ def test_an_overloaded_bus(author):
     findings = author.describe(APP.replace("executor:", "transport: {can: {bitrate: 10 kbit/s}}\n  executor:")).findings
     # Three frames of 135 bits every 20 ms.
     assert any(f.rule == "UR131" and "up to 202.5 % of the CAN bus" in f.message for f in findings)
+
+
+def test_a_misspelled_platform_does_not_hide_what_else_is_wrong(author):
+    text = APP.replace("single-core,", "singel-core,").replace("process: Timer", "process: Timr")
+    assert [(line, message) for line, _, message in author.findings(text)] == [
+        (3, "unknown platform 'singel-core'"),
+        (19, "undefined process or runnable 'Timr'"),
+    ]
+
+
+def test_a_platform_that_is_not_recognised_has_no_consequences(author):
+    text = APP.replace("single-core,", "tricore,").replace("execution_time: 1 ms}", "execution_time: {on: {tricore: 1 ms}}}")
+    assert [(line, message) for line, _, message in author.findings(text)] == [(3, "unknown platform 'tricore'")]

@@ -475,8 +475,10 @@ CASES = [
         '<osModel><osOverheads name="O"><apiOverhead><apiActivateTask/></apiOverhead></osOverheads></osModel>',
     ),
     ("INC-OS-OVERHEAD", 1, scheduler('<computationItems xsi:type="am:LabelAccess"/>')),
-    ("INC-OS-SEMA-TYPE", 0, '<osModel><semaphores name="S" semaphoreType="_undefined_"/></osModel>'),
+    ("INC-OS-SEMA-TYPE", 0, '<osModel><semaphores name="S" semaphoreType="_undefined_" ownership="false"/></osModel>'),
+    # The default of the ownership is true, so that canonical form, which states it, means the same.
     ("INC-OS-SEMA-TYPE", 1, '<osModel><semaphores name="S" ownership="true"/></osModel>'),
+    ("INC-OS-SEMA-TYPE", 1, '<osModel><semaphores name="S"/></osModel>'),
     ("INC-OS-SEMA-TYPE", 1, '<osModel><semaphores name="S" priorityCeilingProtocol="true"/></osModel>'),
     ("INC-MAP-SCHED", 1, "<mappingModel><schedulerAllocation/></mappingModel>"),
     (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 NUMBERS = ("0", "1", "-1", "1.5", "010", "0x10", "1e400", "-0", "NaN", ".inf", "9223372036854775808", "9" * 60)
 WORDS = ("", " ", "true", "on", "null", "~", "2024-01-01", "1:30", "1,5 ms", "a/b", "a b", "x" * 3000)
-CHARACTERS = ("名前 😀", "\u202e", "\u00a0", "e\u0301", "%ZZ", "#", "?type=", "'", "&amp;")
+CHARACTERS = ("名前 😀", "\u202e", "a\n::error::b", "##[b]", "\x9b1m", "\u00a0", "e\u0301", "%ZZ", "#", "?type=", "'", "&amp;")
 QUANTITIES = (
     "0 ms",
     "-1 ms",

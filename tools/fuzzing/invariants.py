@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import json
 import shutil
-import sys
 from collections.abc import Callable, Iterator
-from contextlib import redirect_stderr, redirect_stdout
-from io import StringIO
 from pathlib import Path
-from typing import NamedTuple, NoReturn
-from unittest.mock import patch
+from random import Random
+from typing import NoReturn
 
 from lxml import etree
+from templating import ROOT
 
+from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.verdicts import Verdict
-from amalthea_uros.cli.main import main
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.difference.comparison import ChangeKind
 from amalthea_uros.errors import AmurosError, WriteError
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.services.analyze import analyze_files
@@ -24,44 +23,22 @@ from amalthea_uros.services.check import check_files
 from amalthea_uros.services.diff import diff
 from amalthea_uros.services.fix import fix_files
 from amalthea_uros.services.format import format_files
+from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.paths import is_description
+from amalthea_uros.services.simulate import simulate_files
+from amalthea_uros.simulate.options import Mode, Options
+from amalthea_uros.trace.state_charts import check_trace
 from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.save import save
+from fuzzing.commands import InvariantError, require, require_visible, run
+from fuzzing.contradictions import contradictions
 
 Invariant = Callable[[Path, Path], None]
 
-
-class InvariantError(Exception):
-    """Something that must hold does not."""
-
-
-class Ended(NamedTuple):
-    """How a command ended."""
-
-    code: object
-    out: str
-    err: str
-
-
-def require(holds: bool, message: str) -> None:
-    """Fail unless something holds."""
-    if not holds:
-        raise InvariantError(message)
-
-
-def run(*arguments: str | Path) -> Ended:
-    """A command in this process; with the guarantees that all commands give."""
-    out, err = StringIO(), StringIO()
-    code: object = 0
-    with patch.object(sys, "argv", ["amuros", *map(str, arguments)]), redirect_stdout(out), redirect_stderr(err):
-        try:
-            main()
-        except SystemExit as end:
-            code = end.code or 0
-    ended = Ended(code, out.getvalue(), err.getvalue())
-    require(code in (0, 1, 2), f"exit code {code}")
-    require(code != 2 or bool(ended.err.strip() or ended.out.strip()), "exit code 2 without a message")
-    return ended
+#: Of simulations that are compared with an analysis, in picoseconds.
+_SHORT = 20 * 10**9
+#: What files are compared and combined with.
+_OTHER = ROOT / "samples" / "pump-1.2.0.amxmi"
 
 
 def _no_constant(text: str) -> NoReturn:
@@ -76,9 +53,20 @@ def _check_xml(path: Path) -> None:
     etree.parse(path)
 
 
+def _check_commands(path: Path) -> None:
+    """Each line is one command of GitHub Actions."""
+    text = path.read_text(encoding="utf-8")
+    require_visible(text)
+    require(all(line.startswith("::") for line in text.splitlines()), "a line is not a command")
+
+
+def _check_text(path: Path) -> None:
+    require_visible(path.read_text(encoding="utf-8"))
+
+
 def check(path: Path, folder: Path) -> None:
     """Rules end with a report that parses in each format."""
-    parsers = {"json": _check_json, "sarif": _check_json, "junit": _check_xml}
+    parsers = {"json": _check_json, "sarif": _check_json, "junit": _check_xml, "github": _check_commands}
     outputs = [part for name in parsers for part in ("--output", f"{name}={folder / name}")]
     run("check", path, "--output", "text", *outputs)
     for name, parse in parsers.items():
@@ -101,12 +89,47 @@ def analyze(path: Path, folder: Path) -> None:
     _check_json(report)
 
 
-def verdicts(path: Path, _folder: Path) -> None:
-    """Nothing is met that depends on something unknown."""
+def simulate(path: Path, folder: Path) -> None:
+    """A short simulation ends, with a result that parses, and traces of which the events are in a possible order."""
+    report, traces = folder / "simulation.json", [folder / "run.btf", folder / "run.csv"]
+    written = [part for trace in traces for part in ("--trace", trace)]
+    run("simulate", path, "--duration", "20ms", *written, "--output", f"json={report}")
+    if not report.exists():
+        require(not any(trace.exists() for trace in traces), "an error left a trace")
+        return
+    _check_json(report)
+    for trace in traces:
+        found = check_trace(trace)
+        require(not found, f"{trace.name}: {found[:1]}")
+
+
+def campaign(path: Path, folder: Path) -> None:
+    """Each run has a row, and runs of the same seed are equal."""
+    tables = [folder / "first.json", folder / "again.json"]
+    for table in tables:
+        ended = run("simulate", path, "--duration", "5ms", "--runs", "2", "--jobs", "1", "--table", table)
+        if not table.exists():
+            require(ended.code != 0, "exit code 0 without a table")
+            return
+    first, again = (json.loads(table.read_text(encoding="utf-8"), parse_constant=_no_constant) for table in tables)
+    require(len(first) == 2, f"{len(first)} rows")
+    require(first == again, "equal runs differ")
+
+
+def agreement(path: Path, _folder: Path) -> None:
+    """Nothing is met that depends on something unknown, and no simulation shows what the analysis says cannot be."""
     try:
         analysis = analyze_files(path).analysis
+        _require_known(analysis)
+        for mode in (Mode.SAMPLED, Mode.WORST):
+            simulation = simulate_files(path, Options(duration=_SHORT, mode=mode)).simulation
+            found = list(contradictions(analysis, simulation))
+            require(not found, f"{mode}: {found[:1]}")
     except AmurosError:
         return
+
+
+def _require_known(analysis: Analysis) -> None:
     for process in analysis.processes:
         known = process.response is not None and process.response.worst is not None
         require(process.verdict is not Verdict.MET or known, f"{process.name} meets its deadline with an unknown response time")
@@ -115,11 +138,23 @@ def verdicts(path: Path, _folder: Path) -> None:
         require(known, f"{requirement.name} is met with an unknown value")
 
 
-def simulate(path: Path, folder: Path) -> None:
-    """A short simulation ends, with a result that parses."""
-    report = folder / "simulation.json"
-    if run("simulate", path, "--duration", "20ms", "--output", f"json={report}").code != 2 and report.exists():
-        _check_json(report)
+def chains(path: Path, folder: Path) -> None:
+    """A path between any two ends can be added as a chain, which changes nothing else."""
+    try:
+        system = open_system([path]).system
+    except AmurosError:
+        return
+    ends = [*system.processes, *system.runnables, *system.labels]
+    rng = Random(path.stat().st_size)
+    for number in range(min(3, len(ends))):
+        target = folder / f"{number}.amxmi"
+        start, end = rng.choice(ends), rng.choice(ends)
+        ended = run("chains", path, f"--from={start}", f"--to={end}", "--add", "added", "-o", target)
+        require(target.exists() == (ended.code == 0), f"exit code {ended.code} with or without a file")
+        if target.exists():
+            changes = diff(path, target).changes
+            others = [change for change in changes if change.kind is not ChangeKind.ADDED and change.class_name != "Amalthea"]
+            require(not others, f"something else changed: {others[:1]}")
 
 
 def build(path: Path, folder: Path) -> None:
@@ -187,12 +222,45 @@ def fix(path: Path, folder: Path) -> None:
         require(target.read_bytes() == path.read_bytes(), "an error changed the file")
         return
     after = _errors(target)
-    require(after <= before, f"{after} errors after repairs, {before} before")
+    if before is not None and after is not None:
+        require(after <= before, f"{after} errors after repairs, {before} before")
     require(not any(model.repaired for model in fix_files(target).models), "repairs need a second run")
 
 
-def _errors(path: Path) -> int:
-    return sum(finding.severity is Severity.ERROR for finding in check_files(path).findings)
+def _errors(path: Path) -> int | None:
+    """The number of errors; None if the rest of them is unknown, because the file is not well-formed."""
+    findings = check_files(path).findings
+    if any("not well-formed" in finding.message for finding in findings):
+        return None
+    return sum(finding.severity is Severity.ERROR for finding in findings)
+
+
+def comparison(path: Path, folder: Path) -> None:
+    """A file does not differ from itself, and two files differ in both directions or in none."""
+    ended = run("diff", path, path)
+    if "error: " in ended.err:
+        return
+    require(ended.code == 0, "the file differs from itself")
+    codes = {run("diff", *pair, "--output", f"json={folder / 'diff.json'}").code for pair in ((path, _OTHER), (_OTHER, path))}
+    require(len(codes) == 1, f"exit codes {codes}")
+
+
+def previews(path: Path, folder: Path) -> None:
+    """What only shows a change writes nothing."""
+    target = folder / path.name
+    shutil.copyfile(path, target)
+    for command in (("check", "--fix", "--diff"), ("fmt", "--diff"), ("fmt", "--check")):
+        run(*command, target, is_raw="--diff" in command)
+        require(target.read_bytes() == path.read_bytes(), f"{' '.join(command)} changed the file")
+
+
+def several(path: Path, folder: Path) -> None:
+    """A model of several files, of which some objects have the same names, does not break a command."""
+    shutil.copyfile(path, folder / f"copy{path.suffix}")
+    shutil.copyfile(_OTHER, folder / "other.amxmi")
+    for command in ("check", "info", "analyze", "simulate", "fmt"):
+        run(command, *sorted(folder.iterdir()), *(("--duration", "2ms") if command == "simulate" else ()))
+    run("check", folder)
 
 
 def _loaded(path: Path) -> Model | None:
@@ -211,9 +279,19 @@ def _require_equal(old: Path, new: Path) -> None:
     require(not changes, f"the model changed: {changes[:1]}")
 
 
-_OF_BOTH: tuple[Invariant, ...] = (check, analyze, verdicts, simulate)
+_OF_BOTH: tuple[Invariant, ...] = (check, analyze, simulate, campaign, agreement, comparison)
 _OF_DESCRIPTIONS: tuple[Invariant, ...] = (build, *_OF_BOTH)
-_OF_MODELS: tuple[Invariant, ...] = (info, load_and_save, canonical, fix, migrate, *_OF_BOTH)
+_OF_MODELS: tuple[Invariant, ...] = (
+    info,
+    load_and_save,
+    canonical,
+    fix,
+    previews,
+    migrate,
+    several,
+    chains,
+    *_OF_BOTH,
+)
 
 
 def invariants_of(path: Path) -> Iterator[Invariant]:

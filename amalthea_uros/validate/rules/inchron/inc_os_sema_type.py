@@ -12,7 +12,7 @@ from amalthea_uros.validate.rule import ModelRule
 
 def _check(element: Semaphore, context: Context) -> Iterator[str]:
     is_plain = element.semaphore_type in (None, "_undefined_", "CountingSemaphore")
-    if not is_plain or element.priority_ceiling_protocol or element.ownership:
+    if not is_plain or element.priority_ceiling_protocol or element.effective("ownership"):
         yield f"the semaphore {element.name or ''!r} is changed to a plain counting semaphore by am2inc"
 
 
@@ -23,8 +23,8 @@ RULE = ModelRule(
     target=Semaphore,
     check=_check,
     rationale="am2inc silently drops the type, the priority ceiling protocol and the ownership of semaphores.",
-    remedy="Use counting semaphores without ownership and priority ceiling, or expect different blocking times after the "
-    "import.",
+    remedy="Use counting semaphores without priority ceiling and with ownership=false (the default since AMALTHEA 3.0.0 is true), or "
+    "expect different blocking times after the import.",
     fails="""
 <osModel>
   <semaphores name="S" semaphoreType="Mutex"/>
@@ -32,7 +32,7 @@ RULE = ModelRule(
 """,
     passes="""
 <osModel>
-  <semaphores name="S" semaphoreType="CountingSemaphore"/>
+  <semaphores name="S" semaphoreType="CountingSemaphore" ownership="false"/>
 </osModel>
 """,
 )
