@@ -202,11 +202,13 @@ class _Run:
             self.context.notes.assume(ASSUMPTION)
         pending = self.player.pending(name)
         used = found.total(JobMetric.RUNNING_TIME) + found.total(JobMetric.POLLING_TIME) + self._used_by_last_job(record)
+        placement = self.context.placement(name)
         waited = self.end - int(memory[record + ACTIVATION]) if pending else 0
         return ProcessObservation(
             name=name,
             is_isr=isinstance(self.context.system.processes[name], Isr),
-            core=self.context.placement(name).core,
+            core=placement.core,
+            priority=placement.priority,
             jobs=found.count,
             load=Fraction(used, self.end),
             metrics=found.observations(None if deadline is None else deadline.value),
