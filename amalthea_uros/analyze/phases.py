@@ -8,6 +8,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any, TypeVar
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze import metrics
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.results import (
@@ -112,7 +113,7 @@ def _response(worst: Response, responses: Sequence[Response]) -> Response:
         worst,
         best=min(response.best for response in responses),
         claim=Claim.EXACT if is_exact else Claim.BOUND,
-        method=f"{worst.method}, over all {len(responses)} phases",
+        method=f"{worst.method}, over all {counted(len(responses), 'phase')}",
     )
 
 
@@ -148,7 +149,7 @@ def _worst(values: Sequence[Value]) -> Value:
         worst,
         value=time,
         claim=Claim.EXACT if is_exact else Claim.BOUND,
-        method=f"{worst.method}, over all {len(values)} phases",
+        method=f"{worst.method}, over all {counted(len(values), 'phase')}",
     )
 
 

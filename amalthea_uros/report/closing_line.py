@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.process_verdicts import worst_response
 from amalthea_uros.analyze.results import ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.summary import Judged, Schedulable, Summary
 from amalthea_uros.analyze.verdicts import Ends, Failure
-from amalthea_uros.report.wording import counted
 from amalthea_uros.units import Rounding, number_text, rounded, rounded_time_text, time_text
 
 #: Reasons that are only consequences of others end like this.

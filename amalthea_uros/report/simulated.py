@@ -6,8 +6,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Protocol
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.report.wording import counted
 from amalthea_uros.simulate.results import Judged, ProcessObservation, RequirementObservation, Simulation
 from amalthea_uros.units import SECOND, Rounding, Time, number_text, rounded_time_text, time_text
 
