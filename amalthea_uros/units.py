@@ -188,22 +188,44 @@ def time_text(value: Time | Fraction) -> str:
 _DIGITS = 4
 
 
-def rounded_time_text(value: Time | Fraction, rounding: Rounding) -> str:
+def rounded_time_text(value: Time | Fraction, rounding: Rounding, limit: Time | Fraction | None = None) -> str:
     """A time for tables: whole numbers of its unit as they are, others with four significant digits, or without decimals.
+
+    Parameters
+    ----------
+    limit : what the time is compared with: it has as many digits as it takes to be on the same side of it
 
     >>> rounded_time_text(20_029 * MICROSECOND, Rounding.UP), rounded_time_text(20_029 * MICROSECOND, Rounding.DOWN)
     ('20.03 ms', '20.02 ms')
     >>> rounded_time_text(12_345 * SECOND, Rounding.UP)
     '12345 s'
+    >>> rounded_time_text(12_344_900 * NANOSECOND, Rounding.UP, limit=12_345 * MICROSECOND)
+    '12.3449 ms'
     """
     exact = Fraction(value)
     size = next((size for _, size in _TIME_STEPS if abs(exact) >= size), PICOSECOND)
     if exact % size == 0:
         return time_text(value)
-    whole = len(str(abs(exact) // size))
-    digits = Context(prec=max(_DIGITS, whole), rounding=rounding, Emax=MAX_EMAX)
-    number = digits.divide(Decimal((exact / size).numerator), Decimal((exact / size).denominator))
-    return time_text(Fraction(number) * size)
+    return time_text(rounded(exact / size, rounding, None if limit is None else Fraction(limit) / size) * size)
+
+
+def rounded(value: Fraction, rounding: Rounding, limit: int | Fraction | None = None) -> Fraction:
+    """A number with four significant digits, or without decimals; `limit` as for `rounded_time_text`."""
+    digits = max(_DIGITS, len(str(int(abs(value)))))
+    found = _with_digits(value, rounding, digits)
+    while limit is not None and _side(found, limit) != _side(value, limit):
+        digits += 1
+        found = value if value == limit else _with_digits(value, rounding, digits)
+    return found
+
+
+def _with_digits(value: Fraction, rounding: Rounding, digits: int) -> Fraction:
+    context = Context(prec=digits, rounding=rounding, Emax=MAX_EMAX)
+    return Fraction(context.divide(Decimal(value.numerator), Decimal(value.denominator)))
+
+
+def _side(value: Fraction, limit: int | Fraction) -> tuple[bool, bool]:
+    return value < limit, value > limit
 
 
 def frequency_text(value: Frequency) -> str:

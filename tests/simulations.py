@@ -42,6 +42,7 @@ def process(name, response, **others):
     values = {
         "is_isr": False,
         "core": "Core",
+        "priority": 1,
         "jobs": 300,
         "load": Fraction(4, 1000),
         "metrics": {JobMetric.RESPONSE_TIME: observation(*response), JobMetric.RUNNING_TIME: running},

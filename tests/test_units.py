@@ -153,6 +153,27 @@ def test_bounds_in_tables_remain_bounds(time):
 
 
 @pytest.mark.parametrize(
+    ("time", "rounding", "limit", "text"),
+    [
+        ("12.3449 ms", UP, "12.345 ms", "12.3449 ms"),
+        ("12.34501 ms", DOWN, "12.345 ms", "12.34501 ms"),
+        ("12.345 ms", UP, "12.345 ms", "12.345 ms"),
+        ("9.99999 ms", UP, "10 ms", "9.99999 ms"),
+        ("50.2821 ms", UP, "60 ms", "50.29 ms"),
+    ],
+)
+def test_rounding_does_not_contradict_a_verdict(time, rounding, limit, text):
+    assert units.rounded_time_text(units.parse_time(time), rounding, units.parse_time(limit)) == text
+
+
+@given(st.integers(0, 10**10), st.integers(-10, 10) | st.integers(-(10**7), 10**7), st.sampled_from(units.Rounding))
+def test_a_rounded_time_is_on_the_same_side_of_its_limit(limit, distance, rounding):
+    time = limit + distance
+    shown = units.parse_time(units.rounded_time_text(time, rounding, limit))
+    assert (shown < limit, shown > limit) == (time < limit, time > limit)
+
+
+@pytest.mark.parametrize(
     "text", ["9" * 200_000, "9" * 100_000 + " ms", " " * 100_000 + "1 ms" + " " * 100_000, "1" + "m" * 200_000]
 )
 def test_very_long_texts_are_refused_at_once(text):

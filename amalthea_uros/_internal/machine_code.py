@@ -30,6 +30,7 @@ class Effort:
     function : its name in the file, as a pattern
     compiling : about how many seconds numba takes to compile it for the first time
     spent : seconds that it has taken as Python in this process
+    reported : whether machine code was used when that was logged last
     """
 
     name: str
@@ -37,6 +38,7 @@ class Effort:
     function: str
     compiling: float
     spent: float = 0.0
+    reported: bool | None = None
 
     def pays_compiling(self, left: float = 0.0) -> bool:
         """Whether to go on with machine code.
@@ -65,10 +67,11 @@ class Effort:
             yield Path(expanduser(cache), "numba")  # noqa: PTH111 - Path.expanduser fails for a user without a home
 
     def report(self, *, is_used: bool, left: float = 0.0) -> None:
-        """Log whether machine code is used, and why."""
+        """Log whether machine code is used, and why; once, as long as it remains so."""
         # Nobody can listen before somebody has loaded it, which takes a few milliseconds.
-        if "logging" not in sys.modules:
+        if "logging" not in sys.modules or self.reported == is_used:
             return
+        self.reported = is_used
         import logging
 
         if not is_available():

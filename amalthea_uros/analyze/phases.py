@@ -155,7 +155,7 @@ def _response(worst: Response, results: Sequence[ProcessResult | CallbackResult]
 
 
 def _over_all(method: str, counts: Sequence[int]) -> str:
-    return f"{method}, over all {sum(counts)} phases"
+    return f"{method}, over all {counted(sum(counts), 'phase')}"
 
 
 def merged_chain(results: Sequence[ChainResult], counts: Sequence[int]) -> ChainResult:

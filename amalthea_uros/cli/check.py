@@ -48,7 +48,7 @@ _RULES = Several("RULE")
 @click.option(
     "--rules",
     "rule_files",
-    type=click.Path(path_type=Path),
+    type=INPUT,
     multiple=True,
     metavar="FILE",
     help="Also run the rules of a Python file, which is executed. May be repeated.",
@@ -99,6 +99,8 @@ def command(
         raise click.UsageError("--diff shows what --fix would change; add --fix")
     if fix and STANDARD_INPUT in paths:
         raise click.UsageError("--fix repairs files; standard input cannot be repaired")
+    if [*paths, *rule_files, baseline].count(STANDARD_INPUT) > 1:
+        raise click.UsageError("standard input can be only one of the files that are read")
     outputs = beside_files(outputs, [("--write-baseline", new_baseline)])
     add_rules(rule_files)
     settings = CheckSettings(
@@ -111,7 +113,7 @@ def command(
     if fix:
         from amalthea_uros.services.fix import fix_files
 
-        repairs = fix_files(paths, settings, each=each, write=not show_diff)
+        repairs = fix_files(paths, settings, each=each, only_amuros=only_amuros, write=not show_diff)
         show_text(repairs, on_error_stream=True)
         if show_diff:
             show_text(FilesDiff(repairs.changed, "repaired"))

@@ -93,9 +93,14 @@ def main() -> None:
     except AmurosError as error:
         from amalthea_uros.findings.unreadable import is_unreadable
         from amalthea_uros.report.terminal import Terminal
+        from amalthea_uros.report.wording import findings_text
 
-        Terminal(sys.stderr).findings(error.findings)
-        sys.exit(2 if is_unreadable(error.findings) else 1)
+        terminal = Terminal(sys.stderr)
+        terminal.findings(error.findings)
+        if is_unreadable(error.findings):
+            sys.exit(2)
+        terminal.line(f"{findings_text(error.findings)}; no result is written")
+        sys.exit(1)
     except InvalidArgumentError as error:
         click.UsageError(visible(str(error))).show()
         sys.exit(2)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.cli.ends import INTERRUPTED
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE, output_path
 from amalthea_uros.cli.output import (
@@ -27,7 +28,6 @@ from amalthea_uros.cli.output import (
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.pictures import Pictures
 from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
-from amalthea_uros.report.wording import counted
 from amalthea_uros.services.campaign.run import Outcome, count_runs
 from amalthea_uros.services.campaign.tables import table_format, write_table
 from amalthea_uros.services.changes import sweep as sweeping

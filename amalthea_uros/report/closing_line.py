@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.process_verdicts import worst_response
 from amalthea_uros.analyze.results import ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.summary import Judged, Schedulable, Summary
 from amalthea_uros.analyze.verdicts import Ends, Failure
-from amalthea_uros.report.wording import counted
-from amalthea_uros.units import time_text
+from amalthea_uros.units import Rounding, number_text, rounded, rounded_time_text, time_text
 
 #: Reasons that are only consequences of others end like this.
 _CONSEQUENCE = "could not be analysed"
@@ -31,9 +31,10 @@ def _tightest(summary: Summary) -> str:
     if item is None or item.margin is None:
         return ""
     limit = item.deadline if isinstance(item, ProcessResult) else item.limit
+    margin = rounded_time_text(item.margin, Rounding.DOWN)
     if limit is None or (isinstance(item, RequirementResult) and not item.is_upper):
-        return f"; tightest: {item.name}, {time_text(item.margin)} left"
-    return f"; tightest: {item.name}, {time_text(item.margin)} of {time_text(limit)} left"
+        return f"; tightest: {item.name}, {margin} left"
+    return f"; tightest: {item.name}, {margin} of {time_text(limit)} left"
 
 
 def _failures(summary: Summary) -> str:
@@ -44,7 +45,8 @@ def _failures(summary: Summary) -> str:
 
 
 def _core_failure(core: ProcessorResult) -> str:
-    return f"the load of {core.name} is {'at least ' if core.worst is None else ''}{float(core.at_least):.1%}"
+    load = rounded(core.at_least * 100, Rounding.DOWN, limit=100)
+    return f"the load of {core.name} is {'at least ' if core.worst is None else ''}{number_text(load)}%"
 
 
 def _failure(item: Judged) -> str:

@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.metamodel.versions import spelled
-from amalthea_uros.report.wording import counted
 from amalthea_uros.services.migrate import MigrationResult
 from amalthea_uros.services.migration import FileState, Kind, MigrationChange
 

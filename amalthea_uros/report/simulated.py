@@ -6,10 +6,10 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Protocol
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.report.wording import counted
 from amalthea_uros.simulate.results import Judged, ProcessObservation, RequirementObservation, Simulation
-from amalthea_uros.units import SECOND, Time, number_text, time_text
+from amalthea_uros.units import SECOND, Rounding, Time, number_text, rounded_time_text, time_text
 
 _MINUTE = 60 * SECOND
 REMINDER = "Observed values are no bounds; for bounds use `amuros analyze`."
@@ -84,7 +84,7 @@ def _tightest(simulation: Simulation) -> str:
         return ""
     limit = item.deadline if isinstance(item, ProcessObservation) else item.limit if item.is_upper else None
     of_limit = "" if limit is None else f" of {time_text(round(limit))}"
-    return f"; tightest: {item.name}, {time_text(round(item.margin))}{of_limit} left"
+    return f"; tightest: {item.name}, {rounded_time_text(item.margin, Rounding.DOWN)}{of_limit} left"
 
 
 def _failure(item: Judged) -> str:

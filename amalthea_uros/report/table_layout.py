@@ -11,7 +11,7 @@ GAP = 2
 #: What the columns of remarks are called.
 _REMARKS = ("", "reason")
 
-#: Shorter remarks, such as claims, stay in the table.
+#: Shorter remarks, such as claims, always stay in the table.
 _SHORT = 24
 
 #: Columns are not folded more narrowly than this.
@@ -29,12 +29,19 @@ def table_width(headings: Sequence[str], cells: Sequence[Sequence[str]]) -> int:
     return sum(GAP + width for width in column_widths(headings, cells))
 
 
-def with_footnotes(headings: Sequence[str], cells: Sequence[Sequence[str]]) -> tuple[list[list[str]], list[str]]:
-    """The cells with numbers in the place of long remarks, and the footnotes with these numbers from 1 on; equal remarks have one."""
+def with_footnotes(headings: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> tuple[list[list[str]], list[str]]:
+    """The cells with numbers in the place of remarks that make a table wider than a page, and the footnotes with these numbers.
+
+    Equal remarks have one footnote.
+    """
     notes: dict[str, int] = {}
+    others = [
+        GAP if name in _REMARKS else GAP + column for name, column in zip(headings, column_widths(headings, cells), strict=True)
+    ]
+    room = max(_SHORT, width - sum(others))
 
     def shown(heading: str, cell: str) -> str:
-        if heading not in _REMARKS or len(cell) <= _SHORT:
+        if heading not in _REMARKS or len(cell) <= room:
             return cell
         return f"[{notes.setdefault(cell, len(notes) + 1)}]"
 

@@ -81,8 +81,9 @@ class Terminal:
         """
         cells = [[visible(str(cell)) for cell in row] for row in rows]
         notes: list[str] = []
-        if table_width(headings, cells) > (self.width or WIDTH_ELSEWHERE):
-            cells, notes = with_footnotes(headings, cells)
+        width = self.width or WIDTH_ELSEWHERE
+        if table_width(headings, cells) > width:
+            cells, notes = with_footnotes(headings, cells, width)
         if self.width is not None:
             cells = folded(headings, cells, right, self.width)
         widths = column_widths(headings, cells)

@@ -1,20 +1,12 @@
-"""Numbers of things in sentences."""
+"""Numbers of findings in sentences."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Severity
-
-
-def counted(number: int, thing: str) -> str:
-    """A number of things.
-
-    >>> counted(1, "finding"), counted(12_345, "object")
-    ('1 finding', '12,345 objects')
-    """
-    return f"{number:,} {thing}" if number == 1 else f"{number:,} {thing}s"
 
 
 def findings_text(findings: Collection[Finding]) -> str:

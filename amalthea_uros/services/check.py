@@ -20,7 +20,7 @@ from amalthea_uros.findings.unreadable import is_unreadable
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import open_model
-from amalthea_uros.services.paths import StrPath, as_paths, by_model, is_other_yaml
+from amalthea_uros.services.paths import StrPath, as_paths, by_model, without_other_yaml
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run, run_system
@@ -117,7 +117,7 @@ def check_files(
     found: list[Finding] = []
     is_readable = True
     is_checked = False
-    for paths_of_model in by_model((path for path in files if not (only_amuros and is_other_yaml(path))), each):
+    for paths_of_model in by_model(without_other_yaml(files) if only_amuros else files, each):
         try:
             found += _check_group(paths_of_model, rules)
             is_checked = True

@@ -9,7 +9,7 @@ from pathlib import Path
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.services.check import selection_of
 from amalthea_uros.services.file_changes import FileChange
-from amalthea_uros.services.paths import StrPath, as_paths, by_model, is_description
+from amalthea_uros.services.paths import StrPath, as_paths, by_model, is_description, without_other_yaml
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.repair import repair
@@ -55,13 +55,18 @@ class FixResult:
 
 
 def fix_files(
-    paths: StrPath | Iterable[StrPath], settings: CheckSettings | None = None, *, each: bool = False, write: bool = True
+    paths: StrPath | Iterable[StrPath],
+    settings: CheckSettings | None = None,
+    *,
+    each: bool = False,
+    only_amuros: bool = False,
+    write: bool = True,
 ) -> FixResult:
     """Repair AMALTHEA models, and write the files that changed.
 
     Parameters
     ----------
-    settings, each : as for `check_files`
+    settings, each, only_amuros : as for `check_files`
     write : False: only find out what would change
 
     Raises
@@ -75,7 +80,7 @@ def fix_files(
     models: list[ModelRepairs] = []
     descriptions: list[Path] = []
     older: list[tuple[Path, str]] = []
-    for group in by_model(files, each):
+    for group in by_model(without_other_yaml(files) if only_amuros else files, each):
         if is_description(group[0]):
             descriptions.append(group[0])
             continue

@@ -44,6 +44,11 @@ def is_other_yaml(path: Path) -> bool:
         return False
 
 
+def without_other_yaml(paths: Iterable[Path]) -> Iterator[Path]:
+    """The paths without YAML files of other programs."""
+    return (path for path in paths if not is_other_yaml(path))
+
+
 def as_paths(paths: StrPath | Iterable[StrPath]) -> tuple[Path, ...]:
     """One path or several, as a tuple.
 

@@ -168,6 +168,7 @@ class ProcessObservation:
     Attributes
     ----------
     core : None if it can run on several ones
+    priority : None if it is unknown, or has no meaning for the scheduler
     jobs : number of jobs that ended
     load : the part of the duration in which it executed or polled, from 0 to 1
     metrics : of the jobs that ended; those without any value are absent
@@ -183,6 +184,7 @@ class ProcessObservation:
     name: str
     is_isr: bool
     core: str | None
+    priority: int | None
     jobs: int
     load: Fraction
     metrics: Mapping[JobMetric, MetricObservation] = field(repr=False)

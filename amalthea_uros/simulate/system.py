@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.layout import (
@@ -179,13 +180,13 @@ class _Run:
         for name, record in self.program.channels.items():
             lost = int(self.player.memory[record + OVERFLOWS])
             if lost:
-                message = f"the channel {name!r} was full: {lost:,} elements were lost"
+                message = f"the channel {name!r} was full: {counted(lost, 'element')} lost"
                 notes.warning("SIM004", message, system.channels[name])
         for (process, source), queue in self.program.messages.items():
             lost = int(self.player.memory[queue + LOST_MESSAGES])
             if lost:
                 message = (
-                    f"the queue of {source!r} was full: {lost:,} messages were lost, because {process!r} takes one in a job"
+                    f"the queue of {source!r} was full: {counted(lost, 'message')} lost, because {process!r} takes one in a job"
                 )
                 notes.warning("SIM005", message, system.processes[process])
 
@@ -202,11 +203,13 @@ class _Run:
             self.context.notes.assume(ASSUMPTION)
         pending = self.player.pending(name)
         used = found.total(JobMetric.RUNNING_TIME) + found.total(JobMetric.POLLING_TIME) + self._used_by_last_job(record)
+        placement = self.context.placement(name)
         waited = self.end - int(memory[record + ACTIVATION]) if pending else 0
         return ProcessObservation(
             name=name,
             is_isr=isinstance(self.context.system.processes[name], Isr),
-            core=self.context.placement(name).core,
+            core=placement.core,
+            priority=placement.priority,
             jobs=found.count,
             load=Fraction(used, self.end),
             metrics=found.observations(None if deadline is None else deadline.value),

@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import Protocol, TypeAlias
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.perf.constraints import (
     Bound,
     Constraint,
@@ -78,8 +79,7 @@ def deadline_of(process: str, context: TimingContext) -> Deadline | None:
 def judge_process(process: ProcessObservation) -> ProcessObservation:
     """The observations of a process with the verdict on its deadline and on lost activations."""
     if process.lost_activations:
-        number = process.lost_activations
-        reason = f"{number:,} activation{'' if number == 1 else 's'} lost"
+        reason = f"{counted(process.lost_activations, 'activation')} lost"
         return replace(process, verdict=ObservedVerdict.MISSED, reason=reason)
     if process.deadline is None:
         return process

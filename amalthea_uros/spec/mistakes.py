@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from pydantic_core import ErrorDetails
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Sequence, Source
@@ -143,19 +144,15 @@ def _sentence(details: ErrorDetails, node: Node) -> tuple[str, str]:
         case "empty":
             return "no value is given", "Give a value, or remove the key."
         case "too_short":
-            return f"expected at least {_items(context['min_length'])}, found {context['actual_length']}", ""
+            return f"expected at least {counted(context['min_length'], 'item')}, found {context['actual_length']}", ""
         case "too_long":
-            return f"expected at most {_items(context['max_length'])}, found {context['actual_length']}", ""
+            return f"expected at most {counted(context['max_length'], 'item')}, found {context['actual_length']}", ""
     template, help_text = _SENTENCES.get(details["type"], ("", ""))
     if not template:
         return details["msg"], ""
     return f"{template.format(message=details['msg'], **context)}, found {_given(node)}", help_text or _correction(
         details, node
     )
-
-
-def _items(count: int) -> str:
-    return "1 item" if count == 1 else f"{count} items"
 
 
 def _given(node: Node) -> str:

@@ -23,12 +23,3 @@ def joined(texts: Iterable[str], most: int = 5) -> str:
     if len(every) > most:
         every[most:] = [f"{len(every) - most} more"]
     return " and ".join(filter(None, [", ".join(every[:-1]), *every[-1:]]))
-
-
-def counted(number: int, noun: str) -> str:
-    """A number with its noun, in the singular or with a plural in -s.
-
-    >>> counted(1, "port"), counted(2, "port")
-    ('1 port', '2 ports')
-    """
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.metamodel.classes import CallArgument, Namespace
@@ -242,7 +243,7 @@ class _Resolver:
         """One finding for all references from a document to files that were not loaded."""
         texts = list(dict.fromkeys(text for text, _ in uses))
         shown = ", ".join(map(repr, texts[:3])) + (f" and {len(texts) - 3} more" if len(texts) > 3 else "")
-        message = f"{_count(len(uses), 'reference')} to {_count(len(texts), 'object')} in files that were not loaded: {shown}"
+        message = f"{counted(len(uses), 'reference')} to {counted(len(texts), 'object')} in files that were not loaded: {shown}"
         help_text = "Load these files too, or the whole directory. The references are preserved when the file is saved."
         _, first = uses[0]
         return self.finding("XMI025", Severity.WARNING, message, help_text, document, first.holder, first.feature.xml_name)
@@ -297,10 +298,6 @@ class _Resolver:
         assert path
         where = location(path, source, source.byte_starts[source.index[element]], attribute)
         return Finding(rule, severity, message, where, help_text, element.qualified_name)
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number:,} {noun}" + ("" if number == 1 else "s")
 
 
 def _reencoded(text: str) -> str:

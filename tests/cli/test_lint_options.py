@@ -50,6 +50,33 @@ def test_the_first_letters_of_ids_select_rules(amuros, two_tasks):
     assert rules_in(amuros("check", two_tasks, "--output", "json", "--ignore", "TIM")) == everything - timing
 
 
+def test_files_of_other_programs_are_not_named_among_those_that_are_not_repaired(amuros, tmp_path, two_tasks):
+    other = tmp_path / "compose.yaml"
+    other.write_text("services: {}\n")
+    run = amuros("check", "--fix", "--only-amuros", other, two_tasks)
+    assert "compose.yaml" not in run.stdout + run.stderr
+    assert "compose.yaml: a description is not repaired" in amuros("check", "--fix", other, two_tasks).stderr
+
+
+@pytest.mark.parametrize(
+    "arguments", [["-", "--rules", "-"], ["-", "--baseline", "-"], [ADVANCED, "--rules", "-", "--baseline", "-"], ["-", "-"]]
+)
+def test_standard_input_is_one_file(amuros, arguments):
+    run = amuros("check", *arguments)
+    assert run.code == 2
+    assert "standard input can be only one of the files" in run.stderr
+
+
+@pytest.mark.parametrize("command", ["analyze", "build", "info", "simulate"])
+def test_a_description_with_errors_gives_no_result_and_a_line_that_says_so(amuros, tmp_path, command):
+    path, result = tmp_path / "app.yaml", tmp_path / "result.json"
+    path.write_text("amuros: 1\nname: app\nhardware: {platform: single-core, frequenzy: 1 MHz}\napplication: {nodes: []}\n")
+    run = amuros(command, path, "--output", f"json={result}")
+    assert run.code == 1
+    assert run.stderr.splitlines()[-1] == "2 findings: 2 errors; no result is written"
+    assert not result.exists()
+
+
 def test_an_id_is_not_the_beginning_of_another_one(amuros):
     run = amuros("rules", "TIM-PRIORITY", "--output", "json")
     assert [rule["id"] for rule in json.loads(run.stdout)["rules"]] == ["TIM-PRIORITY"]

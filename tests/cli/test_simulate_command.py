@@ -63,6 +63,7 @@ def simulate_system(system, options, sinks=()):
         name="Control_Function",
         is_isr=False,
         core="Core_0",
+        priority=2,
         jobs=options.duration // period,
         load=Fraction(response, period),
         metrics={JobMetric.RESPONSE_TIME: observed},

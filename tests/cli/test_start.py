@@ -92,3 +92,13 @@ def test_verbose_commands_say_whether_machine_code_is_used(command):
     lines = [line for line in run.stderr.splitlines() if line.startswith("machine code of ")]
     assert len(lines) == 1
     assert ": not used, 0." in lines[0]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_verbose_campaigns_say_once_in_each_process_whether_machine_code_is_used(jobs):
+    arguments = ["simulate", str(MODEL), "--runs", "6", "--jobs", str(jobs), "--duration", "10ms", "-v"]
+    command = [sys.executable, "-m", "amalthea_uros", *arguments]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    lines = [line for line in run.stderr.splitlines() if line.startswith("machine code of the simulation: not used, 0.")]
+    assert 1 <= len(lines) <= jobs
+    assert len(lines) == len(run.stderr.splitlines())

@@ -104,6 +104,13 @@ def test_interrupts_of_a_core_come_first():
     assert shown.index("Executor") < shown.index("Control")
 
 
+def test_processes_of_a_core_are_sorted_by_priority_and_unknown_ones_come_last():
+    priorities = {"Low": 1, "Unknown": None, "High": 10, "Middle": 2}
+    processes = Results(replace(CONTROL, name=name, priority=priority) for name, priority in priorities.items())
+    shown = text(replace(SIMULATION, processes=processes))
+    assert sorted(priorities, key=shown.index) == ["High", "Middle", "Low", "Unknown"]
+
+
 def test_cores_that_are_idle_are_left_out():
     shown = text(SIMULATION)
     assert "1.670%" in shown
@@ -269,6 +276,7 @@ def test_json_has_the_fixed_names():
 def test_json_of_a_process():
     control = content(SIMULATION)["processes"][1]
     assert (control["name"], control["kind"], control["jobs"], control["load"]) == ("Control", "task", 300, 0.004)
+    assert control["priority"] == 1
     response = control["metrics"]["response_time"]
     assert (response["min_ps"], response["avg_ps"], response["max_ps"]) == (16 * US, 16_650_000, 29 * US)
     assert (response["jitter_ps"], response["at_max"]) == (13 * US, {"instance": 20, "time_ps": 20 * MS})

@@ -55,6 +55,13 @@ def test_long_remarks_become_footnotes_and_equal_ones_share_theirs(columns):
     ]
 
 
+def test_remarks_that_fit_stay_beside_those_that_do_not(columns):
+    columns(60)
+    fits = "x" * (60 - len("  task") - len("  "))
+    rows = [("A", fits), ("B", fits + "x")]
+    assert written(("task", "reason"), rows)[1:] == [f"  A     {fits}", "  B     [1]", f"  [1] {fits}x"]
+
+
 def test_footnotes_also_where_no_terminal_is_but_only_in_wide_tables(columns):
     # It is stated for terminals only: other programs may have left it.
     columns(40)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from support import ROOT
 
 from amalthea_uros import analyze_system, describe
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.changes.apply import apply
 from amalthea_uros.services.changes.apply import describe as describe_changes
@@ -125,7 +126,7 @@ def test_irregular_arrivals(changes):
     taking, lost = taking_jobs(arrivals, activations)
     assert [time for time, duration in zip(activations, durations, strict=True) if duration == 25 * US] == taking
     assert [finding.rule for finding in found.findings] == ["SIM005"] * (lost > 0)
-    assert lost == 0 or f"{lost:,} messages were lost" in found.findings[0].message
+    assert lost == 0 or f"{counted(lost, 'message')} lost" in found.findings[0].message
 
 
 def test_phases_are_random_where_nobody_states_them():

@@ -147,9 +147,7 @@ def test_a_full_channel_takes_no_more_and_counts_what_is_lost():
     sender = Proc("sender", (ticks(1), Send(channel="c", elements=2)), 10, **TASK)
     model = built(sender, channels=(Channel(name="c", capacity=3),))
     found = simulate_system(model, Options(duration=30 * US))
-    assert [(each.rule, each.message) for each in found.findings] == [
-        ("SIM004", "the channel 'c' was full: 3 elements were lost")
-    ]
+    assert [(each.rule, each.message) for each in found.findings] == [("SIM004", "the channel 'c' was full: 3 elements lost")]
 
 
 def test_the_counters_of_a_trigger_and_of_its_stimulus_follow_each_other():

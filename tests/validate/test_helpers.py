@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros._internal.graphs import bottom_up, circles
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.metamodel.classes import (
     DataSize,
     DataSizeUnit,
@@ -27,7 +28,7 @@ from amalthea_uros.metamodel.classes import (
 )
 from amalthea_uros.metamodel.magnitudes import bits, picoseconds
 from amalthea_uros.validate.quantities import bounds, clock
-from amalthea_uros.validate.wording import counted, joined, listed
+from amalthea_uros.validate.wording import joined, listed
 
 
 @pytest.mark.parametrize(

@@ -48,6 +48,7 @@ def _process(process: ProcessObservation) -> dict[str, Any]:
         "name": process.name,
         "kind": "isr" if process.is_isr else "task",
         "processor": process.core,
+        "priority": process.priority,
         "jobs": process.jobs,
         "load": float(process.load),
         "metrics": _observations(process.metrics),

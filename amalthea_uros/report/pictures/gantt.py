@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.report.pictures.boxes import MOST_TOOLTIPS
 from amalthea_uros.report.pictures.chain_ways import LANE, ChainWay, draw_way
 from amalthea_uros.report.pictures.gantt_legend import legend_entries, legend_notes
@@ -15,7 +16,6 @@ from amalthea_uros.report.pictures.svg import Markup, element, text, tooltip
 from amalthea_uros.report.pictures.text_widths import elided, text_width
 from amalthea_uros.report.pictures.time_axis import HEIGHT, TimeAxis, draw_grid, draw_time_axis
 from amalthea_uros.report.pictures.windows import check_window
-from amalthea_uros.report.wording import counted
 from amalthea_uros.units import Time, time_text
 
 #: Pixels.
@@ -112,7 +112,7 @@ def _subtitle(chart: GanttChart, axis: TimeAxis) -> str:
     missed = sum(axis.has(job.deadline) and job.misses_deadline(axis.end) for job in jobs)
     parts = [
         f"{time_text(chart.start)} to {time_text(chart.end)}",
-        counted(len(rows), "process") if len(rows) == 1 else f"{len(rows)} processes",
+        counted(len(rows), "process"),
         counted(len(jobs), "job"),
         *([counted(missed, "missed deadline")] if missed else []),
     ]

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.report.pictures.arrows import draw_activations, draw_deadlines, draw_instants, draw_lost
 from amalthea_uros.report.pictures.boxes import MOST_TOOLTIPS, draw_borders, draw_boxes
 from amalthea_uros.report.pictures.gantt_legend import legend_entries, legend_notes
@@ -15,7 +16,6 @@ from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, document, dra
 from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text
 from amalthea_uros.report.pictures.time_axis import HEIGHT, TimeAxis, draw_grid, draw_time_axis
 from amalthea_uros.report.pictures.windows import check_window
-from amalthea_uros.report.wording import counted
 from amalthea_uros.units import Time, time_text
 
 #: Pixels.

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from math import ceil, floor, inf
+from math import ceil, floor
 
 from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.latencies import write_chains
+from amalthea_uros.report.process_order import by_core_and_priority
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text.metrics import write_callbacks, write_metrics
 from amalthea_uros.services.analyze import AnalysisResult
@@ -85,7 +86,7 @@ def _bar(processor: ProcessorResult) -> str:
 
 def _processes(terminal: Terminal, analysis: Analysis) -> None:
     terminal.heading("Response times")
-    ordered = sorted(analysis.processes, key=_rank)
+    ordered = sorted(analysis.processes, key=lambda each: by_core_and_priority(each.processor, each.is_isr, each.priority))
     rows = []
     for process in ordered:
         response = process.response
@@ -96,7 +97,7 @@ def _processes(terminal: Terminal, analysis: Analysis) -> None:
                 "?" if process.priority is None else f"{'ISR ' if process.is_isr else ''}{process.priority}",
                 _time(process.wcet, Rounding.UP),
                 _time(response.best if response else None, Rounding.DOWN),
-                _time(response.worst if response else None, Rounding.UP),
+                _time(response.worst if response else None, Rounding.UP, process.deadline),
                 _deadline(process),
                 process.failure or process.verdict or "-",
                 process.reason or (str(response.claim) if response else ""),
@@ -106,14 +107,8 @@ def _processes(terminal: Terminal, analysis: Analysis) -> None:
     terminal.table(headings, rows, right=(2, 3, 4, 5, 6))
 
 
-def _rank(process: ProcessResult) -> tuple[bool, str, bool, float]:
-    """Sorts by core, and there by priority: what preempts others comes before them; unknown cores and priorities come last."""
-    priority = -inf if process.priority is None else process.priority
-    return (process.processor is None, process.processor or "", not process.is_isr, -priority)
-
-
-def _time(value: Time | None, rounding: Rounding) -> str:
-    return "?" if value is None else rounded_time_text(value, rounding)
+def _time(value: Time | None, rounding: Rounding, limit: Time | None = None) -> str:
+    return "?" if value is None else rounded_time_text(value, rounding, limit)
 
 
 def _deadline(process: ProcessResult) -> str:
@@ -150,10 +145,10 @@ def _limit(requirement: RequirementResult) -> str:
 
 def _value(requirement: RequirementResult) -> str:
     """The maximum or minimum that is limited: its safe end, or both ends if it lies between them and the verdict is not met."""
-    lower, upper = requirement.lower, requirement.upper
+    lower, upper, limit = requirement.lower, requirement.upper, requirement.limit
     if lower == upper or requirement.verdict is Verdict.MET or lower is None or upper is None:
-        return _time(requirement.value, Rounding.UP if requirement.is_upper else Rounding.DOWN)
-    return f"{rounded_time_text(lower, Rounding.DOWN)} to {rounded_time_text(upper, Rounding.UP)}"
+        return _time(requirement.value, Rounding.UP if requirement.is_upper else Rounding.DOWN, limit)
+    return f"{rounded_time_text(lower, Rounding.DOWN, limit)} to {rounded_time_text(upper, Rounding.UP, limit)}"
 
 
 def _margin(requirement: RequirementResult) -> str:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Single, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.report.wording import counted
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.units import time_text
 from amalthea_uros.uros.assemble import Assembly
@@ -89,11 +89,11 @@ def _traffic(terminal: Terminal, assembly: Assembly) -> None:
 
 def start_text(start: Initialisation) -> str:
     """The initialisation of the middleware, in a sentence."""
-    count = f"{len(start.entities)} entities, created one after the other"
-    text = f"{count}: at least {start.min_cycles} cycles ({time_text(start.min_time)})"
+    count = f"{counted(len(start.entities), 'entity')}, created one after the other"
+    text = f"{count}: at least {counted(start.min_cycles, 'cycle')} ({time_text(start.min_time)})"
     if start.max_cycles is None or start.max_time is None:
         return text
-    return f"{text}, at most {start.max_cycles} cycles ({time_text(start.max_time)})"
+    return f"{text}, at most {counted(start.max_cycles, 'cycle')} ({time_text(start.max_time)})"
 
 
 def _pools(terminal: Terminal, assembly: Assembly) -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.report.wording import counted
 from amalthea_uros.services.campaign.run import Outcome
 from amalthea_uros.services.simulate import CampaignResult, missed_in
 from amalthea_uros.units import time_text

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.difference.comparison import Change, ChangeKind
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.report.wording import counted
 from amalthea_uros.services.diff import DiffResult
 
 _MARKS = {

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.metamodel.summary import ModelSummary
 from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.report.wording import counted
 from amalthea_uros.services.info import InfoResult
 
 #: More classes and memories are only counted: the rare ones hide what matters.
@@ -73,8 +73,7 @@ def _chains(terminal: Terminal, summary: ModelSummary) -> None:
 
 
 def _counts(terminal: Terminal, summary: ModelSummary) -> None:
-    classes = f"{len(summary.counts)} {'class' if len(summary.counts) == 1 else 'classes'}"
-    terminal.heading(f"Objects ({sum(summary.counts.values()):,} of {classes})")
+    terminal.heading(f"Objects ({sum(summary.counts.values()):,} of {counted(len(summary.counts), 'class')})")
     shown = list(summary.counts.items())
     rest = shown[MOST_CLASSES:] if len(shown) > MOST_CLASSES + 1 else []
     rows = [(f"{count:,}", name) for name, count in shown[: len(shown) - len(rest)]]

@@ -34,7 +34,7 @@ def write_callbacks(terminal: Terminal, callbacks: Sequence[CallbackResult]) -> 
             callback.process,
             _time(callback.response.best if callback.response else None, Rounding.DOWN),
             _mean(callback.metrics[JobMetric.RESPONSE_TIME].mean if callback.response else None),
-            _time(callback.response.worst if callback.response else None, Rounding.UP),
+            _time(callback.response.worst if callback.response else None, Rounding.UP, callback.deadline),
             "-" if callback.deadline is None else time_text(callback.deadline),
             callback.reason or (str(callback.response.claim) if callback.response else ""),
         )
@@ -43,8 +43,8 @@ def write_callbacks(terminal: Terminal, callbacks: Sequence[CallbackResult]) -> 
     terminal.table(("callback", "process", "best", "mean", "worst", "deadline", ""), rows, right=(2, 3, 4, 5))
 
 
-def _time(value: Time | None, rounding: Rounding) -> str:
-    return "?" if value is None else rounded_time_text(value, rounding)
+def _time(value: Time | None, rounding: Rounding, limit: Time | None = None) -> str:
+    return "?" if value is None else rounded_time_text(value, rounding, limit)
 
 
 def _mean(value: Fraction | None) -> str:

@@ -7,6 +7,7 @@ from math import ceil, floor
 
 from amalthea_uros.report.findings import joined
 from amalthea_uros.report.latencies import HEADING
+from amalthea_uros.report.process_order import by_core_and_priority
 from amalthea_uros.report.simulated import SimulationShown, closing_line, duration_text, limit_text, value_text
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.simulate.results import (
@@ -19,7 +20,7 @@ from amalthea_uros.simulate.results import (
     Simulation,
 )
 from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.units import NANOSECOND, Rounding, rounded_time_text, time_text
+from amalthea_uros.units import NANOSECOND, Rounding, Time, rounded_time_text, time_text
 
 _BADNESS = (ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED, ObservedVerdict.OK, None)
 
@@ -57,34 +58,30 @@ def _percent(load: Fraction) -> str:
 
 def _processes(terminal: Terminal, simulation: Simulation) -> None:
     terminal.heading("Observed response times")
+    ordered = sorted(simulation.processes, key=lambda each: by_core_and_priority(each.core, each.is_isr, each.priority))
     rows = [
         (
             process.name,
             process.core or "-",
             f"{process.jobs:,}",
             _percent(process.load),
-            *_min_mean_max(process.response_time),
+            *_min_mean_max(process.response_time, process.deadline),
             _deadline(process),
             f"{process.lost_activations:,}",
             _verdict(process.verdict),
             process.reason,
         )
-        for process in sorted(simulation.processes, key=_place)
+        for process in ordered
     ]
     headings = ("process", "core", "jobs", "load", "min", "mean", "max", "deadline", "lost", "verdict", "")
     terminal.table(headings, rows, right=range(2, 9))
 
 
-def _place(process: ProcessObservation) -> tuple[bool, str, bool]:
-    """Sorts by core, interrupt service routines first; those without a core of their own come last."""
-    return (process.core is None, process.core or "", not process.is_isr)
-
-
-def _min_mean_max(found: MetricObservation | None) -> tuple[str, ...]:
+def _min_mean_max(found: MetricObservation | None, limit: Time | None = None) -> tuple[str, ...]:
     if found is None:
         return ("-",) * 3
     ends = ((found.min, Rounding.DOWN), (found.mean, Rounding.NEAREST), (found.max, Rounding.UP))
-    return tuple(rounded_time_text(value, rounding) for value, rounding in ends)
+    return tuple(rounded_time_text(value, rounding, limit) for value, rounding in ends)
 
 
 def _deadline(process: ProcessObservation) -> str:
@@ -175,7 +172,7 @@ def _requirements(terminal: Terminal, simulation: Simulation) -> None:
             requirement.name,
             f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity,
             limit_text(requirement),
-            _rounded(requirement, requirement.value, Rounding.UP if requirement.is_upper else Rounding.DOWN),
+            _rounded(requirement, requirement.value, Rounding.UP if requirement.is_upper else Rounding.DOWN, requirement.limit),
             _verdict(requirement.verdict),
             "" if requirement.margin is None else _rounded(requirement, requirement.margin, Rounding.DOWN),
             _remark(requirement),
@@ -185,10 +182,12 @@ def _requirements(terminal: Terminal, simulation: Simulation) -> None:
     terminal.table(("requirement", "what", "limit", "observed", "verdict", "margin", ""), rows, right=(3, 5))
 
 
-def _rounded(requirement: RequirementObservation, value: Fraction | None, rounding: Rounding) -> str:
+def _rounded(
+    requirement: RequirementObservation, value: Fraction | None, rounding: Rounding, limit: Fraction | None = None
+) -> str:
     if value is None or not requirement.is_time:
         return value_text(requirement, value)
-    return rounded_time_text(value, rounding)
+    return rounded_time_text(value, rounding, limit)
 
 
 def _remark(requirement: RequirementObservation) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import logging
 import pickle
 import signal
 from collections.abc import Callable, Iterator, Sequence
@@ -78,7 +79,9 @@ class _Pool:
         self._pool = self._start()
 
     def _start(self) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(self._count, get_context("spawn"), initializer=_install, initargs=(self._job,))
+        return ProcessPoolExecutor(
+            self._count, get_context("spawn"), initializer=_install, initargs=(self._job, _LOGGER.isEnabledFor(logging.INFO))
+        )
 
     def submit(self, runs: Sequence[Run]) -> Future[list[Outcome]]:
         """Have some runs executed."""
@@ -113,13 +116,22 @@ def _blocked_interrupts() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, former)
 
 
+_LOGGER = logging.getLogger("amalthea_uros")
+
 #: The job of a worker process: it is sent once, not with each run.
 _installed: list[Job] = []
 
 
-def _install(job: bytes) -> None:
-    """Prepare a worker process. Ctrl-C reaches it, too: it is up to the process that started it what to do."""
+def _install(job: bytes, is_verbose: bool) -> None:
+    """Prepare a worker process. Ctrl-C reaches it, too: it is up to the process that started it what to do.
+
+    Parameters
+    ----------
+    is_verbose : whether to show on standard error what is logged, as the process that started it does
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if is_verbose:
+        logging.basicConfig(format="%(message)s", level=logging.INFO)
     _installed.append(pickle.loads(job))
 
 

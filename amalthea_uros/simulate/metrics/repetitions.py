@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.perf.constraints import RepetitionConstraint
 from amalthea_uros.simulate.limited_values import LimitedQuantity, LimitedValues
 from amalthea_uros.simulate.metrics.extremes import Extremes
@@ -99,7 +100,7 @@ class Repetitions:
         constraint = self.constraint
         count = self._before
         waited = end - int(self._tail[0]) if count >= self.span else 0
-        reason = f"it occurred {count} time{'' if count == 1 else 's'}"
+        reason = f"it occurred {counted(count, 'time')}"
         distances = self.extremes.limited(reason, waited)
         for limit, is_upper in ((constraint.upper, True), (constraint.lower, False)):
             if limit is not None:

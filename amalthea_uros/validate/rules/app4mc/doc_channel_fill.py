@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Channel, ChannelSend
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.wording import counted
 
 
 def _check(element: Channel, context: Context) -> Iterator[str]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ConnectionHandler, ConnectionHandlerDefinition, PortType
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.wording import counted
 
 _TYPES = (PortType.INITIATOR, PortType.RESPONDER)
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Process, Runnable, RunnableSequencingConstraint
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.execution import executing
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.wording import counted
 
 
 def _check(element: RunnableSequencingConstraint, context: Context) -> Iterator[str]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.factfile import FeatureFact
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
-from amalthea_uros.validate.wording import counted
 
 
 def _check(element: Element, context: Context) -> Iterator[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Amalthea
 from amalthea_uros.metamodel.defaults import default_value
@@ -12,7 +13,6 @@ from amalthea_uros.metamodel.versions import facts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
-from amalthea_uros.validate.wording import counted
 
 
 def _check(element: Amalthea, context: Context) -> Iterator[str]:
