@@ -9,6 +9,7 @@ from fractions import Fraction
 from operator import mul
 from typing import Any, TypeVar
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze import metrics
 from amalthea_uros.analyze.phase_cases import Cases, PhaseCases
 from amalthea_uros.analyze.propagation import solve
