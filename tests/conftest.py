@@ -1,4 +1,3 @@
-import gc
 import os
 import sys
 from pathlib import Path
@@ -25,9 +24,3 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 os.environ.setdefault("PYTHONPYCACHEPREFIX", str(COMPILED / "python"))
 os.environ.setdefault("NUMBA_CACHE_DIR", str(COMPILED / "numba"))
 sys.dont_write_bytecode, sys.pycache_prefix = False, os.environ["PYTHONPYCACHEPREFIX"]
-
-
-def pytest_collection_finish() -> None:
-    """Thousands of tests live to the end: the garbage collector need not look at them again and again."""
-    gc.collect()
-    gc.freeze()

@@ -78,7 +78,7 @@ def refused(model):
         (ModeAccess(label="state", operation=ModeOperation.SET), "it sets the mode label 'state' to nothing"),
         (
             ModeAccess(label="number", operation=ModeOperation.SET, value="on"),
-            "the value 'on' of the mode label 'number' is not a whole number",
+            "the value 'on' of the mode label 'number' is no whole number, or too large",
         ),
         (Loop(activities=(ticks(1),)), "a loop has no condition"),
         (Switch(cases=(Case(activities=()),)), "a branch of a switch has no condition"),

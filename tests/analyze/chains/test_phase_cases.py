@@ -111,7 +111,7 @@ def test_few_combinations_of_the_sample_are_evaluated(monkeypatch):
     assert sorted(map(len, cases.of_processes.values())) == [8, 20]
     assert list(map(len, cases.of_chains)) == [40]
     assert len(evaluated) <= 8 + 20 + 40
-    assert "over all 1000 phases" in found["rclc_executor"].response.method
+    assert "over all 1,000 phases" in found["rclc_executor"].response.method
 
 
 def counted(prescaler, source):
