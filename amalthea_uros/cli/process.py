@@ -5,10 +5,12 @@ It imports next to nothing before it can handle Ctrl-C.
 
 from __future__ import annotations
 
+import atexit
 import gc
 import os
 import signal
 import sys
+from contextlib import suppress
 from types import FrameType
 from typing import Any
 
@@ -31,6 +33,9 @@ def run() -> None:
         code = _code()
     except KeyboardInterrupt:
         code = INTERRUPTED
+    with suppress(KeyboardInterrupt):
+        # Libraries clean up, such as the semaphores of processes, whose leaks would be reported after our last line.
+        atexit._run_exitfuncs()
     os._exit(128 + _received[0] if _received else code)
 
 
