@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeVar
 
 from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.events import Event, EventChain, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent, Segment
 from amalthea_uros.perf.events import Sequence as InSequence
+
+T = TypeVar("T", bound=Element)
 
 _PROCESS = {
     ProcessChange.START: am.ProcessEventType.START,
@@ -24,7 +28,7 @@ def add_chain(model: Model, chain: EventChain, events: Sequence[Event]) -> None:
 
     Raises
     ------
-    ValueError : the model already has a chain of that name.
+    ValueError : the model already has a chain of that name, or a process or runnable of the chain has no name of its own.
     """
     if model.find(am.EventChain, chain.name) is not None:
         raise ValueError(f"the model already has a chain {chain.name!r}")
@@ -53,12 +57,20 @@ def add_chain(model: Model, chain: EventChain, events: Sequence[Event]) -> None:
 def _event(model: Model, event: Event) -> am.Event:
     match event:
         case ProcessEvent(name=name, process=str(process), change=change) if change in _PROCESS:
-            return am.ProcessEvent(name=name, entity=model[am.Process, process], event_type=_PROCESS[change])
+            return am.ProcessEvent(name=name, entity=_named(model, am.Process, process), event_type=_PROCESS[change])
         case RunnableEvent(name=name, runnable=str(runnable), change=change, process=str(process)) if change in _RUNNABLE:
             return am.RunnableEvent(
                 name=name,
-                entity=model[am.Runnable, runnable],
+                entity=_named(model, am.Runnable, runnable),
                 event_type=_RUNNABLE[change],
-                process=model[am.Process, process],
+                process=_named(model, am.Process, process),
             )
     raise AssertionError(f"not an event of a path: {event}")
+
+
+def _named(model: Model, cls: type[T], name: str) -> T:
+    """An object by its name; objects without one, or with that of another one, are told apart by names that are not in the model."""
+    found = model.find(cls, name)
+    if found is None:
+        raise ValueError(f"{name!r} has no name of its own in the model, so that a chain cannot refer to it; name it first")
+    return found
