@@ -138,9 +138,11 @@ class ConstraintEvaluator:
         )
 
     def _data_age(self, constraint: DataAgeConstraint) -> Iterator[RequirementResult]:
-        """The age of the data written by the runnable at each read of them."""
+        """The age of the data written by the runnable at each read of another process."""
         written = LabelEvent(name="write", label=constraint.label, change=LabelChange.WRITE, runnable=constraint.runnable)
-        (occurrence, *_) = self.evaluation.context.dataflow.events.of(written)
+        (occurrence, *others) = self.evaluation.context.dataflow.events.of(written)
+        if any(other.process.name != occurrence.process.name for other in others):
+            raise UnknownError(f"{constraint.runnable!r} writes in several processes, whose cycles and readers differ")
         reading = LabelEvent(name="read", label=constraint.label, change=LabelChange.READ)
         readers = {
             position.process.name

@@ -141,6 +141,22 @@ def test_how_long_data_are_valid(limits, expected):
     assert evaluate(built=built, data_ages=[DataAgeConstraint(name="A", runnable="make", label="L", **limits)]) == expected
 
 
+def test_data_that_several_processes_write_have_no_age():
+    # The second writer is slower and reads what the first one writes: the cycle and the readers of the first one are not all.
+    built = system(
+        [
+            ("writer", 10, [Call(runnable="make")]),
+            ("slow", 40, [Call(runnable="make")]),
+            ("reader", 20, [read("L"), ticks(1)], "core", 5),
+        ],
+        [at("writer", END), at("reader", START)],
+        runnables=[Runnable(name="make", activities=(ticks(1), write("L")))],
+    )
+    for limits in ({"latest": 100 * US}, {"latest_cycle": 5}):
+        age = DataAgeConstraint(name="A", runnable="make", label="L", **limits)
+        assert [verdict for *_, verdict in evaluate(built=built, data_ages=[age])] == ["unknown"]
+
+
 def test_data_that_several_processes_read_by_different_means_have_an_age_in_each():
     # The writer ends at 1 and 11 of every 20; the first reader reads at 5, the second one, by sender-receiver communication, at 18.
     receive = SenderReceiverAccess(label="L", kind=AccessKind.READ)
