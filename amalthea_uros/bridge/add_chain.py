@@ -69,7 +69,7 @@ def _event(model: Model, event: Event) -> am.Event:
 
 
 def _named(model: Model, cls: type[T], name: str) -> T:
-    """An object by its name; objects without one, or with that of another one, are told apart by names that are not in the model."""
+    """The object with a name. `extract` makes up names for objects without a unique one; those are not in the model."""
     found = model.find(cls, name)
     if found is None:
         raise ValueError(f"{name!r} has no name of its own in the model, so that a chain cannot refer to it; name it first")

@@ -28,7 +28,7 @@ class KeptContent(NamedTuple):
 
     @classmethod
     def of(cls, content: Sequence[tuple[Element | None, str]], children: Sequence[Child]) -> KeptContent:
-        """The places of the content; a second value where only one is allowed stays behind the first, which is the one that counts."""
+        """The places of the content. Where only one value is allowed, readers use the first; further ones stay after it."""
         before: dict[Element | None, list[str]] = {}
         after: dict[str, list[str]] = {}
         if content:

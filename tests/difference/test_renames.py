@@ -1,4 +1,4 @@
-"""Renames that depend on each other are told as such, in as few words as possible."""
+"""Renames that depend on each other are reported as renames, in the shortest list of changes."""
 
 import pytest
 from effort import examples

@@ -3,6 +3,7 @@
 from itertools import pairwise
 
 import pytest
+from effort import IS_THOROUGH
 from hypothesis import given
 from hypothesis import strategies as st
 from svg_reading import SVG, assert_readable, parsed, rectangles, scale, texts
@@ -233,8 +234,9 @@ def test_a_narrow_box_is_not_merged_with_a_wide_one():
 
 
 def test_hundreds_of_thousands_of_jobs_make_a_small_picture():
-    rows = tuple(periodic(7000, MS, 300 * US + 10 * US * number) for number in range(30))
-    picture = gantt(GanttChart("dense", 0, 7000 * MS, (CoreRows("Core_0", rows),)))
+    jobs = 20_000 if IS_THOROUGH else 7_000
+    rows = tuple(periodic(jobs, MS, 300 * US + 10 * US * number) for number in range(30))
+    picture = gantt(GanttChart("dense", 0, jobs * MS, (CoreRows("Core_0", rows),)))
     assert len(picture) < 2_000_000
     parsed(picture)
 

@@ -1,4 +1,4 @@
-"""The jobs of all job chains of a system together are limited, and the others have bounds that are told to be bounds."""
+"""The job chains of a system share one limit of jobs; chains beyond it get bounds, and the result says so."""
 
 from test_chain_systems import END, START, at, read, system, ticks, write
 
