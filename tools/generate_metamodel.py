@@ -64,10 +64,10 @@ def render() -> dict[str, str]:
     for cls in merged.classes.values():
         by_module.setdefault(cls.module, []).append(cls)
     shared = {"merged": merged, "described": descriptions(), "versions": merged.versions, "all_versions": set(merged.versions)}
-    files = {"enums.py": environment.get_template("enums.py.jinja").render(shared)}
+    files = {"enums.py": environment.get_template("metamodel/enums.py.jinja").render(shared)}
     for module, classes in by_module.items():
         quantities = [cls for cls in classes if "Quantity" in cls.bases]
-        files[f"{module}.py"] = environment.get_template("classes.py.jinja").render(
+        files[f"{module}.py"] = environment.get_template("metamodel/classes.py.jinja").render(
             shared,
             module=module,
             classes=list(in_base_order(classes, merged)),
@@ -78,7 +78,7 @@ def render() -> dict[str, str]:
             unit_imports=[f"{cls.name}Unit" for cls in quantities],
         )
     exported = {module: sorted(cls.name for cls in classes) for module, classes in sorted(by_module.items())}
-    files["__init__.py"] = environment.get_template("classes_init.py.jinja").render(
+    files["__init__.py"] = environment.get_template("metamodel/classes_init.py.jinja").render(
         exported={"enums": sorted(merged.enums), **exported}
     )
     return files

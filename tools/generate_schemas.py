@@ -149,7 +149,7 @@ def render(version: str) -> str:
     declared = facts(version)
     numbers = [number for number in declared.numbers.values() if number.name != "Address"]
     doubles = [Double(n.name, n.minimum, n.exclusive) for n in numbers if n.java_type == "double"]
-    return environment.get_template("schema.xsd.jinja").render(
+    return environment.get_template("metamodel/schema.xsd.jinja").render(
         version=version,
         namespace=declared.namespace,
         classes=schema_classes(declared),

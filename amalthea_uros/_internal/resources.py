@@ -8,7 +8,7 @@ _PACKAGE = Path(__file__).parents[1]
 
 
 def resource_folder(name: str) -> Path:
-    """The folder `schemas` or `templates`: inside the package when installed, beside it in a checkout."""
+    """A folder such as `schemas` or `templates/report`: inside the package when installed, beside it in a checkout."""
     installed = _PACKAGE / name
     return installed if installed.is_dir() else _PACKAGE.parent / name
 

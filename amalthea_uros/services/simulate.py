@@ -22,12 +22,12 @@ from amalthea_uros.services.changes.sweep import Sweep
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require_labels, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.services.subject import Subject, system_of
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time, parse_time
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.model import Model
     from amalthea_uros.services.campaign.executors import Executor
     from amalthea_uros.simulate.results import Simulation
     from amalthea_uros.trace.sinks import TraceSink
@@ -237,7 +237,7 @@ def simulate_files(
 
 
 def simulate(
-    subject: StrPath | Iterable[StrPath] | System | Model,
+    subject: Subject,
     duration: str | Time,
     *,
     seed: int = 1,
@@ -266,7 +266,7 @@ def simulate(
     ------
     ReadError, WriteError, InvalidArgumentError : as for `simulate_files`.
     """
-    system = _system_of(subject)
+    system = system_of(subject)
     parsed = [change if isinstance(change, Change) else parse_change(change) for change in changes]
     system, settings = apply(system, settings or Settings(), parsed)
     require_settings(settings, system)
@@ -374,18 +374,6 @@ def _executor(runs: int, workers: int | None, cluster: str | None) -> Executor:
 def _available_cores() -> int:
     """The cores that this process may use; containers often have fewer than the computer."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _system_of(subject: StrPath | Iterable[StrPath] | System | Model) -> System:
-    if isinstance(subject, System):
-        return subject
-    from amalthea_uros.metamodel.model import Model
-
-    if isinstance(subject, Model):
-        from amalthea_uros.bridge.extract import extract
-
-        return extract(subject).system
-    return open_system(as_paths(subject)).system
 
 
 def _duration(duration: str | Time) -> Time:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 from urllib.parse import quote
 
+from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros._internal.files import resolved
 from amalthea_uros._version import __version__
 from amalthea_uros.diagnostics import Severity
@@ -20,9 +21,6 @@ if TYPE_CHECKING:
     from amalthea_uros.services.check import CheckResult
 
 RENDERS = ("CheckResult",)
-
-#: Where the product is documented, as in the metadata of the package; addresses must be absolute (SARIF 2.1.0, 3.49.12).
-DOCUMENTATION = "https://pypi.org/project/amuros/"
 
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 
@@ -57,7 +55,7 @@ def _rule(identifier: str) -> dict[str, Any]:
         "shortDescription": {"text": kind.title},
         "fullDescription": {"text": kind.rationale},
         "help": {"text": f"{kind.remedy} `amuros explain {identifier}` shows more."},
-        "helpUri": f"{DOCUMENTATION}#{quote(identifier)}",
+        "helpUri": f"{DOCUMENTATION}/findings/#{quote(identifier)}",
         "defaultConfiguration": {"level": _LEVELS[kind.severity]},
         "properties": {"tags": [profile_name(identifier)]},
     }
