@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from amalthea_uros.analyze.chains.explanation import ChainExplanation
 from amalthea_uros.analyze.results import Claim
 from amalthea_uros.report.terminal import Terminal
@@ -20,14 +22,16 @@ def write_hops(explanation: ChainExplanation, total: Time, claim: Claim, termina
         "write": [_time(hop.write) for hop in hops],
         "wait": [time_text(hop.wait) for hop in hops],
         "run": [time_text(hop.run) for hop in hops],
+        "share": [_percent(explanation.share(hop.wait + hop.run)) for hop in hops],
     }
     known = {name: cells for name, cells in columns.items() if set(cells) != {"-"}}
     rows = [list(row) for row in zip(*known.values(), strict=True)]
-    empty = [""] * (len(known) - 3)
+    empty = [""] * (len(known) - 4)
     if explanation.overwritten:
-        rows.append(["until overwritten", *empty, time_text(explanation.overwritten), ""])
+        share = explanation.share(explanation.overwritten)
+        rows.append(["until overwritten", *empty, time_text(explanation.overwritten), "", _percent(share)])
     waits, runs = sum(hop.wait for hop in hops) + explanation.overwritten, sum(hop.run for hop in hops)
-    rows.append(["sum", *empty, time_text(waits), time_text(runs)])
+    rows.append(["sum", *empty, time_text(waits), time_text(runs), ""])
     terminal.table(tuple(known), rows, right=range(1, len(known)))
     terminal.line(f"  waits and runs add up to {time_text(total)}; other times are relative to the first read")
     if claim is Claim.BOUND:
@@ -36,3 +40,7 @@ def write_hops(explanation: ChainExplanation, total: Time, claim: Claim, termina
 
 def _time(value: Time | None) -> str:
     return "-" if value is None else time_text(value)
+
+
+def _percent(share: Fraction) -> str:
+    return f"{float(share):.1%}"

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -12,14 +13,17 @@ import numpy as np
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import terms
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator, route_text
+from amalthea_uros.analyze.chains.executions import Execution
+from amalthea_uros.analyze.chains.hop_causes import Cause, CauseKind, HopReasons, cause
 from amalthea_uros.analyze.chains.job_chains import JobBudget, backward, forward
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, reach
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.phases import Phases
-from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity, Value
+from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity, RequirementResult, Value
 from amalthea_uros.perf.events import EventChain
+from amalthea_uros.timing.counters import ALWAYS
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.routes import Route, routes
@@ -41,6 +45,11 @@ class Hop:
     release, start : of the job; None if they are unknown
     read, write : when it reads, and when its output is visible
     wait, run : from the previous output (or the beginning) to the read, and from the read to the output
+    core : that executes it; None if it is unknown
+    period : time from one job that takes part to the next one, at most; None if it is unknown
+    one_in : of so many jobs of the process, one takes part
+    wait_causes, run_causes : why wait and run take their time; they add up to them
+    executions : of it and of those that interfere; empty if they are not the same in each such worst case
     """
 
     process: str
@@ -51,6 +60,12 @@ class Hop:
     write: Time
     wait: Time
     run: Time
+    core: str | None = None
+    period: Time | None = None
+    one_in: int = 1
+    wait_causes: tuple[Cause, ...] = ()
+    run_causes: tuple[Cause, ...] = ()
+    executions: tuple[Execution, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,6 +78,7 @@ class ChainExplanation:
     route : the events and the links between them
     hops : their waits and runs, with `overwritten`, add up to the value; empty for the `reason`
     overwritten : for data age, the time from the last output until the next one
+    requirements : the verdicts on limits of the chain
     """
 
     chain: ChainResult
@@ -72,10 +88,19 @@ class ChainExplanation:
     hops: tuple[Hop, ...] = ()
     overwritten: Time = 0
     reason: str = ""
+    requirements: tuple[RequirementResult, ...] = ()
+
+    def share(self, time: Time) -> Fraction:
+        """The part of the value that a time is."""
+        whole = self.value.value if self.value is not None else None
+        return Fraction(time, whole) if whole else Fraction(0)
 
 
 class _Step(NamedTuple):
-    """A hop in time units, before its place in the whole is known: release and start are counted back from the read."""
+    """A hop in time units, before its place in the whole is known: release and start are counted back from the read.
+
+    The times of executions are relative to the read.
+    """
 
     process: str
     wait: Time
@@ -83,10 +108,20 @@ class _Step(NamedTuple):
     job: int | None = None
     release: Time | None = None
     start: Time | None = None
+    period: Time | None = None
+    one_in: int = 1
+    wait_causes: tuple[Cause, ...] = ()
+    run_causes: tuple[Cause, ...] = ()
+    executions: tuple[Execution, ...] = ()
 
 
 def explain_chain(analysis: Analysis, name: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> ChainExplanation:
     """Explain a maximum latency of a chain."""
+    found = _explained(analysis, name, quantity)
+    return replace(found, requirements=tuple(each for each in analysis.requirements if each.object == name))
+
+
+def _explained(analysis: Analysis, name: str, quantity: Quantity) -> ChainExplanation:
     result = analysis.chains[name]
     value = result.value(quantity)
     if value is None or value.value is None:
@@ -168,8 +203,9 @@ class _RouteExplanation:
             path = _worst_path(part, self._of_part(number, len(latencies.parts)))
             if path is None:
                 return [], 0
-            steps = self._of_jobs(path, here)
-            found += [steps[0]._replace(wait=steps[0].wait + overwritten), *steps[1:]]
+            steps = self._of_jobs(path, here, part)
+            late = (*cause(CauseKind.JUST_MISSED, overwritten), *steps[0].wait_causes)
+            found += [steps[0]._replace(wait=steps[0].wait + overwritten, wait_causes=late), *steps[1:]]
             overwritten = path.overwritten
         return found, overwritten
 
@@ -181,17 +217,19 @@ class _RouteExplanation:
 
     # By job chains
 
-    def _of_jobs(self, path: _Path, groups: Sequence[Sequence[Stage]]) -> list[_Step]:
-        found = []
+    def _of_jobs(self, path: _Path, groups: Sequence[Sequence[Stage]], part: Sequence[TimedStage]) -> list[_Step]:
+        found: list[_Step] = []
         previous = path.begin
-        for job, times, group in zip(path.jobs, path.times, groups, strict=True):
-            release, write = int(times.releases[job]), int(times.writes[job])
+        for job, times, group, timed in zip(path.jobs, path.times, groups, part, strict=True):
+            release = int(times.releases[job])
             # A writer that preempts its reader has written before that reads, however early it could.
             read = max(int(times.reads[job]), previous)
+            # What passes on to a later job of the same process can do so before the bound of the read.
+            write = max(int(times.writes[job]), read)
             name = group[0].process.name
             number = self._number(group[0], release)
             start = self._start(name, number)
-            found += self._with_triggered(
+            step, *triggered = self._with_triggered(
                 _Step(
                     name,
                     wait=read - previous,
@@ -199,9 +237,16 @@ class _RouteExplanation:
                     job=number,
                     release=read - release,
                     start=None if start is None else read - start,
+                    period=timed.task.period,
+                    one_in=(group[0].counter or ALWAYS).prescaler,
                 ),
                 group,
             )
+            reasons = HopReasons(self.timing, group[0], timed, number)
+            wait, run, executed = reasons.of_job(previous, release, read, read + step.run)
+            if not found and step.wait:
+                wait = cause(CauseKind.JUST_MISSED, step.wait)
+            found += [step._replace(wait_causes=wait, run_causes=run, executions=executed), *triggered]
             previous = write
         return found
 
@@ -232,7 +277,10 @@ class _RouteExplanation:
         delays = [more - less for less, more in pairwise(parts)]
         if step.run < sum(delays):
             return [step]
-        triggered = [_Step(stage.process.name, 0, delay) for stage, delay in zip(group[1:], delays, strict=True)]
+        triggered = [
+            _Step(stage.process.name, 0, delay, run_causes=cause(CauseKind.TRIGGERED, delay))
+            for stage, delay in zip(group[1:], delays, strict=True)
+        ]
         return [step._replace(run=step.run - sum(delays)), *triggered]
 
     # By a bound
@@ -243,10 +291,21 @@ class _RouteExplanation:
         if of_method is None:
             return []
         found: list[_Step] = []
-        for term, group in zip(of_method([each.task for each in timed]), groups, strict=True):
+        for term, group, each in zip(of_method([each.task for each in timed]), groups, timed, strict=True):
             is_reduced = self.quantity is Quantity.MAX_REDUCED_REACTION_TIME and not found
-            step = _Step(group[0].process.name, wait=0 if is_reduced else term.wait, run=term.run)
-            found += self._with_triggered(step, group)
+            step, *triggered = self._with_triggered(
+                _Step(
+                    group[0].process.name,
+                    wait=0 if is_reduced else term.wait,
+                    run=term.run,
+                    period=each.task.period if each.task.is_regular else None,
+                    one_in=(group[0].counter or ALWAYS).prescaler,
+                ),
+                group,
+            )
+            waits = CauseKind.FULL_PERIOD if step.wait == each.task.period else CauseKind.NEXT_JOB
+            runs = CauseKind.LOGICAL if each.is_logical else CauseKind.RESPONSE
+            found += [step._replace(wait_causes=cause(waits, step.wait), run_causes=cause(runs, step.run)), *triggered]
         return found
 
     # Times
@@ -270,10 +329,32 @@ class _RouteExplanation:
                     write=self._picoseconds(write) - origin,
                     wait=self._picoseconds(read) - self._picoseconds(now),
                     run=self._picoseconds(write) - self._picoseconds(read),
+                    core=self._core(step.process),
+                    period=None if step.period is None else self._picoseconds(step.period),
+                    one_in=step.one_in,
+                    wait_causes=self._rounded(step.wait_causes, now),
+                    run_causes=self._rounded(step.run_causes, read),
+                    executions=tuple(
+                        replace(
+                            each,
+                            begin=self._picoseconds(read + each.begin) - origin,
+                            end=self._picoseconds(read + each.end) - origin,
+                        )
+                        for each in step.executions
+                    ),
                 )
             )
             now = write
         return tuple(found)
+
+    def _core(self, process: str) -> str | None:
+        scheduled = self.evaluator.context.scheduled.get(process)
+        return None if scheduled is None else scheduled.core
+
+    def _rounded(self, causes: Sequence[Cause], begin: Time) -> tuple[Cause, ...]:
+        """Causes in picoseconds, which add up to the time from the beginning of the first to the end of the last one."""
+        ends = [self._picoseconds(end) for end in accumulate((each.time for each in causes), initial=begin)]
+        return tuple(replace(each, time=end - start) for each, (start, end) in zip(causes, pairwise(ends), strict=True))
 
 
 class _Path(NamedTuple):

@@ -5,9 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.analyze.chains.explanation import ChainExplanation
+from amalthea_uros.analyze.chains.executions import Execution
+from amalthea_uros.analyze.chains.explanation import ChainExplanation, Hop
+from amalthea_uros.analyze.chains.hop_causes import Cause
 from amalthea_uros.analyze.explanation import ProcessExplanation
 from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.services.analyze import Explanation
 
 
@@ -74,9 +77,47 @@ def _chain_json(explanation: ChainExplanation) -> dict[str, Any]:
                 "write_ps": hop.write,
                 "wait_ps": hop.wait,
                 "run_ps": hop.run,
+                "core": hop.core,
+                "period_ps": hop.period,
+                "one_in": hop.one_in,
+                "share": float(explanation.share(hop.wait + hop.run)),
+                "wait_causes": [_cause_json(cause, hop) for cause in hop.wait_causes],
+                "run_causes": [_cause_json(cause, hop) for cause in hop.run_causes],
+                "executions": [_execution_json(each) for each in hop.executions],
             }
             for hop in explanation.hops
         ],
         "until_overwritten_ps": explanation.overwritten,
         "reason": explanation.reason,
+        "requirements": [
+            {
+                "name": each.name,
+                "quantity": each.quantity,
+                "limit_ps": each.limit,
+                "verdict": each.verdict,
+                "margin_ps": each.margin,
+            }
+            for each in explanation.requirements
+        ],
+    }
+
+
+def _cause_json(cause: Cause, hop: Hop) -> dict[str, Any]:
+    return {
+        "kind": cause.kind,
+        "time_ps": cause.time,
+        "process": cause.process or None,
+        "jobs": cause.jobs or None,
+        "terms": {f"{name}_ps": time for name, time in cause.terms},
+        "reason": cause_text(cause, hop),
+    }
+
+
+def _execution_json(execution: Execution) -> dict[str, Any]:
+    return {
+        "core": execution.core,
+        "process": execution.process,
+        "job": execution.job,
+        "begin_ps": execution.begin,
+        "end_ps": execution.end,
     }

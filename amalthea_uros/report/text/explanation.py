@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 from amalthea_uros.analyze.chains.explanation import ChainExplanation
@@ -9,10 +10,14 @@ from amalthea_uros.analyze.execution_shares import ExecutionShare
 from amalthea_uros.analyze.explanation import ProcessExplanation
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.report.hops import write_hops
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.analyze import Explanation
 from amalthea_uros.units import Time, time_text
+
+#: More executions of the worst case are only counted.
+_MOST_EXECUTIONS = 20
 
 
 def write(explanation: Explanation, terminal: Terminal) -> None:
@@ -91,17 +96,73 @@ def _percent(load: Fraction | None) -> str:
 
 
 def _chain(explanation: ChainExplanation, terminal: Terminal) -> None:
-    """Write the hops of a chain, which add up to its latency."""
+    """Write the hops of a chain, which add up to its latency, and why each of them takes its time."""
     name, quantity = terminal.style(explanation.chain.name, "1"), explanation.quantity.replace("_", " ")
     value = explanation.value
     if value is None or value.value is None:
         terminal.line(f"{name}: {quantity} unknown: {explanation.reason}")
+        _requirements(explanation, terminal)
         return
     terminal.line(f"{name}: {quantity} {time_text(value.value)} ({value.claim})")
+    _requirements(explanation, terminal)
     if explanation.route:
         terminal.line(f"  {explanation.route}")
     if explanation.hops:
         write_hops(explanation, value.value, value.claim, terminal)
+        _causes(explanation, terminal)
+        _executions(explanation, terminal)
     else:
         terminal.line(f"  no single hops: {explanation.reason}")
     terminal.line(f"  {value.method} ({value.source})")
+
+
+def _requirements(explanation: ChainExplanation, terminal: Terminal) -> None:
+    """Write the limits of the chain, with how far the values are from them."""
+    for each in explanation.requirements:
+        if each.limit is None or each.value is None:
+            rest = f": {each.reason}" if each.reason else ""
+        else:
+            margin = each.margin or 0
+            rest = f": {time_text(abs(margin))} {'left' if margin >= 0 else 'too late' if each.is_upper else 'too early'}"
+        limit = "" if each.limit is None else f" {'at most' if each.is_upper else 'at least'} {time_text(each.limit)}"
+        terminal.line(f"  {each.name}, {each.quantity}{limit}: {each.verdict}{rest}")
+
+
+def _causes(explanation: ChainExplanation, terminal: Terminal) -> None:
+    """Write why each wait and each run takes its time, with its share of the latency."""
+    rows = [
+        (hop.process, part, time_text(cause.time), f"{float(explanation.share(cause.time)):.1%}", cause_text(cause, hop))
+        for hop in explanation.hops
+        for part, causes in (("wait", hop.wait_causes), ("run", hop.run_causes))
+        for cause in causes
+    ]
+    if explanation.overwritten:
+        share = f"{float(explanation.share(explanation.overwritten)):.1%}"
+        rows.append((explanation.hops[-1].process, "wait", time_text(explanation.overwritten), share, "until it writes again"))
+    terminal.table(("why so long", "", "time", "share", "reason"), _once(rows), right=(2, 3))
+
+
+def _once(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Rows in which the first cell is empty if it is that of the row before."""
+    previous = [("",), *rows]
+    return [("" if row[0] == before[0] else row[0], *row[1:]) for before, row in zip(previous, rows, strict=False)]
+
+
+def _executions(explanation: ChainExplanation, terminal: Terminal) -> None:
+    """Write which jobs execute when, as far as they contribute to the latency."""
+    found = [(hop, each) for hop in explanation.hops for each in hop.executions]
+    if not found:
+        return
+    rows = [
+        (
+            each.core,
+            f"{each.process}#{each.job}",
+            time_text(each.begin),
+            time_text(each.end),
+            "of the chain" if (each.process, each.job) == (hop.process, hop.job) else f"before {hop.process}",
+        )
+        for hop, each in found[:_MOST_EXECUTIONS]
+    ]
+    terminal.table(("core", "process#job", "from", "to", ""), rows, right=(2, 3))
+    if len(found) > len(rows):
+        terminal.line(f"  ... {len(found) - len(rows):,} more")

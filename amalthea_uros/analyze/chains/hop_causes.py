@@ -1,0 +1,161 @@
+"""Why the parts of a latency take their time: the next release, other jobs, the execution itself, or what a bound assumes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+from amalthea_uros.analyze.chains.boundary_times import is_logical
+from amalthea_uros.analyze.chains.executions import Execution, executions
+from amalthea_uros.analyze.chains.stage_timing import StageTiming
+from amalthea_uros.analyze.chains.timed_stage import TimedStage
+from amalthea_uros.timing.dataflow.stages import Stage
+from amalthea_uros.units import Time
+
+
+class CauseKind(StrEnum):
+    """Why a part of a latency takes its time.
+
+    Attributes
+    ----------
+    JUST_MISSED : the input arrives just after the previous job has read
+    NEXT_JOB : the next job that takes part is released later
+    INTERFERENCE : jobs of another process execute before the job reads
+    PREEMPTION : jobs of another process execute between its read and its output
+    EXECUTION : the job itself executes
+    LOGICAL : the output is published at the end of the period (LET)
+    FULL_PERIOD : the bound assumes that a whole period passes until the next job
+    READ_DELAY : from the release to the read, at least the sum of what is known only as bounds
+    RESPONSE : from the earliest read to the latest output: the response time, with all interference and blocking
+    TRIGGERED : the response time of a process that another one triggers
+    """
+
+    JUST_MISSED = "just_missed"
+    NEXT_JOB = "next_job"
+    INTERFERENCE = "interference"
+    PREEMPTION = "preemption"
+    EXECUTION = "execution"
+    LOGICAL = "logical"
+    FULL_PERIOD = "full_period"
+    READ_DELAY = "read_delay"
+    RESPONSE = "response"
+    TRIGGERED = "triggered"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cause:
+    """Why a part of a hop takes its time.
+
+    Attributes
+    ----------
+    process : that interferes, "" for other kinds
+    jobs : number of its jobs
+    terms : of a response time, if that is all of it
+    """
+
+    kind: CauseKind
+    time: Time
+    process: str = ""
+    jobs: int = 0
+    terms: tuple[tuple[str, Time], ...] = ()
+
+
+def cause(kind: CauseKind, time: Time) -> tuple[Cause, ...]:
+    """A single cause; none if it takes no time."""
+    return (Cause(kind=kind, time=time),) if time > 0 else ()
+
+
+def of_executions(
+    found: Iterable[Execution], process: str, length: Time, others: CauseKind, rest: CauseKind
+) -> tuple[Cause, ...]:
+    """The causes of an interval in which a job of a process is pending.
+
+    Parameters
+    ----------
+    found : what its core executes in the interval
+    others : what the executions of other processes are
+    rest : why the interval is longer than that
+    """
+    times: dict[str, Time] = {}
+    jobs: dict[str, set[int]] = {}
+    for each in found:
+        times[each.process] = times.get(each.process, 0) + each.end - each.begin
+        jobs.setdefault(each.process, set()).add(each.job)
+    own = times.pop(process, 0)
+    interfering = [
+        Cause(kind=others, time=time, process=name, jobs=len(jobs[name]))
+        for name, time in sorted(times.items(), key=lambda item: -item[1])
+    ]
+    remaining = length - own - sum(times.values())
+    return (*interfering, *cause(CauseKind.EXECUTION, own), *cause(rest, remaining))
+
+
+def response_terms(timing: StageTiming, stage: Stage, time: Time) -> tuple[tuple[str, Time], ...]:
+    """The terms of the worst-case response time of a process, in picoseconds; nothing if that is not the time."""
+    response = timing.solution.responses.get(stage.process.name)
+    if response is None or response.worst is None or response.worst * timing.unit != time:
+        return ()
+    return tuple((name, value) for name, value in response.terms.items() if value)
+
+
+@dataclass(frozen=True, slots=True)
+class HopReasons:
+    """Why a job of the worst case waits and runs; times are those of the chain.
+
+    Attributes
+    ----------
+    number : of the job
+    """
+
+    timing: StageTiming
+    stage: Stage
+    timed: TimedStage
+    number: int
+
+    def of_job(
+        self, previous: Time, release: Time, read: Time, write: Time
+    ) -> tuple[tuple[Cause, ...], tuple[Cause, ...], tuple[Execution, ...]]:
+        """The causes of its wait and of its run, and what is executed from its release, with times relative to the read."""
+        # Before its release, it waits for that; after it, for other jobs.
+        pending = min(max(previous, release), read)
+        waits = cause(CauseKind.NEXT_JOB, pending - previous)
+        if self.timed.is_logical:
+            return waits, cause(CauseKind.LOGICAL, write - read), ()
+        before, after = self._executed(pending, read), self._executed(read, write)
+        if before is None or after is None:
+            return (
+                (*waits, *cause(CauseKind.READ_DELAY, read - pending)),
+                self._bounded(write - read),
+                (),
+            )
+        name = self.stage.process.name
+        own = [each for each in after if (each.process, each.job) == (name, self.number)]
+        # What is executed after the job says nothing about an output at the end of the period.
+        last = max((each.end for each in own), default=read)
+        during = [each for each in after if each.begin < last]
+        return (
+            (*waits, *of_executions(before, name, read - pending, CauseKind.INTERFERENCE, CauseKind.READ_DELAY)),
+            of_executions(during, name, write - read, CauseKind.PREEMPTION, self._rest(CauseKind.RESPONSE)),
+            tuple(replace(each, begin=each.begin - read, end=each.end - read) for each in (*before, *during)),
+        )
+
+    def _bounded(self, time: Time) -> tuple[Cause, ...]:
+        """From the earliest read to the latest output."""
+        return tuple(
+            replace(each, terms=response_terms(self.timing, self.stage, time))
+            for each in cause(self._rest(CauseKind.RESPONSE), time)
+        )
+
+    def _rest(self, otherwise: CauseKind) -> CauseKind:
+        return CauseKind.LOGICAL if is_logical(self.stage.leave) else otherwise
+
+    def _executed(self, begin: Time, end: Time) -> list[Execution] | None:
+        """What the core executes in an interval; None if that is not the same in each run with these reads and writes."""
+        core, timing = self.timing.context.scheduled[self.stage.process.name].core, self.timing
+        schedule = timing.schedules.of(core, with_slices=True) if self.timed.is_exact else None
+        factor, rest = divmod(timing.unit, timing.context.demand_model.time_base(core))
+        if schedule is None or rest:
+            return None
+        found = executions(core, schedule, -(-begin // factor), -(-end // factor))
+        return [replace(each, begin=each.begin * factor, end=each.end * factor) for each in found]

@@ -1,0 +1,48 @@
+"""In words, why the parts of a latency take their time."""
+
+from __future__ import annotations
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.analyze.chains.explanation import Hop
+from amalthea_uros.analyze.chains.hop_causes import Cause, CauseKind
+from amalthea_uros.units import time_text
+
+
+def cause_text(cause: Cause, hop: Hop) -> str:
+    """Why a part of a hop takes its time."""
+    match cause.kind:
+        case CauseKind.JUST_MISSED:
+            return f"just missed: {hop.process} has read, and does so again {_period(hop)} later"
+        case CauseKind.NEXT_JOB:
+            return f"waits for the next job of {hop.process}{_that_takes_part(hop)}, {_every(hop)}"
+        case CauseKind.INTERFERENCE:
+            return f"{cause.process} executes first ({counted(cause.jobs, 'job')})"
+        case CauseKind.PREEMPTION:
+            return f"preempted by {cause.process} ({counted(cause.jobs, 'job')})"
+        case CauseKind.EXECUTION:
+            return f"{hop.process} executes"
+        case CauseKind.LOGICAL:
+            return "LET: published at the end of the period"
+        case CauseKind.FULL_PERIOD:
+            return f"waits for the next job of {hop.process} a whole period, {_period(hop)}"
+        case CauseKind.READ_DELAY:
+            return f"from the release of {hop.process} to its read"
+        case CauseKind.RESPONSE:
+            terms = ", ".join(f"{name} {time_text(time)}" for name, time in cause.terms)
+            return f"{hop.process} ends at the latest" + (f": {terms}" if terms else "")
+        case CauseKind.TRIGGERED:
+            return f"response time of {hop.process}, which is triggered"
+
+
+def _that_takes_part(hop: Hop) -> str:
+    return f" that takes part: 1 in {hop.one_in:,}" if hop.one_in > 1 else ""
+
+
+def _every(hop: Hop) -> str:
+    if hop.period is None:
+        return "at unknown intervals"
+    return f"{'' if hop.one_in > 1 else 'which runs '}every {time_text(hop.period)}"
+
+
+def _period(hop: Hop) -> str:
+    return "some time" if hop.period is None else time_text(hop.period)
