@@ -17,21 +17,29 @@ from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.assignment import Proposal
     from amalthea_uros.analyze.chains.explanation import ChainExplanation
     from amalthea_uros.analyze.explanation import ProcessExplanation
     from amalthea_uros.analyze.sensitivity import Sensitivity
+    from amalthea_uros.services.improvements import Improvements
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Explanation:
-    """What the response time of a process or a latency of a chain consists of; both if both have the name."""
+    """What the response time of a process or a latency of a chain consists of; both if both have the name.
+
+    Attributes
+    ----------
+    improvements : changes that shorten the latency of the chain
+    """
 
     name: str
     process: ProcessExplanation | None
     chain: ChainExplanation | None
+    improvements: Improvements | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,6 +52,7 @@ class AnalysisResult:
     sensitivity, proposals, explanation : None if they were not requested
     all_methods : whether the values of all methods are shown, or the tightest ones
     with_metrics : whether the metrics of all processes are shown
+    task_periods : those that an app.yaml offers to tasks
     """
 
     paths: tuple[Path, ...]
@@ -56,6 +65,7 @@ class AnalysisResult:
     explanation: Explanation | None = None
     all_methods: bool = False
     with_metrics: bool = False
+    task_periods: tuple[Time, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +118,7 @@ def analyze_files(
         proposals=_proposals(analysis) if with_priorities else None,
         all_methods=all_methods,
         with_metrics=with_metrics,
+        task_periods=opened.task_periods,
     )
 
 
@@ -136,6 +147,7 @@ def explain(result: AnalysisResult, name: str, quantity: Quantity = Quantity.MAX
     """
     from amalthea_uros.analyze.chains.explanation import explain_chain
     from amalthea_uros.analyze.explanation import explain_process
+    from amalthea_uros.services.improvements import improvements
 
     system, analysis = result.system, result.analysis
     require("process or chain", [name], dict.fromkeys((*system.processes, *system.chains)))
@@ -143,6 +155,7 @@ def explain(result: AnalysisResult, name: str, quantity: Quantity = Quantity.MAX
         name=name,
         process=explain_process(analysis, name) if name in system.processes else None,
         chain=explain_chain(analysis, name, quantity) if name in system.chains else None,
+        improvements=improvements(result, name, quantity) if name in system.chains else None,
     )
 
 

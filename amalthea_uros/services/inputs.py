@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.paths import StrPath, is_description
+from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Model
@@ -40,11 +41,13 @@ class SystemInput:
     ----------
     model : the AMALTHEA model that it was extracted from, None for a description
     findings : problems found while reading, and what could not be extracted, also those that comments accept
+    task_periods : those that a description offers to tasks; empty if it offers any, and for AMALTHEA models
     """
 
     system: System
     model: Model | None
     findings: tuple[Finding, ...]
+    task_periods: tuple[Time, ...] = ()
 
 
 def open_model(paths: Sequence[StrPath]) -> ModelInput:
@@ -84,7 +87,7 @@ def open_system(paths: Sequence[StrPath], *, with_bus: bool = False) -> SystemIn
         system = assembly.system_with_bus() if with_bus else assembly.system
         if system is None:
             raise InvalidArgumentError(f"no CAN bus is described in {paths[0]}; set 'middleware.transport.can.bitrate'")
-        return SystemInput(system=system, model=None, findings=assembly.findings)
+        return SystemInput(system=system, model=None, findings=assembly.findings, task_periods=assembly.task_periods)
     if with_bus:
         raise InvalidArgumentError("only an app.yaml describes the messages on a CAN bus; AMALTHEA models do not")
     from amalthea_uros.bridge.extract import extract

@@ -16,6 +16,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import Hardware
 from amalthea_uros.timing.dataflow.links import Dataflow
+from amalthea_uros.units import Time
 from amalthea_uros.uros.application import add_callbacks, add_interrupt
 from amalthea_uros.uros.background_tasks import add_background_tasks
 from amalthea_uros.uros.bus_messages import BusMessage, bus_messages, bus_of, check_bus_load, check_identifiers
@@ -49,6 +50,7 @@ class Assembly:
     bus, messages : the CAN bus, None if there is none, and what is sent on it
     pools : static pools of the middleware
     findings : of severity warning and info
+    task_periods : those that the middleware offers to tasks; empty if it offers any
     """
 
     system: System
@@ -58,6 +60,7 @@ class Assembly:
     initialisation: Initialisation | None
     pools: tuple[Pool, ...]
     findings: tuple[Finding, ...]
+    task_periods: tuple[Time, ...]
 
     def system_with_bus(self) -> System | None:
         """The system with the CAN bus as a further core, whose tasks are the messages; None if there is no bus."""
@@ -114,6 +117,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
         initialisation=initialisation(application, choices[0].period, response_time) if choices else None,
         pools=pools,
         findings=tuple(context.notes.findings),
+        task_periods=tuple(middleware.task_periods),
     )
 
 

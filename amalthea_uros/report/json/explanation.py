@@ -12,6 +12,7 @@ from amalthea_uros.analyze.explanation import ProcessExplanation
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.services.analyze import Explanation
+from amalthea_uros.services.improvements import Improvement, Improvements
 
 
 def content(explanation: Explanation) -> dict[str, Any]:
@@ -20,6 +21,7 @@ def content(explanation: Explanation) -> dict[str, Any]:
         "name": explanation.name,
         "process": None if explanation.process is None else _process_json(explanation.process),
         "chain": None if explanation.chain is None else _chain_json(explanation.chain),
+        "improvements": None if explanation.improvements is None else _improvements_json(explanation.improvements),
     }
 
 
@@ -120,4 +122,33 @@ def _execution_json(execution: Execution) -> dict[str, Any]:
         "job": execution.job,
         "begin_ps": execution.begin,
         "end_ps": execution.end,
+    }
+
+
+def _improvements_json(improvements: Improvements) -> dict[str, Any]:
+    return {
+        "quantity": improvements.quantity,
+        "tried": improvements.tried,
+        "untried": improvements.untried,
+        "found": [_improvement_json(each) for each in improvements.found],
+    }
+
+
+def _improvement_json(improvement: Improvement) -> dict[str, Any]:
+    change = improvement.change
+    return {
+        "text": change.text,
+        "options": list(change.options),
+        "changes": [{"object": each.object, "key": each.key, "value": each.value} for each in change.changes],
+        "before_ps": improvement.before,
+        "after_ps": improvement.after,
+        "claim": improvement.claim,
+        "is_safe": improvement.is_safe,
+        "drawbacks": [
+            {"name": each.name, "before": each.before, "after": each.after, "is_verdict": each.is_verdict}
+            for each in improvement.drawbacks
+        ],
+        "latencies": {
+            quantity: {"before_ps": before, "after_ps": after} for quantity, (before, after) in improvement.latencies.items()
+        },
     }

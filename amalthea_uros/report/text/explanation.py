@@ -13,6 +13,7 @@ from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.report.hops import write_hops
 from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.text import improvements
 from amalthea_uros.services.analyze import Explanation
 from amalthea_uros.units import Time, time_text
 
@@ -29,6 +30,8 @@ def write(explanation: Explanation, terminal: Terminal) -> None:
         terminal.line(f"{explanation.name!r} is also the name of an event chain:")
     if explanation.chain is not None:
         _chain(explanation.chain, terminal)
+    if explanation.improvements is not None:
+        improvements.write(explanation.improvements, terminal)
 
 
 def _process(explanation: ProcessExplanation, terminal: Terminal) -> None:

@@ -1,0 +1,43 @@
+"""The changes that shorten a latency of a chain, for people."""
+
+from __future__ import annotations
+
+import shlex
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.services.improvements import Improvement, Improvements
+from amalthea_uros.units import time_text
+
+#: Further changes shorten the latency less.
+_MOST = 5
+
+
+def write(found: Improvements, terminal: Terminal) -> None:
+    """Write the changes with the greatest effect, and what they make worse."""
+    tried = f"{counted(found.tried, 'change')} analysed, one at a time"
+    if found.untried:
+        tried += f"; {found.untried:,} more were not tried"
+    best = found.best(_MOST)
+    if not best:
+        terminal.line(f"  no single change shortens it: {tried}")
+        return
+    rows = [(each.change.text, _before(each), _after(each), _drawbacks(each)) for each in best]
+    headings = ("what would shorten it", "latency", "", "what gets worse" if any(row[-1] for row in rows) else "")
+    terminal.table(headings, rows, right=(1,))
+    terminal.line(f"  {tried}")
+    recommended = next((each for each in best if each.is_safe), None)
+    if recommended is not None:
+        terminal.line(f"  to see all effects of the first one that breaks nothing: {shlex.join(recommended.change.options)}")
+
+
+def _before(improvement: Improvement) -> str:
+    return "unknown" if improvement.before is None else time_text(improvement.before)
+
+
+def _after(improvement: Improvement) -> str:
+    return f"-> {time_text(improvement.after)}"
+
+
+def _drawbacks(improvement: Improvement) -> str:
+    return "; ".join(f"{each.name}: {each.before} -> {each.after}" for each in improvement.drawbacks)
