@@ -26,7 +26,7 @@ from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.counters import first_effect, is_always, min_distance
+from amalthea_uros.timing.counters import first_effect, is_always, min_distance, takes_effect
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.multiframe import MultiframeDemand
@@ -206,7 +206,7 @@ class _CallSite:
                 # The call costs nothing, so that the schedule repeats before its counter does.
                 is_attained = False
             else:
-                calling = np.array([_is_called(number, counter) for number in range(1, count + 1)])
+                calling = np.array([takes_effect(counter, number) for number in range(1, count + 1)])
         selected = Span(metrics.both(each[calling] for each in releases), metrics.both(each[calling] for each in ends))
         metric = selected.metric(int(calling[-repeating:].sum()), time_base, is_attained)
         return metric if is_attained else replace(metric, mean=None)
@@ -220,7 +220,7 @@ class _CallSite:
             # Those in which counters have not started, and one of each combination after that.
             count = len(demand_table(until, MultiframeDemand.best_of)) + first_effect(self.counter)
             count += lcm(demand_cycle(until), self.counter.prescaler)
-            before = min(until.best_of(job) for job in range(1, count + 1) if _is_called(job, self.counter))
+            before = min(until.best_of(job) for job in range(1, count + 1) if takes_effect(self.counter, job))
             after = self._demand(self._after).best // time_base
         return Metric(
             min=before // time_base,
@@ -247,11 +247,6 @@ class _CallSite:
         return demands_of_jobs(everything, count, MultiframeDemand.worst_of) - demands_of_jobs(
             activities, count, MultiframeDemand.worst_of
         )
-
-
-def _is_called(job: int, counter: Counter) -> bool:
-    first = first_effect(counter)
-    return job >= first and (job - first) % counter.prescaler == 0
 
 
 def _unknown(name: str, process: Process, reason: str, deadline: Time | None = None) -> CallbackResult:

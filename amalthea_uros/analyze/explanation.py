@@ -8,12 +8,16 @@ from fractions import Fraction
 
 import numpy as np
 
+from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.execution_shares import ExecutionShare, execution_shares
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core import periodic_tasks
-from amalthea_uros.analyze.results import Analysis, ProcessResult, Response
+from amalthea_uros.analyze.results import Analysis, CallbackResult, ProcessResult, Response
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.summary import FAILURES
+from amalthea_uros.analyze.unknown_origins import Origin, origins
+from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.timing.counters import takes_effect
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.scheduling import ScheduledProcess, Server
 from amalthea_uros.units import Time
@@ -45,8 +49,13 @@ class ProcessExplanation:
     ----------
     execution : shares in its worst-case execution time
     shares : in the interference, largest first
-    loads : if its deadline is not met: of itself and of all that is served before it or in turn with it, largest first
+    loads : if its deadline is not met, or it is unknown whether it is: of itself and of all that is served before it or in turn
+        with it, largest first
     supply : the part of the core that is there for them: less than 1 in a server
+    callbacks : that its jobs call, in order
+    worst_job : number of the job with the worst-case response time; None if it is unknown
+    in_worst_job : for each share of `execution`, whether that job executes it; empty if the job is unknown
+    origins : if its response time has no bound: where that comes from
     """
 
     process: ProcessResult
@@ -54,6 +63,10 @@ class ProcessExplanation:
     shares: tuple[Share, ...]
     loads: tuple[Load, ...] = ()
     supply: Fraction = Fraction(1)
+    callbacks: tuple[CallbackResult, ...] = ()
+    worst_job: int | None = None
+    in_worst_job: tuple[bool, ...] = ()
+    origins: tuple[Origin, ...] = ()
 
     @property
     def load(self) -> Fraction | None:
@@ -66,7 +79,9 @@ def explain_process(analysis: Analysis, name: str) -> ProcessExplanation:
     """Explain the response time of a process."""
     process, context = analysis.processes[name], analysis.solution.context
     scheduled = context.scheduled.get(name)
-    is_late = process.verdict in FAILURES or (process.response is not None and process.response.worst is None)
+    is_unbounded = process.response is None or process.response.worst is None
+    is_late = is_unbounded or process.verdict in (*FAILURES, Verdict.UNKNOWN)
+    worst_job = _worst_job(analysis, name)
     server = context.servers.get(scheduled.server or "") if scheduled is not None else None
     return ProcessExplanation(
         process=process,
@@ -74,7 +89,30 @@ def explain_process(analysis: Analysis, name: str) -> ProcessExplanation:
         shares=tuple(shares(analysis, name)),
         loads=tuple(_loads(analysis.solution, scheduled)) if is_late and scheduled is not None else (),
         supply=Fraction(server.budget, server.period) if server is not None else Fraction(1),
+        callbacks=tuple(each for each in analysis.callbacks if each.process == name),
+        worst_job=worst_job,
+        in_worst_job=_executed_in(analysis, name, worst_job) if worst_job is not None else (),
+        origins=tuple(origins(analysis.solution, name)) if is_unbounded else (),
     )
+
+
+def _worst_job(analysis: Analysis, name: str) -> int | None:
+    """The number of the job with the worst-case response time; None if the schedule is unknown."""
+    solution = analysis.solution_of(name)
+    response, scheduled = solution.responses.get(name), solution.context.scheduled.get(name)
+    if response is None or scheduled is None or response.method != schedule.METHOD:
+        return None
+    found = CoreSchedules(solution).of(scheduled.core, with_slices=False)
+    if found is None:
+        return None
+    jobs = found.worst[name]
+    return int((jobs.ends - jobs.releases).argmax()) + 1
+
+
+def _executed_in(analysis: Analysis, name: str, job: int) -> tuple[bool, ...]:
+    """For each execution share, whether a job executes it, in the phase in which the response time is the worst."""
+    shares = execution_shares(analysis.solution_of(name).context, name)
+    return tuple(share.counter is None or takes_effect(share.counter, job) for share in shares)
 
 
 def _loads(solution: Solution, scheduled: ScheduledProcess) -> list[Load]:

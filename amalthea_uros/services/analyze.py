@@ -21,6 +21,7 @@ from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.assignment import Proposal
+    from amalthea_uros.analyze.callback_explanation import CallbackExplanation
     from amalthea_uros.analyze.chains.explanation import ChainExplanation
     from amalthea_uros.analyze.explanation import ProcessExplanation
     from amalthea_uros.analyze.sensitivity import Sensitivity
@@ -29,16 +30,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Explanation:
-    """What the response time of a process or a latency of a chain consists of; both if both have the name.
+    """What the response time of a process or callback, or a latency of a chain consists of; several of them if they have the name.
 
     Attributes
     ----------
+    callbacks : for each process that calls the callback
     improvements : changes that shorten the latency of the chain
     """
 
     name: str
     process: ProcessExplanation | None
     chain: ChainExplanation | None
+    callbacks: tuple[CallbackExplanation, ...] = ()
     improvements: Improvements | None = None
 
 
@@ -135,7 +138,7 @@ def _proposals(analysis: Analysis) -> tuple[Proposal, ...]:
 
 
 def explain(result: AnalysisResult, name: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Explanation:
-    """Explain the response time of a process, or a maximum latency of a chain.
+    """Explain the response time of a process or callback, or a maximum latency of a chain.
 
     Parameters
     ----------
@@ -143,18 +146,21 @@ def explain(result: AnalysisResult, name: str, quantity: Quantity = Quantity.MAX
 
     Raises
     ------
-    InvalidArgumentError : there is no such process or chain.
+    InvalidArgumentError : there is no such process, callback or chain.
     """
+    from amalthea_uros.analyze.callback_explanation import explain_callback
     from amalthea_uros.analyze.chains.explanation import explain_chain
     from amalthea_uros.analyze.explanation import explain_process
     from amalthea_uros.services.improvements import improvements
 
     system, analysis = result.system, result.analysis
-    require("process or chain", [name], dict.fromkeys((*system.processes, *system.chains)))
+    callbacks = [callback.name for callback in analysis.callbacks]
+    require("process, callback or chain", [name], dict.fromkeys((*system.processes, *callbacks, *system.chains)))
     return Explanation(
         name=name,
         process=explain_process(analysis, name) if name in system.processes else None,
         chain=explain_chain(analysis, name, quantity) if name in system.chains else None,
+        callbacks=explain_callback(analysis, name),
         improvements=improvements(result, name, quantity) if name in system.chains else None,
     )
 

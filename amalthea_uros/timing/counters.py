@@ -43,6 +43,12 @@ def first_effect(counter: Counter) -> int:
     return counter.offset if counter.offset >= 1 else (counter.offset - 1) % counter.prescaler + 1
 
 
+def takes_effect(counter: Counter, number: int) -> bool:
+    """Whether an occurrence takes effect, counted from 1."""
+    first = first_effect(counter)
+    return number >= first and (number - first) % counter.prescaler == 0
+
+
 def is_always(counter: Counter) -> bool:
     """Whether every occurrence takes effect."""
     return counter.is_phase_known and counter.prescaler == 1 and first_effect(counter) == 1

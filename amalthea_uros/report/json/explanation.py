@@ -5,9 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
+from amalthea_uros.analyze.callback_explanation import CallbackExplanation
 from amalthea_uros.analyze.chains.executions import Execution
 from amalthea_uros.analyze.chains.explanation import ChainExplanation, Hop
 from amalthea_uros.analyze.chains.hop_causes import Cause
+from amalthea_uros.analyze.execution_shares import ExecutionShare
 from amalthea_uros.analyze.explanation import ProcessExplanation
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
@@ -20,6 +22,7 @@ def content(explanation: Explanation) -> dict[str, Any]:
     return {
         "name": explanation.name,
         "process": None if explanation.process is None else _process_json(explanation.process),
+        "callbacks": [_callback_json(callback) for callback in explanation.callbacks],
         "chain": None if explanation.chain is None else _chain_json(explanation.chain),
         "improvements": None if explanation.improvements is None else _improvements_json(explanation.improvements),
     }
@@ -32,23 +35,43 @@ def _process_json(explanation: ProcessExplanation) -> dict[str, Any]:
         "wcet_ps": explanation.process.wcet,
         "reason": explanation.process.reason,
         "interference": [{"process": share.name, "jobs": share.jobs, "time_ps": share.time} for share in explanation.shares],
-        "execution": [
-            {
-                "name": share.name,
-                "is_runnable": share.is_runnable,
-                "calls": share.calls,
-                "counter": _counter_json(share.counter),
-                "time_ps": share.time,
-                "reason": share.reason,
-            }
-            for share in explanation.execution
-        ],
+        "execution": [_share_json(share) for share in explanation.execution],
         "loads": [
             {"name": load.name, "priority": load.priority, "utilisation": _number(load.utilisation)}
             for load in explanation.loads
         ],
         "load": _number(explanation.load) if explanation.loads else None,
         "supply": _number(explanation.supply),
+        "callbacks": [each.name for each in explanation.callbacks],
+        "worst_job": explanation.worst_job,
+        "in_worst_job": list(explanation.in_worst_job),
+        "origins": [
+            {"process": each.process, "kind": each.kind, "reason": each.reason, "remedy": each.remedy}
+            for each in explanation.origins
+        ],
+    }
+
+
+def _callback_json(explanation: CallbackExplanation) -> dict[str, Any]:
+    callback = explanation.callback
+    return {
+        "name": callback.name,
+        "process": callback.process,
+        "wcrt_ps": callback.response.worst if callback.response is not None else None,
+        "deadline_ps": callback.deadline,
+        "reason": callback.reason,
+        "execution": [_share_json(share) for share in explanation.execution],
+    }
+
+
+def _share_json(share: ExecutionShare) -> dict[str, Any]:
+    return {
+        "name": share.name,
+        "is_runnable": share.is_runnable,
+        "calls": share.calls,
+        "counter": _counter_json(share.counter),
+        "time_ps": share.time,
+        "reason": share.reason,
     }
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
+from amalthea_uros.analyze.callback_explanation import CallbackExplanation
 from amalthea_uros.analyze.chains.explanation import ChainExplanation
 from amalthea_uros.analyze.execution_shares import ExecutionShare
 from amalthea_uros.analyze.explanation import ProcessExplanation
-from amalthea_uros.analyze.results import Response
+from amalthea_uros.analyze.results import CallbackResult, Response
+from amalthea_uros.analyze.unknown_origins import OriginKind
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.report.hops import write_hops
@@ -28,6 +30,8 @@ def write(explanation: Explanation, terminal: Terminal) -> None:
     if explanation.process is not None and explanation.chain is not None:
         terminal.line()
         terminal.line(f"{explanation.name!r} is also the name of an event chain:")
+    for callback in explanation.callbacks:
+        _callback(callback, terminal)
     if explanation.chain is not None:
         _chain(explanation.chain, terminal)
     if explanation.improvements is not None:
@@ -46,7 +50,60 @@ def _process(explanation: ProcessExplanation, terminal: Terminal) -> None:
         terminal.line(f"{name}: worst-case response time {time_text(response.worst)} ({response.claim})")
         _terms(response, response.worst, explanation, terminal)
     _execution(explanation, terminal)
+    _callbacks(explanation.callbacks, terminal)
     _loads(explanation, terminal)
+    _origins(explanation, terminal)
+
+
+def _callbacks(callbacks: Sequence[CallbackResult], terminal: Terminal) -> None:
+    """Write when the callbacks of an executor end, in the order of their calls."""
+    if not callbacks:
+        return
+    rows = [
+        (each.name, _response_text(each), "-" if each.deadline is None else time_text(each.deadline), _claim(each))
+        for each in callbacks
+    ]
+    terminal.table(("callback", "ends at most after", "deadline", ""), rows, right=(1, 2))
+
+
+def _callback(explanation: CallbackExplanation, terminal: Terminal) -> None:
+    """Write when a callback ends, and what the jobs of its process execute up to it."""
+    callback, process = explanation.callback, explanation.process
+    name = terminal.style(callback.name, "1")
+    terminal.line(f"{name}: worst-case response time {_response_text(callback)} ({_claim(callback)}), in {process.name}")
+    if callback.deadline is not None:
+        terminal.line(f"  from the activation of {process.name}; deadline {time_text(callback.deadline)}")
+    if explanation.execution:
+        rows = [(share.name, _calls(share), _jobs(share.counter), _time(share.time)) for share in explanation.execution]
+        terminal.table(("executed up to its end", "calls", "in jobs", "time"), rows, right=(1, 3))
+    if callback.response is not None:
+        terminal.line(f"  {callback.response.method} ({callback.response.source})")
+
+
+def _response_text(callback: CallbackResult) -> str:
+    return "unknown" if callback.response is None else _time(callback.response.worst)
+
+
+def _claim(callback: CallbackResult) -> str:
+    return callback.reason or ("" if callback.response is None else str(callback.response.claim))
+
+
+def _origins(explanation: ProcessExplanation, terminal: Terminal) -> None:
+    """Write why there is no bound, and what would give one."""
+    if not explanation.origins:
+        return
+    terminal.line("  what would give it a bound")
+    for origin in explanation.origins:
+        terminal.line(f"    {origin.process}: {origin.reason}")
+        if origin.kind is OriginKind.OVERLOAD and (excess := _excess(explanation)):
+            terminal.line(f"      The load must be {excess} of the core less.")
+        if origin.remedy:
+            terminal.line(f"      {origin.remedy}")
+
+
+def _excess(explanation: ProcessExplanation) -> str:
+    load = explanation.load
+    return "" if load is None or load <= explanation.supply else f"at least {float(load - explanation.supply):.1%}"
 
 
 def _terms(response: Response, worst: Time, explanation: ProcessExplanation, terminal: Terminal) -> None:
@@ -63,12 +120,22 @@ def _execution(explanation: ProcessExplanation, terminal: Terminal) -> None:
         return
     wcet = explanation.process.wcet
     rows = [
-        (share.name, share.calls if share.is_runnable else "", _jobs(share.counter), _time(share.time), _part(share, wcet))
-        for share in explanation.execution
+        (share.name, _calls(share), _jobs(share.counter), _time(share.time), _part(share, wcet), worst)
+        for share, worst in zip(explanation.execution, _in_worst_job(explanation), strict=True)
     ]
-    terminal.table(
-        ("WCET made of", "calls", "in jobs", "time", "share"), [*rows, ("sum", "", "", _time(wcet), "")], right=(1, 3, 4)
-    )
+    headings = ("WCET made of", "calls", "in jobs", "time", "share", "in the worst job" if any(row[-1] for row in rows) else "")
+    terminal.table(headings, [*rows, ("sum", "", "", _time(wcet), "", "")], right=(1, 3, 4))
+
+
+def _in_worst_job(explanation: ProcessExplanation) -> Sequence[str]:
+    """Whether the worst job executes each share, if other jobs execute something else."""
+    if not explanation.in_worst_job or all(share.counter is None for share in explanation.execution):
+        return [""] * len(explanation.execution)
+    return ["yes" if is_executed else "no" for is_executed in explanation.in_worst_job]
+
+
+def _calls(share: ExecutionShare) -> int | str:
+    return share.calls if share.is_runnable else ""
 
 
 def _jobs(counter: Counter | None) -> str:
