@@ -127,7 +127,7 @@ def test_another_clock(tmp_path):
         (["--frequency", "Core_9=2MHz"], "unknown core 'Core_9'; did you mean 'Core_0'?"),
         (["--frequency", "Core_0=2"], "has no unit"),
         (["--frequency", "Core_0=0MHz"], "greater than zero"),
-        (["--explain", "Nothing"], "unknown process or chain 'Nothing'; known: Executor_Task"),
+        (["--explain", "Nothing"], "unknown process, callback or chain 'Nothing'; known: Executor_Task"),
         (["--scale", "0"], "0"),
         (["--mode", "speed"], "not of the form LABEL=VALUE"),
         (["--mode", "speed=1"], "unknown mode label 'speed'; the model has no mode label"),
@@ -261,9 +261,10 @@ class TestExplain:
         assert run.returncode == 0
         lines = run.stdout.splitlines()
         assert lines[0] == "factor-to-output: max reduced reaction time 20.029 ms (exact)"
-        assert lines[2].split() == ["process", "job", "release", "start", "read", "write", "wait", "run"]
-        assert lines[5].split("  ")[1] == "Control_Function"
-        assert lines[5].endswith("1.007 ms   4 us")
+        assert lines[1] == "  factor-to-output_reaction, reaction at most 25 ms: met, 4.971 ms left"
+        assert lines[3].split() == ["process", "job", "release", "start", "read", "write", "wait", "run", "share"]
+        assert lines[6].split("  ")[1] == "Control_Function"
+        assert lines[6].endswith("1.007 ms   4 us   5.0%")
 
     def test_another_quantity(self):
         run = amuros("analyze", ADVANCED, "--explain", "factor-to-output", "--quantity", "max_data_age")

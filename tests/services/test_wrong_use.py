@@ -61,7 +61,10 @@ WRONG_VALUES = {
         lambda r: amuros.analyze_files(ADVANCED, amuros.Settings(frequencies={"Core_1": 1})),
         "unknown core 'Core_1'; did you mean 'Core_0'",
     ),
-    "a process that does not exist": (lambda r: explain(r, "Control"), "unknown process or chain 'Control'; did you mean"),
+    "a process that does not exist": (
+        lambda r: explain(r, "Control"),
+        "unknown process, callback or chain 'Control'; did you mean",
+    ),
     "a chain that does not exist": (lambda r: chain_detail(r, "x"), "unknown chain 'x'; known: factor-to-output"),
     "an end that does not exist": (lambda r: find_paths(ADVANCED, "Nothing", "Executor_Task"), "'Nothing'"),
     "a description that is not rewritten": (

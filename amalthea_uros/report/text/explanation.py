@@ -9,8 +9,9 @@ from amalthea_uros.analyze.callback_explanation import CallbackExplanation
 from amalthea_uros.analyze.chains.explanation import ChainExplanation
 from amalthea_uros.analyze.execution_shares import ExecutionShare
 from amalthea_uros.analyze.explanation import ProcessExplanation
-from amalthea_uros.analyze.results import CallbackResult, Response
+from amalthea_uros.analyze.results import CallbackResult, ProcessResult, Response
 from amalthea_uros.analyze.unknown_origins import OriginKind
+from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.report.hops import write_hops
@@ -21,6 +22,8 @@ from amalthea_uros.units import Time, time_text
 
 #: More executions of the worst case are only counted.
 _MOST_EXECUTIONS = 20
+#: Of the shares in an execution time, the smaller ones are only added up.
+_MOST_SHARES = 20
 
 
 def write(explanation: Explanation, terminal: Terminal) -> None:
@@ -48,11 +51,28 @@ def _process(explanation: ProcessExplanation, terminal: Terminal) -> None:
         terminal.line(f"{name}: response time unbounded: {response.reason}")
     else:
         terminal.line(f"{name}: worst-case response time {time_text(response.worst)} ({response.claim})")
+        _deadline(process, terminal)
         _terms(response, response.worst, explanation, terminal)
     _execution(explanation, terminal)
     _callbacks(explanation.callbacks, terminal)
     _loads(explanation, terminal)
     _origins(explanation, terminal)
+
+
+def _deadline(process: ProcessResult, terminal: Terminal) -> None:
+    """Write how far the response time is from the deadline."""
+    if process.deadline is None or process.margin is None:
+        return
+    verdict = process.verdict or Verdict.UNKNOWN
+    terminal.line(f"  deadline {time_text(process.deadline)}: {verdict}, {_margin(verdict, process.margin)}")
+
+
+def _margin(verdict: Verdict, margin: Time) -> str:
+    """How far a value is from its limit; of a bound beyond the limit it is unknown how far the value itself is."""
+    if margin >= 0:
+        return f"{time_text(margin)} left"
+    distance = f"{time_text(-margin)} beyond the limit"
+    return f"the bound is {distance}" if verdict is Verdict.UNKNOWN else distance
 
 
 def _callbacks(callbacks: Sequence[CallbackResult], terminal: Terminal) -> None:
@@ -94,11 +114,12 @@ def _origins(explanation: ProcessExplanation, terminal: Terminal) -> None:
         return
     terminal.line("  what would give it a bound")
     for origin in explanation.origins:
-        terminal.line(f"    {origin.process}: {origin.reason}")
+        if origin.process != explanation.process.name:
+            terminal.line(f"    {origin.process}: {origin.reason}")
         if origin.kind is OriginKind.OVERLOAD and (excess := _excess(explanation)):
-            terminal.line(f"      The load must be {excess} of the core less.")
+            terminal.line(f"    The load must be {excess} of the core less.")
         if origin.remedy:
-            terminal.line(f"      {origin.remedy}")
+            terminal.line(f"    {origin.remedy}")
 
 
 def _excess(explanation: ProcessExplanation) -> str:
@@ -123,8 +144,26 @@ def _execution(explanation: ProcessExplanation, terminal: Terminal) -> None:
         (share.name, _calls(share), _jobs(share.counter), _time(share.time), _part(share, wcet), worst)
         for share, worst in zip(explanation.execution, _in_worst_job(explanation), strict=True)
     ]
-    headings = ("WCET made of", "calls", "in jobs", "time", "share", "in the worst job" if any(row[-1] for row in rows) else "")
-    terminal.table(headings, [*rows, ("sum", "", "", _time(wcet), "", "")], right=(1, 3, 4))
+    shown = _largest(rows, explanation.execution)
+    headings = (
+        "WCET made of",
+        "calls",
+        "in jobs",
+        "time",
+        "share",
+        "in the worst job" if any(worst for *_, worst in rows) else "",
+    )
+    terminal.table(headings, [*shown, ("sum", "", "", _time(wcet), "", "")], right=(1, 3, 4))
+
+
+def _largest(rows: Sequence[tuple[object, ...]], shares: Sequence[ExecutionShare]) -> list[tuple[object, ...]]:
+    """The rows of the largest shares in their order, and one for all others; unknown shares count as the largest."""
+    order = sorted(range(len(rows)), key=lambda index: (shares[index].time is not None, -(shares[index].time or 0)))
+    shown, others = sorted(order[:_MOST_SHARES]), order[_MOST_SHARES:]
+    if not others:
+        return list(rows)
+    rest = sum(shares[index].time or 0 for index in others)
+    return [*(rows[index] for index in shown), (f"{len(others):,} others", "", "", _time(rest), "", "")]
 
 
 def _in_worst_job(explanation: ProcessExplanation) -> Sequence[str]:
@@ -192,8 +231,7 @@ def _requirements(explanation: ChainExplanation, terminal: Terminal) -> None:
         if each.limit is None or each.value is None:
             rest = f": {each.reason}" if each.reason else ""
         else:
-            margin = each.margin or 0
-            rest = f": {time_text(abs(margin))} {'left' if margin >= 0 else 'too late' if each.is_upper else 'too early'}"
+            rest = f", {_margin(each.verdict, each.margin or 0)}"
         limit = "" if each.limit is None else f" {'at most' if each.is_upper else 'at least'} {time_text(each.limit)}"
         terminal.line(f"  {each.name}, {each.quantity}{limit}: {each.verdict}{rest}")
 
