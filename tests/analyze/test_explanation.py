@@ -8,10 +8,12 @@ from support import ROOT
 from test_system import system, ticks
 
 from amalthea_uros import describe
+from amalthea_uros.analyze.callback_explanation import explain_callback
 from amalthea_uros.analyze.execution_shares import ACCESSES, OTHER, OVERHEADS, OWN
 from amalthea_uros.analyze.explanation import explain_process
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.activities import Call, Case, Group, Loop, Switch
+from amalthea_uros.analyze.unknown_origins import OriginKind
+from amalthea_uros.perf.activities import Call, Case, Group, Loop, Switch, WaitEvent
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler
 from amalthea_uros.perf.software import Runnable, Task
@@ -122,3 +124,69 @@ class TestLoads:
         # 4 of 10 in a budget of 3 of 10; what runs outside does not count.
         assert [(load.name, load.utilisation) for load in found.loads] == [("T", Fraction(4, 10))]
         assert found.supply == Fraction(3, 10)
+
+
+class TestOrigins:
+    def test_an_overload(self):
+        rows = [("high", 10, [ticks(6)], 3, 10), ("low", 20, [ticks(10)], 2, 20)]
+        (origin,) = explain_process(analyze_system(tasks_on_a_core(*rows)), "low").origins
+        assert (origin.process, origin.kind) == ("low", OriginKind.OVERLOAD)
+
+    def test_an_unknown_demand_of_a_process_that_precedes_it(self):
+        runnables = (Runnable(name="poll", activities=(Loop(activities=()),)),)
+        rows = [("high", 10, [Call(runnable="poll")], 3, 10), ("low", 20, [ticks(10)], 2, 20)]
+        analysis = analyze_system(tasks_on_a_core(*rows, runnables=runnables))
+        (origin,) = explain_process(analysis, "low").origins
+        assert (origin.process, origin.kind) == ("high", OriginKind.DEMAND)
+        assert origin.remedy == "State the execution time of 'poll'."
+        # Its own load is known, that of the other is not.
+        assert [(load.name, load.utilisation) for load in explain_process(analysis, "low").loads] == [
+            ("low", Fraction(1, 2)),
+            ("high", None),
+        ]
+
+    def test_waiting_without_a_timeout(self):
+        rows = [("waits", 10, [ticks(1), WaitEvent(events=("go",))], 3, 10)]
+        (origin,) = explain_process(analyze_system(tasks_on_a_core(*rows)), "waits").origins
+        assert origin.remedy == "Trigger a separate task instead of waiting for the event."
+
+    def test_an_unknown_activation(self):
+        built = tasks_on_a_core(("T", 10, [ticks(4)], 1, 10))
+        (task,) = built.software.tasks
+        built = replace(built, software=replace(built.software, tasks=(replace(task, stimuli=()),)))
+        (origin,) = explain_process(analyze_system(built), "T").origins
+        assert (origin.kind, origin.reason) == (OriginKind.ACTIVATION, "it has no stimulus")
+
+    def test_none_if_there_is_a_bound(self):
+        assert explain_process(analyze_system(tasks_on_a_core(("T", 10, [ticks(4)], 1, 10))), "T").origins == ()
+
+
+class TestCallbacks:
+    def test_the_worst_job_of_an_executor(self):
+        """The second of two jobs executes the callback; both are as long as what they execute."""
+        runnables = (Runnable(name="spin", activities=(ticks(3),)), Runnable(name="take", activities=(ticks(5),)))
+        body = [Call(runnable="spin"), Call(runnable="take", counter=Counter(prescaler=2, offset=2))]
+        found = explain_process(analyze_system(tasks_on_a_core(("T", 20, body, 1, 20), runnables=runnables)), "T")
+        assert (found.worst_job, found.in_worst_job) == (2, (True, True))
+
+    def test_a_job_need_not_execute_everything(self):
+        """3 and 5 in even jobs, 3 and 4 in odd ones."""
+        runnables = tuple(Runnable(name=name, activities=(ticks(time),)) for name, time in (("a", 3), ("b", 5), ("c", 4)))
+        even, odd = Counter(prescaler=2, offset=2), Counter(prescaler=2, offset=1)
+        body = [Call(runnable="a"), Call(runnable="b", counter=even), Call(runnable="c", counter=odd)]
+        found = explain_process(analyze_system(tasks_on_a_core(("T", 20, body, 1, 20), runnables=runnables)), "T")
+        assert found.process.response.worst == 8 * US
+        assert (found.worst_job, found.in_worst_job) == (2, (True, True, False))
+
+    def test_what_executes_before_a_callback(self):
+        """20 us for the executor, notices, the messages with 15 us and 100 ns for each byte, then the callbacks in order."""
+        analysis = analyze_system(describe(ROOT / "samples" / "rclc-in-executor.yaml").system)
+        (found,) = explain_callback(analysis, "On_Command_Callback")
+        assert (found.process.name, found.execution[-1].name) == ("rclc_executor", "On_Command_Callback")
+        # All of it in one job: 20 + 4 + 51 + 23.8 + 4 + 90 + 40.
+        assert found.callback.response.worst == sum(share.time for share in found.execution) == 232_800_000
+        assert [each.name for each in explain_process(analysis, "rclc_executor").callbacks] == [
+            "On_Imu_Callback",
+            "On_Command_Callback",
+            "Control_Callback",
+        ]

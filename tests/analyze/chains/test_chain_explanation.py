@@ -15,6 +15,7 @@ from amalthea_uros import describe
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda, terms
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.explanation import explain_chain
+from amalthea_uros.analyze.chains.hop_causes import CauseKind
 from amalthea_uros.analyze.results import EXPLAINED, Claim, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Communication
@@ -32,6 +33,8 @@ def check_sums(explanation):
     now = -hops[0].wait
     for hop in hops:
         assert (hop.read, hop.write) == (now + hop.wait, now + hop.wait + hop.run)
+        assert sum(cause.time for cause in hop.wait_causes) == hop.wait
+        assert sum(cause.time for cause in hop.run_causes) == hop.run
         now = hop.write
     return hops
 
@@ -100,6 +103,87 @@ def test_the_worst_message_of_the_thesis():
     # 12 and 13 for the executor with a message, and 4 of its own.
     assert (control.process, control.release, control.start) == ("Control_Function", 20_000 * US, 20_025 * US)
     assert (control.write, control.wait, control.run) == (20_029 * US, 20_025 * US - 19_018 * US, 4 * US)
+
+
+def played(tasks, until):
+    """For each core the process and job that it executes in each unit of time, played through."""
+    pending, executed = [], {}
+    counts = dict.fromkeys((task.name for task in tasks), 0)
+    for now in range(until):
+        for rank, task in enumerate(tasks):
+            if now >= task.offset and (now - task.offset) % task.period == 0:
+                counts[task.name] += 1
+                pending.append([rank, now, task, counts[task.name], task.worst])
+        for core in {task.core for task in tasks}:
+            here = [job for job in pending if job[2].core == core]
+            if here:
+                job = min(here, key=lambda job: job[:2])
+                executed[core, now] = (job[2].name, job[3])
+                job[4] -= 1
+                if not job[4]:
+                    pending.remove(job)
+    return executed
+
+
+@examples(30)
+@given(systems(["one", "two"], ALWAYS, varying=False, triggered=False))
+def test_the_causes_are_what_the_core_executes(drawn):
+    """Between release and read others execute first; between read and output the job itself and those that preempt it."""
+    tasks, chain = drawn
+    analysis = analyze_system(built(tasks, chain), Settings(communication=Communication.IMPLICIT))
+    explanation = explain_chain(analysis, "chain")
+    if explanation.value.claim is not Claim.EXACT:
+        return
+    executed = played(tasks, 600)
+    first = explanation.hops[0]
+    origin = min(now for (_, now), job in executed.items() if job == (first.process, first.job))
+    previous = first.read
+    for hop in explanation.hops:
+        for causes, begin, end in (
+            (hop.wait_causes, min(max(previous, hop.release), hop.read), hop.read),
+            (hop.run_causes, hop.read, hop.write),
+        ):
+            units = [executed[hop.core, now + origin] for now in range(begin // US, end // US)]
+            others = [unit for unit in units if unit[0] != hop.process]
+            kinds = (CauseKind.INTERFERENCE, CauseKind.PREEMPTION)
+            found = {cause.process: (cause.jobs, cause.time // US) for cause in causes if cause.kind in kinds}
+            assert found == {
+                name: (len({job for job in others if job[0] == name}), sum(job[0] == name for job in others))
+                for name in {job[0] for job in others}
+            }
+            own = sum(cause.time // US for cause in causes if cause.kind is CauseKind.EXECUTION)
+            assert own == len(units) - len(others)
+        for each in hop.executions:
+            for now in range(each.begin // US, each.end // US):
+                assert executed[each.core, now + origin] == (each.process, each.job)
+        previous = hop.write
+
+
+def test_why_the_worst_message_of_the_thesis_waits():
+    """The callback runs every 20 ms; the executor, 12 us without a message, and the control function, 4 us, run before it."""
+    analysis = analyze_system(describe(ROOT / "samples" / "bodas-test-advanced.yaml").system)
+    explanation = explain_chain(analysis, "factor-to-output")
+    _, callback, control = explanation.hops
+    assert [(cause.kind, cause.process, cause.time // US) for cause in callback.wait_causes] == [
+        (CauseKind.NEXT_JOB, "", 19_000 - 25),
+        (CauseKind.INTERFERENCE, "Executor_Task", 12),
+        (CauseKind.INTERFERENCE, "Control_Function", 4),
+    ]
+    assert (callback.period, callback.one_in, control.period) == (20_000 * US, 1, 1_000 * US)
+    assert [(limit.limit, limit.margin) for limit in explanation.requirements] == [(25_000 * US, 4_971 * US)]
+    assert sum(explanation.share(hop.wait + hop.run) for hop in explanation.hops) == 1
+
+
+def test_logical_execution_time_is_waiting():
+    tasks = [("A", 10, [ticks(1), write("x")]), ("B", 10, [read("x"), ticks(1)])]
+    settings = Settings(communication=Communication.LET)
+    explanation = explain_chain(analyze_system(system(tasks, (at("A", START), at("B", END))), settings), "chain")
+    # Each publishes at the end of its period, when the next one begins.
+    assert [[(cause.kind, cause.time // US) for cause in hop.run_causes] for hop in explanation.hops] == [
+        [(CauseKind.LOGICAL, 10)],
+        [(CauseKind.LOGICAL, 10)],
+    ]
+    assert [hop.wait_causes for hop in explanation.hops] == [(), ()]
 
 
 def test_data_that_wait_for_another_controller():
