@@ -48,7 +48,7 @@ _FAILING = {
     "--explain",
     "explained",
     metavar="NAME",
-    help="Show what the response time of a process, or a latency of an event chain, consists of.",
+    help="Show why a process, a callback or an event chain takes as long as it does, and what would shorten it.",
 )
 @click.option(
     "--quantity",

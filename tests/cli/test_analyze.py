@@ -279,6 +279,22 @@ class TestExplain:
         assert run.stdout.startswith("Control_Function: worst-case response time 29 us (exact)")
         assert "'Control_Function' is also the name of an event chain:\nControl_Function: max reduced" in run.stdout
 
+    def test_what_would_shorten_it(self):
+        run = amuros("analyze", ADVANCED, "--explain", "factor-to-output")
+        (line,) = [line for line in run.stdout.splitlines() if "period of Message_Factor 20 ms -> 10 ms" in line]
+        assert line.split()[-5:] == ["20.029", "ms", "->", "10.016", "ms"]
+        assert "--set Message_Factor.period=1ms" in run.stdout
+
+    def test_a_callback(self):
+        run = amuros("analyze", ROOT / "samples" / "rclc-in-executor.yaml", "--explain", "On_Command_Callback")
+        assert run.stdout.startswith("On_Command_Callback: worst-case response time 232.8 us (exact), in rclc_executor")
+
+    def test_lines_fit_into_a_page(self):
+        for model, name in ((ADVANCED, "factor-to-output"), (ROOT / "samples" / "rclc-in-executor.yaml", "rclc_executor")):
+            run = amuros("analyze", model, "--explain", name)
+            # Routes are as long as their events.
+            assert max(len(line) for line in run.stdout.splitlines() if "-[" not in line) <= 100
+
     def test_an_overload(self):
         run = amuros("analyze", ADVANCED, "--scale", "80", "--explain", "Control_Function")
         assert run.returncode == 1
@@ -302,5 +318,9 @@ class TestExplain:
         chain = result["explanation"]["chain"]
         assert chain["value_ps"] == sum(hop["wait_ps"] + hop["run_ps"] for hop in chain["hops"]) == 20_029_000_000
         assert [hop["process"] for hop in chain["hops"]] == ["Executor_Task", "Message_Factor", "Control_Function"]
+        assert [cause["kind"] for cause in chain["hops"][2]["wait_causes"]] == ["next_job", "interference"]
+        best = result["explanation"]["improvements"]["found"][0]
+        # The callback in each millisecond: one for the next control function, the executor and the control function itself.
+        assert (best["changes"][0]["value"], best["before_ps"], best["after_ps"]) == ("1ms", 20_029_000_000, 1_016_000_000)
         # The rest of the result is there as well.
         assert result["chains"][0]["name"] == "factor-to-output"

@@ -105,7 +105,7 @@ def test_those_of_a_chain_are_part_of_its_explanation(advanced):
 
 
 def test_what_bounds_a_chain_without_a_bound():
-    """Three times as long, the executor needs more than the core; twice as fast a clock makes it fit again."""
+    """Sixty times as long, everything together needs more than the core; twice as fast a clock makes it fit again."""
     result = analyze_files(SAMPLES / "bodas-test-advanced.yaml", Settings(scale=60))
     found = improvements(result, CHAIN).found
     assert [each.change.text for each in found if each.before is None] == ["frequency of Core_0 1 MHz -> 2 MHz"]

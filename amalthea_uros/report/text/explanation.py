@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.callback_explanation import CallbackExplanation
 from amalthea_uros.analyze.chains.explanation import ChainExplanation
 from amalthea_uros.analyze.execution_shares import ExecutionShare
@@ -97,7 +98,8 @@ def _callback(explanation: CallbackExplanation, terminal: Terminal) -> None:
         rows = [(share.name, _calls(share), _jobs(share.counter), _time(share.time)) for share in explanation.execution]
         terminal.table(("executed up to its end", "calls", "in jobs", "time"), rows, right=(1, 3))
     if callback.response is not None:
-        terminal.line(f"  {callback.response.method} ({callback.response.source})")
+        terminal.line(f"  {callback.response.method}")
+        terminal.line(f"  {callback.response.source}")
 
 
 def _response_text(callback: CallbackResult) -> str:
@@ -133,7 +135,8 @@ def _terms(response: Response, worst: Time, explanation: ProcessExplanation, ter
     if explanation.shares:
         rows = [(share.name, share.jobs, time_text(share.time)) for share in explanation.shares]
         terminal.table(("interference by", "jobs", "time"), rows, right=(1, 2))
-    terminal.line(f"  {response.method} ({response.source}), {response.jobs} jobs examined")
+    terminal.line(f"  {response.method}")
+    terminal.line(f"  {response.source}; {counted(response.jobs, 'job')} examined")
 
 
 def _execution(explanation: ProcessExplanation, terminal: Terminal) -> None:
