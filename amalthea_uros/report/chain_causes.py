@@ -9,29 +9,29 @@ from amalthea_uros.units import time_text
 
 
 def cause_text(cause: Cause, hop: Hop) -> str:
-    """Why a part of a hop takes its time."""
+    """Why a part of a hop takes its time, said of its process: "waits for its next job, which runs every 20 ms"."""
     match cause.kind:
         case CauseKind.JUST_MISSED:
-            return f"just missed: {hop.process} has read, and does so again {_period(hop)} later"
+            return f"just missed: it has read, and reads again {_period(hop)} later"
         case CauseKind.NEXT_JOB:
-            return f"waits for the next job of {hop.process}{_that_takes_part(hop)}, {_every(hop)}"
+            return f"waits for its next job{_that_takes_part(hop)}, {_every(hop)}"
         case CauseKind.INTERFERENCE:
             return f"{cause.process} executes first ({counted(cause.jobs, 'job')})"
         case CauseKind.PREEMPTION:
             return f"preempted by {cause.process} ({counted(cause.jobs, 'job')})"
         case CauseKind.EXECUTION:
-            return f"{hop.process} executes"
+            return "executes"
         case CauseKind.LOGICAL:
             return "LET: published at the end of the period"
         case CauseKind.FULL_PERIOD:
-            return f"waits for the next job of {hop.process} a whole period, {_period(hop)}"
+            return f"waits for its next job a whole period, {_period(hop)}"
         case CauseKind.READ_DELAY:
-            return f"from the release of {hop.process} to its read"
+            return "from its release to its read"
         case CauseKind.RESPONSE:
             terms = ", ".join(f"{name} {time_text(time)}" for name, time in cause.terms)
-            return f"{hop.process} ends at the latest" + (f": {terms}" if terms else "")
+            return "ends at the latest" + (f": {terms}" if terms else "")
         case CauseKind.TRIGGERED:
-            return f"response time of {hop.process}, which is triggered"
+            return "triggered: its response time"
 
 
 def _that_takes_part(hop: Hop) -> str:

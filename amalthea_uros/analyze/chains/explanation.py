@@ -22,6 +22,7 @@ from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStag
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.phases import Phases
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity, RequirementResult, Value
+from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.counters import ALWAYS
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
@@ -117,8 +118,14 @@ class _Step(NamedTuple):
 
 def explain_chain(analysis: Analysis, name: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> ChainExplanation:
     """Explain a maximum latency of a chain."""
-    found = _explained(analysis, name, quantity)
-    return replace(found, requirements=tuple(each for each in analysis.requirements if each.object == name))
+    # A process can have the same name.
+    limits = {
+        each.name
+        for each in analysis.solution.context.system.constraints.constraints
+        if isinstance(each, LatencyConstraint) and each.chain == name
+    }
+    verdicts = tuple(each for each in analysis.requirements if each.object == name and each.name in limits)
+    return replace(_explained(analysis, name, quantity), requirements=verdicts)
 
 
 def _explained(analysis: Analysis, name: str, quantity: Quantity) -> ChainExplanation:

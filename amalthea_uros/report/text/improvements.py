@@ -36,7 +36,7 @@ def _before(improvement: Improvement) -> str:
 
 
 def _after(improvement: Improvement) -> str:
-    return f"-> {time_text(improvement.after)}"
+    return f"-> {time_text(improvement.after)} ({improvement.claim})"
 
 
 def _drawbacks(improvement: Improvement) -> str:
