@@ -118,8 +118,8 @@ def _origins(explanation: ProcessExplanation, terminal: Terminal) -> None:
     for origin in explanation.origins:
         if origin.process != explanation.process.name:
             terminal.line(f"    {origin.process}: {origin.reason}")
-        if origin.kind is OriginKind.OVERLOAD and (excess := _excess(explanation)):
-            terminal.line(f"    The load must be {excess} of the core less.")
+        elif origin.kind is OriginKind.OVERLOAD and (excess := _excess(explanation)):
+            terminal.line(f"    Reduce the load by {excess} of the core.")
         if origin.remedy:
             terminal.line(f"    {origin.remedy}")
 
