@@ -51,14 +51,15 @@ class AnalysisResult:
 
     Attributes
     ----------
+    task_periods : those that an app.yaml offers to tasks
     findings : problems found while reading the files, and what the analysis could not take into account
     sensitivity, proposals, explanation : None if they were not requested
     all_methods : whether the values of all methods are shown, or the tightest ones
     with_metrics : whether the metrics of all processes are shown
-    task_periods : those that an app.yaml offers to tasks
     """
 
     paths: tuple[Path, ...]
+    task_periods: tuple[Time, ...] = ()
     system: System
     settings: Settings
     analysis: Analysis
@@ -68,7 +69,6 @@ class AnalysisResult:
     explanation: Explanation | None = None
     all_methods: bool = False
     with_metrics: bool = False
-    task_periods: tuple[Time, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +113,7 @@ def analyze_files(
     report_machine_code()
     return AnalysisResult(
         paths=files,
+        task_periods=opened.task_periods,
         system=system,
         settings=settings,
         analysis=analysis,
@@ -121,7 +122,6 @@ def analyze_files(
         proposals=_proposals(analysis) if with_priorities else None,
         all_methods=all_methods,
         with_metrics=with_metrics,
-        task_periods=opened.task_periods,
     )
 
 
