@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from amalthea_uros.analyze.callback_explanation import CallbackExplanation
 from amalthea_uros.analyze.chains.executions import Execution
@@ -14,7 +14,9 @@ from amalthea_uros.analyze.explanation import ProcessExplanation
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.services.analyze import Explanation
-from amalthea_uros.services.improvements import Improvement, Improvements
+
+if TYPE_CHECKING:
+    from amalthea_uros.services.improvements import Improvement, Improvements
 
 
 def content(explanation: Explanation) -> dict[str, Any]:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import shlex
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.services.improvements import Improvement, Improvements
 from amalthea_uros.units import time_text
+
+if TYPE_CHECKING:
+    from amalthea_uros.services.improvements import Improvement, Improvements
 
 #: Further changes shorten the latency less.
 _MOST = 5
