@@ -163,7 +163,9 @@ class Dataflow:
             for process in self.system.processes:
                 for name in self.by_name(process, source):
                     found = LinkKind.TOPIC if kind is LinkKind.DATA and self.is_topic(name) else kind
-                    yield from (DirectLink(found, process, name, other) for other in consumers.get(name, ()) if other != process)
+                    yield from (
+                        DirectLink(found, process, name, other) for other in consumers.get(name, ()) if other != process
+                    )
         activated: dict[str, list[str]] = {}
         for process in self.system.processes:
             for stimulus in self._stimuli(process):
