@@ -80,6 +80,12 @@ class LanguageClient:
             self._take()
         return self.diagnostics[path.as_uri()]["diagnostics"]
 
+    def any_diagnostics_of(self, path):
+        """The first diagnostics of a file, from a server that does not say of which version they are."""
+        while path.as_uri() not in self.diagnostics:
+            self._take()
+        return self.diagnostics[path.as_uri()]["diagnostics"]
+
     def hover(self, path, line, character):
         """The text that is shown at a position, "" if there is none."""
         found = self.request("textDocument/hover", at(path, line, character))
@@ -112,6 +118,7 @@ class LanguageClient:
                     size = int(value)
                 header = stream.readline()
             self._received.put(json.loads(stream.read(size)))
+        self._received.put(None)
 
     def _listen_to_errors(self):
         self.stderr += self.process.stderr
@@ -120,7 +127,9 @@ class LanguageClient:
         try:
             message = self._received.get(timeout=PATIENCE)
         except Empty:
-            raise AssertionError(f"no answer; standard error: {b''.join(self.stderr).decode()}") from None
+            message = None
+        if message is None:
+            raise AssertionError(f"no answer; standard error: {b''.join(self.stderr).decode()}")
         method = message.get("method")
         if method is None:
             self._answers[message["id"]] = message

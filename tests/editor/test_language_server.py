@@ -9,6 +9,7 @@ from support import MODEL, ROOT
 
 from amalthea_uros import analyze_files
 from amalthea_uros.services.fix import fix_files
+from amalthea_uros.services.settings import CheckSettings
 
 pytest.importorskip("pygls")
 
@@ -160,10 +161,10 @@ def test_an_action_makes_of_a_model_what_fix_makes_of_it(server, tmp_path, conte
     everything = {"start": {"line": 0, "character": 0}, "end": {"line": 99, "character": 0}}
     params = {"textDocument": {"uri": path.as_uri()}, "range": everything, "context": {"diagnostics": diagnostics}}
     actions = server.request("textDocument/codeAction", params)
-    path.write_text(text)
-    fix_files(path)
-    for kind in {action["kind"] for action in actions}:
-        action = next(action for action in actions if action["kind"] == kind)
+    for action in actions:
+        rules = {found["code"] for found in action.get("diagnostics", [])}
+        path.write_text(text)
+        fix_files(path, CheckSettings(select=tuple(rules)))
         assert edited(text, action["edit"]["changes"][path.as_uri()]) == path.read_text() != text
     assert {action["kind"] for action in actions} == {"quickfix", "source.fixAll.amuros"}
 
@@ -186,8 +187,8 @@ def test_a_hover_on_a_name_in_a_model_shows_the_same_as_in_its_description(serve
     assert amuros("build", file, "-o", tmp_path / "app.amxmi").returncode == 0
     text = (tmp_path / "app.amxmi").read_text()
     server.open(tmp_path / "app.amxmi", text, "xml")
-    line, column = position_of(text, '<tasks name="B"')
-    assert "worst-case response time 3 ms (exact)" in server.hover(tmp_path / "app.amxmi", line, column + 14)
+    line, column = position_of(text, 'name="B"')
+    assert "worst-case response time 3 ms (exact)" in server.hover(tmp_path / "app.amxmi", line, column + len('name="'))
 
 
 def test_a_closed_text_has_no_diagnostics(server, tmp_path):
