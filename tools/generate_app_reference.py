@@ -84,7 +84,7 @@ def kind(schema: dict[str, Any]) -> str:
         return ", ".join(f"`{item}`" for item in schema["enum"])
     if "const" in schema:
         return f"`{schema['const']}`"
-    if schema["type"] == "string" and "pattern" in schema:
+    if schema["type"] == ["string"]:
         units = schema["pattern"].rpartition("(")[2].partition(")")[0].split("|")
         return QUANTITIES[units[0]]
     if schema.get("type") == "array":

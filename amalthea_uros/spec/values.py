@@ -72,7 +72,7 @@ def _text_schema(dimension: units.Dimension, *, zero: bool = False) -> WithJsonS
     known = ", ".join(unit for unit in dimension.units if unit.isascii())
     return editor_schema(
         f"expected {dimension.article} {bound} with a unit such as {dimension.example!r}; units: {known}",
-        type="string",
+        type=["string"],  # of a single type, yaml-language-server would replace the message where a mapping is allowed, too
         pattern=pattern,
         examples=[dimension.example],
     )

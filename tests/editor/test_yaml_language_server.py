@@ -62,6 +62,7 @@ TIME = "expected a time above zero with a unit such as '10 ms'"
         ("tasks: [{name: A, period: 0 ms, execution_time: 1 ms}]", "0 ms", TIME),
         ("tasks: [{name: A, period: -5 ms, execution_time: 1 ms}]", "-5", TIME),
         ("tasks: [{name: A, period: 10 msec, execution_time: 1 ms}]", "10", TIME),
+        ("tasks: [{name: A, period: 10 ms, execution_time: 1}]", "1}", TIME),
         ("tasks: [{name: A, perod: 10 ms, execution_time: 1 ms}]", "perod", "Property perod is not allowed."),
         ("tasks: [{name: A, period: 10 ms, execution_time: {min: 1 ms, max: 2}}]", "2}", TIME),
         ("tasks: [{name: A, period: 10 ms, preemption: prio}]", "prio", '"preemptive", "cooperative", "non-preemptive"'),
