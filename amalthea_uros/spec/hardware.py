@@ -74,7 +74,7 @@ class Hardware(Shorthand):
     """
 
     shorthand = ("platform",)
-    plain_value = "A known platform (`bodas-rc18-12-40`, `generic` or `single-core`), or a file, e.g. `./my-controller.yaml`."
+    plain_value = "A known platform, or a file."
 
     platform: Name | None = Field(None, examples=["bodas-rc18-12-40", "generic", "single-core", "./my-controller.yaml"])
     """A known platform (`bodas-rc18-12-40`, `generic` or `single-core`), or a file, e.g. `./my-controller.yaml`."""

@@ -206,6 +206,25 @@ def test_the_server_ends_when_it_is_asked_to(tmp_path):
     assert client.stderr == []
 
 
+def test_an_error_inside_is_a_message_in_the_log_and_the_server_goes_on(tmp_path):
+    broken = """
+from amalthea_uros.editor import server
+def fail(document):
+    raise RuntimeError("a bug")
+server.symbols_of = fail
+server.create_server().start_io()
+"""
+    client = LanguageClient([sys.executable, "-c", broken], tmp_path)
+    path = tmp_path / "app.yaml"
+    client.open(path, START + "taks: []\n")
+    assert client.request("textDocument/documentSymbol", {"textDocument": {"uri": path.as_uri()}}) is None
+    assert [message["method"] for message in client.messages] == ["window/logMessage"]
+    assert "a bug" in client.messages[0]["params"]["message"]
+    client.change(path, SAMPLE)
+    assert client.diagnostics_of(path) == []
+    client.kill()
+
+
 def test_without_pygls_the_command_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pygls", None)
     run = amuros("lsp")
