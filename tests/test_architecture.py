@@ -36,7 +36,8 @@ INNER = tuple(ROOMS)
 ROOMS["services"] = INNER
 #: `report` shows the results of services; it neither reads files nor converts models.
 ROOMS["report"] = tuple(room for room in (*INNER, "services") if room not in ("bridge", "spec", "xmi"))
-ROOMS["cli"] = (*INNER, "services", "report")
+ROOMS["editor"] = (*INNER, "services", "report")
+ROOMS["cli"] = (*ROOMS["editor"], "editor")
 ROOMS["am"] = ("metamodel",)
 
 

@@ -24,6 +24,9 @@ a unit: `10 ms`, `4 B`, `250 kbit/s`, `50 Hz`.
 #: The quantity of a pattern is recognised by its smallest unit.
 QUANTITIES = {"ps": "time", "Hz": "frequency", "B/s": "bit rate", "B": "size"}
 
+#: What values are that YAML may take for a number or a text, by the start of their pattern.
+OTHER_KINDS = {r"^\S": "text", "^0x": "number or text", "^(?": "number"}
+
 
 def main(target: Path) -> None:
     schema = json_schema()
@@ -81,14 +84,16 @@ def kind(schema: dict[str, Any]) -> str:
         return ", ".join(f"`{item}`" for item in schema["enum"])
     if "const" in schema:
         return f"`{schema['const']}`"
-    if "pattern" in schema:
+    if schema["type"] == ["string"]:
         units = schema["pattern"].rpartition("(")[2].partition(")")[0].split("|")
         return QUANTITIES[units[0]]
     if schema.get("type") == "array":
         return f"list of {kind(schema['items'])}"
     if schema.get("type") == "object":
-        return f"{kind(schema['additionalProperties'])} by name"
-    return {"string": "text", "integer": "number", "number": "number", "boolean": "true, false"}[schema["type"]]
+        (named,) = schema["patternProperties"].values()
+        return f"{kind(named)} by name"
+    names = {"string": "text", "integer": "number", "number": "number", "boolean": "true, false"}
+    return names[schema["type"]] if isinstance(schema["type"], str) else OTHER_KINDS[schema["pattern"][:3]]
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ import stat
 import sys
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
+from contextvars import ContextVar
 from functools import cache
 from pathlib import Path
 from typing import IO, BinaryIO
@@ -33,6 +34,9 @@ STANDARD_ERROR = Path("/dev/stderr")
 #: What these are where there are no such paths.
 _STANDARD_DESCRIPTORS = {STANDARD_OUTPUT: 1, STANDARD_ERROR: 2}
 _MAX_LINKS = 40
+
+#: Contents that are read instead of those of files.
+_OVERLAY: ContextVar[Mapping[Path, bytes]] = ContextVar("overlay", default={})  # noqa: B039 - nobody changes it
 
 #: What a path can be wrong by: a path with a zero byte is a ValueError, one in a circle of links a RuntimeError before Python 3.13.
 _IMPOSSIBLE = (OSError, ValueError, RuntimeError)
@@ -74,6 +78,9 @@ def read_bytes(path: Path, max_size: int) -> bytes:
     FileTooLargeError : more than `max_size` bytes.
     FileError : not found, not permitted, or a directory.
     """
+    overlay = _OVERLAY.get()
+    if path in overlay:
+        return _limited(overlay[path], path, max_size)
     try:
         if path == STANDARD_INPUT:
             return _limited(_standard_input(), path, max_size)
@@ -88,6 +95,19 @@ def read_bytes(path: Path, max_size: int) -> bytes:
     except (OSError, ValueError) as error:
         raise FileError(path, f"the file cannot be read: {_cause(error)}") from None
     return _limited(data, path, max_size)
+
+
+@contextmanager
+def overlaid(contents: Mapping[Path, bytes]) -> Iterator[None]:
+    """Let files have other contents than on disk while the block runs, in this thread; they need not exist.
+
+    What is read is what would be read if they were saved: all limits hold.
+    """
+    token = _OVERLAY.set(contents)
+    try:
+        yield
+    finally:
+        _OVERLAY.reset(token)
 
 
 def _limited(data: bytes, path: Path, max_size: int) -> bytes:

@@ -24,6 +24,7 @@ COMMANDS = {
     "explain": "Explain a rule or another finding.",
     "fmt": "Rewrite models in canonical form.",
     "info": "Show the content of a model.",
+    "lsp": "Run the language server, for editors.",
     "migrate": "Convert models to another AMALTHEA version.",
     "rules": "List the rules of check.",
     "schema": "Print the JSON Schema of app.yaml.",

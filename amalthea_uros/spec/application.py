@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.section import Section
-from amalthea_uros.spec.values import Duration, Name, Offset, Priority, Rate, Size
+from amalthea_uros.spec.values import Duration, Name, Offset, Priority, Rate, Size, described
 
-Reliability = Literal["reliable", "best-effort"]
+Reliability = Annotated[
+    Literal["reliable", "best-effort"],
+    described(
+        reliable="Messages are acknowledged, and sent again until they are.",
+        best_effort="Messages are sent once, without acknowledgement.",
+    ),
+]
+
+
+_PLACES = described(own_task="In a separate task.", executor="In the task of the executor.")
+_CONDITIONS = described(
+    activated="In every activation of its task.",
+    due="Only in the activations of its task in which it is due.",
+)
 
 
 class Callback(Section):
@@ -28,11 +41,11 @@ class Callback(Section):
     """Topics of its node that it publishes to."""
     requests: list[Name] = Field(default_factory=list)
     """Clients of its node that it sends requests with."""
-    runs_in: Literal["own-task", "executor"] | None = None
+    runs_in: Annotated[Literal["own-task", "executor"], _PLACES] | None = None
     """Where it runs; default: `callbacks` of the executor."""
     task_period: Duration | None = None
     """Period of its task; default: the longest available period that the rules allow."""
-    runs_when: Literal["activated", "due"] | None = None
+    runs_when: Annotated[Literal["activated", "due"], _CONDITIONS] | None = None
     """In which activations of its task it runs, if that is activated more often than the callback is due: in all of them, or only in
     every n-th; default: `activated` for callbacks of messages, which then use the latest message, and `due` for timers."""
     phase: Offset | None = None

@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import Count, Duration, Name, Number, problem
+from amalthea_uros.spec.values import Count, Duration, Name, Number, described, problem
 
 
 class Bucket(Section):
@@ -21,6 +21,14 @@ class Bucket(Section):
     """Number of execution times measured in the bucket."""
 
 
+_DISTRIBUTIONS = described(
+    uniform="All values between `min` and `max` are equally likely.",
+    gauss="Normal distribution with the mean `avg` and the standard deviation `deviation`, cut at `min` and `max`.",
+    beta="Beta distribution between `min` and `max` with the shape parameters `alpha` and `beta`.",
+    weibull="Weibull distribution that starts at `min`, with the mean `avg`; `exceeding` values of a thousand are above `max`.",
+)
+
+
 class ExecutionTime(Shorthand):
     """An execution time: `12 us`, or with `min` and `max`, or per platform with `on`."""
 
@@ -28,6 +36,7 @@ class ExecutionTime(Shorthand):
         "min",
         "max",
     )
+    plain_value = "The same execution time in every job."
 
     min: Duration | None = None
     """Best-case execution time."""
@@ -35,7 +44,7 @@ class ExecutionTime(Shorthand):
     """Mean execution time."""
     max: Duration | None = None
     """Worst-case execution time."""
-    distribution: Literal["uniform", "gauss", "beta", "weibull"] | None = None
+    distribution: Annotated[Literal["uniform", "gauss", "beta", "weibull"], _DISTRIBUTIONS] | None = None
     """Distribution of execution times between `min` and `max`; if omitted, it is unknown."""
     deviation: Duration | None = None
     """Standard deviation of the Gauss distribution, whose mean is `avg`."""

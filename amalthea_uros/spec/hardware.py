@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import BeforeValidator, Field
 
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import WHOLE_NUMBER, CountOrNone, Name, Rate, Size, unexpected
+from amalthea_uros.spec.values import WHOLE_NUMBER, CountOrNone, Name, Rate, Size, described, unexpected
 
 MAX_CORES = 1024
 
@@ -16,6 +16,7 @@ class Core(Shorthand):
     """A core: its name, or a mapping with more."""
 
     shorthand = ("name",)
+    plain_value = "Name by which tasks, nodes and callbacks refer to it."
 
     name: Name
     """Name by which tasks, nodes and callbacks refer to it."""
@@ -43,6 +44,14 @@ Cores: TypeAlias = Annotated[
 ]
 
 
+_MEMORY_KINDS = described(
+    SRAM="Static random access memory.",
+    DRAM="Dynamic random access memory.",
+    flash="Flash memory.",
+    PCM="Phase-change memory.",
+)
+
+
 class Memory(Section):
     """A memory."""
 
@@ -50,7 +59,7 @@ class Memory(Section):
     """Name by which labels refer to it."""
     size: Size
     """Capacity."""
-    kind: Literal["SRAM", "DRAM", "flash", "PCM"] | None = None
+    kind: Annotated[Literal["SRAM", "DRAM", "flash", "PCM"], _MEMORY_KINDS] | None = None
     """Memory technology."""
     read_cycles: CountOrNone | None = None
     """Core cycles per read access."""
@@ -65,8 +74,9 @@ class Hardware(Shorthand):
     """
 
     shorthand = ("platform",)
+    plain_value = "A known platform, or a file."
 
-    platform: Name | None = None
+    platform: Name | None = Field(None, examples=["bodas-rc18-12-40", "generic", "single-core", "./my-controller.yaml"])
     """A known platform (`bodas-rc18-12-40`, `generic` or `single-core`), or a file, e.g. `./my-controller.yaml`."""
     title: Name | None = None
     """Full name of the controller."""

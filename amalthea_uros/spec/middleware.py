@@ -19,6 +19,7 @@ from amalthea_uros.spec.values import (
     Priority,
     Size,
     SizeOrNothing,
+    described,
 )
 
 
@@ -26,6 +27,7 @@ class MessageCost(Shorthand):
     """Execution time per message: a time, or a fixed part and a part per byte."""
 
     shorthand = ("fixed",)
+    plain_value = "The same execution time for every message."
     nested = ExecutionTime
 
     fixed: ExecutionTime | None = None
@@ -38,6 +40,7 @@ class ExecutorCost(Shorthand):
     """Execution time of an activation of the executor: a time, or parts that depend on the callbacks and messages to serve."""
 
     shorthand = ("base",)
+    plain_value = "The same execution time in every activation of the executor."
     nested = ExecutionTime
 
     base: ExecutionTime | None = None
@@ -50,15 +53,29 @@ class ExecutorCost(Shorthand):
     """Additional execution time per timer, in every activation."""
 
 
+_TRIGGERS = described(any="As soon as any callback is ready.", all="When all callbacks are ready.")
+
+
 class Trigger(Shorthand):
     """When the executor runs its callbacks: `any`, `all`, or `{one: NAME}`."""
 
     shorthand = ("when",)
+    plain_value = "`any`: as soon as any callback is ready; `all`: when all callbacks are ready."
 
-    when: Literal["any", "all"] = "any"
+    when: Annotated[Literal["any", "all"], _TRIGGERS] = "any"
     """`any`: as soon as any callback is ready; `all`: when all callbacks are ready."""
     one: Name | None = None
     """As soon as this callback is ready."""
+
+
+_PLACES = described(
+    own_task="Each callback in a separate task.",
+    in_executor="One after the other in the task of the executor.",
+)
+_SEMANTICS = described(
+    ROS="Each message is taken just before its callback runs.",
+    LET="All messages are taken before the first callback runs (logical execution time).",
+)
 
 
 class Executor(Section):
@@ -78,11 +95,11 @@ class Executor(Section):
     """Deadline relative to the activation."""
     execution_time: ExecutorCost = Field(default_factory=ExecutorCost)
     """Execution time of an activation."""
-    callbacks: Literal["own-task", "in-executor"] = "own-task"
+    callbacks: Annotated[Literal["own-task", "in-executor"], _PLACES] = "own-task"
     """Where callbacks without `runs_in` run: each in a separate task, or one after the other in the executor."""
     order: list[Name] = Field(default_factory=list)
     """Order in which callbacks were added to the executor; callbacks not listed follow in the order of the file."""
-    semantics: Literal["ROS", "LET"] = "ROS"
+    semantics: Annotated[Literal["ROS", "LET"], _SEMANTICS] = "ROS"
     """`ROS`: each message is taken just before its callback runs; `LET`: all messages are taken before the first callback runs."""
     trigger: Trigger = Field(default_factory=Trigger)
     """Condition under which callbacks in the executor run."""
@@ -101,7 +118,11 @@ class Interrupt(Shorthand):
     """Core that it runs on; default: the core of the executor."""
 
     shorthand = ("execution_time",)
+    plain_value = "Execution time per frame."
     nested = ExecutionTime
+
+
+_FRAME_FORMATS = described(standard="Identifiers of 11 bits.", extended="Identifiers of 29 bits.")
 
 
 class Can(Section):
@@ -109,7 +130,7 @@ class Can(Section):
 
     bitrate: BitRate
     """Bit rate of the bus."""
-    identifier: Literal["standard", "extended"] = "standard"
+    identifier: Annotated[Literal["standard", "extended"], _FRAME_FORMATS] = "standard"
     """`standard`: identifiers of 11 bits; `extended`: 29 bits."""
     identifiers: dict[Name, CanIdentifier] = Field(default_factory=dict)
     """Identifiers of messages, e.g. `{odometry_topic: 0x120, lift_request: 0x80}`; all others have one that loses against these."""
@@ -135,6 +156,7 @@ class ResponseTime(Shorthand):
         "min",
         "max",
     )
+    plain_value = "The same response time for every request."
 
     min: Duration
     """Minimum time."""
@@ -172,10 +194,16 @@ class PoolSizes(Section):
     """MTU-sized buffers of a reliable stream."""
 
 
+_POLICIES = described(
+    FixedPriorityPreemptive="The ready task with the highest priority executes.",
+    OSEK="As `FixedPriorityPreemptive`, with the task types and the priority ceiling protocol of OSEK.",
+)
+
+
 class Middleware(Section):
     """The generic micro-ROS model of a platform."""
 
-    policy: Literal["FixedPriorityPreemptive", "OSEK"] = "FixedPriorityPreemptive"
+    policy: Annotated[Literal["FixedPriorityPreemptive", "OSEK"], _POLICIES] = "FixedPriorityPreemptive"
     """Scheduling policy of the operating system."""
     task_periods: list[Duration] = Field(default_factory=list)
     """Available task periods; if omitted, any period is available."""

@@ -223,5 +223,5 @@ def _inner(schema: dict[str, Any], part: int | str, whole: dict[str, Any]) -> It
             yield from filter(None, [variant.get("items")])
         else:
             inner = variant.get("properties", {}).get(part)
-            extra = variant.get("additionalProperties")
-            yield from filter(None, [inner or (extra if isinstance(extra, dict) else None)])
+            by_name = next(iter(variant.get("patternProperties", {}).values()), None)
+            yield from filter(None, [inner or by_name])

@@ -8,13 +8,24 @@ from pydantic import Field
 
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import WHOLE_NUMBER, Count, CountOrNone, Duration, Name, Offset, Priority, SizeOrNothing
+from amalthea_uros.spec.values import (
+    WHOLE_NUMBER,
+    Count,
+    CountOrNone,
+    Duration,
+    Name,
+    Offset,
+    Priority,
+    SizeOrNothing,
+    described,
+)
 
 
 class Sporadic(Shorthand):
     """Sporadic activation: the minimum interarrival time, or a mapping with minimum and maximum."""
 
     shorthand = ("min",)
+    plain_value = "Minimum time between two activations; the maximum time is unknown."
 
     min: Duration
     """Minimum time between two activations."""
@@ -99,12 +110,19 @@ class Process(Steps):
     """Its functions, in order; unnecessary for a process with one function."""
 
 
+_PREEMPTIONS = described(
+    preemptive="At any time.",
+    cooperative="Cooperative tasks only between two of its functions, others at any time.",
+    non_preemptive="Never.",
+)
+
+
 class Task(Process):
     """A task of the controller."""
 
     priority: Priority | None = None
     """Priority; a higher number is a higher priority; default: rate monotonic."""
-    preemption: Literal["preemptive", "cooperative", "non-preemptive"] = "preemptive"
+    preemption: Annotated[Literal["preemptive", "cooperative", "non-preemptive"], _PREEMPTIONS] = "preemptive"
     """When other tasks may preempt it."""
     activation_limit: Count = 1
     """Maximum number of pending jobs; further activations are lost."""
@@ -123,6 +141,7 @@ class Label(Shorthand):
     """A variable: its size, or a mapping with more."""
 
     shorthand = ("size",)
+    plain_value = "Size of the variable."
 
     size: SizeOrNothing = 4 * 8
     """Size; default: 4 B."""

@@ -7,15 +7,23 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import Count, Duration, Name, problem
+from amalthea_uros.spec.values import Count, Duration, Name, described, problem
 
-Moment = Literal["activation", "start", "finish"]
+Moment = Annotated[
+    Literal["activation", "start", "finish"],
+    described(
+        activation="A job is activated.",
+        start="A job starts to execute.",
+        finish="A job ends.",
+    ),
+]
 
 
 class Limits(Shorthand):
     """A maximum, or a mapping with minimum and maximum."""
 
     shorthand = ("max",)
+    plain_value = "Maximum that is allowed."
 
     min: Duration | None = None
     """Minimum that is allowed."""

@@ -4,32 +4,33 @@ from __future__ import annotations
 
 from typing import Any
 
+from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.section import EXTENSION
 
 #: The draft that editors support; pydantic writes a later one, of which this format needs only other keywords.
 _DRAFT = "http://json-schema.org/draft-07/schema#"
+#: Where the schema is found on the web, which is also its name.
+_ID = f"{DOCUMENTATION}/app.schema.json"
 #: Extensions, and YAML's merge key, which editors look at before it is merged.
 _OTHER_KEYS = f"^({EXTENSION}|<<$)"
 
 
 def json_schema() -> dict[str, Any]:
-    """The schema, draft-07."""
+    """The schema, draft-07, with the messages and snippets of yaml-language-server."""
     schema = Description.model_json_schema(by_alias=True, ref_template="#/definitions/{model}")
     definitions: dict[str, Any] = schema.pop("$defs")
-    whole: dict[str, Any] = {"$schema": _DRAFT, "title": "amuros application"} | _tidied(schema)
+    whole: dict[str, Any] = {"$schema": _DRAFT, "$id": _ID, "title": "amuros application"} | _tidied(schema)
     return whole | {"definitions": {name: _tidied(definitions[name]) for name in sorted(definitions)}}
 
 
 def _tidied(schema: Any) -> Any:
-    """The schema without titles that repeat keys, and without `null` as a value."""
+    """The schema without titles that repeat keys, without `null` as a value, and without defaults in internal units."""
     if isinstance(schema, list):
         return [_tidied(item) for item in schema]
     if not isinstance(schema, dict):
         return schema
     found = {key: _tidied(value) for key, value in schema.items() if key != "title" or not isinstance(value, str)}
-    if found.get("default", 0) is None:
-        del found["default"]
     alternatives = found.get("anyOf")
     if alternatives is not None:
         kept = [item for item in alternatives if item != {"type": "null"}]
@@ -38,9 +39,18 @@ def _tidied(schema: Any) -> Any:
             found = kept[0] | found
         else:
             found["anyOf"] = kept
-    if found.get("additionalProperties") is False:
+    if "default" in found and not _is_value(found["default"], found):
+        del found["default"]
+    if "patternProperties" in found:
+        found["additionalProperties"] = False  # these are the names of objects
+    elif found.get("additionalProperties") is False:
         found["patternProperties"] = {_OTHER_KEYS: {}}
     if "$ref" in found and len(found) > 1:
         # Draft-07 ignores other keywords next to a reference.
         found["allOf"] = [{"$ref": found.pop("$ref")}]
     return found
+
+
+def _is_value(default: Any, schema: dict[str, Any]) -> bool:
+    """Whether a default is a value that may be written, rather than a missing one or a number of picoseconds or bits."""
+    return default is not None and ("pattern" not in schema or isinstance(default, str))

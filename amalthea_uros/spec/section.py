@@ -67,10 +67,12 @@ class Shorthand(Section):
     Attributes
     ----------
     shorthand : the keys that get the plain value
+    plain_value : what the plain value means
     nested : the section of that value, if it may be a mapping itself
     """
 
     shorthand: ClassVar[tuple[str, ...]]
+    plain_value: ClassVar[str]
     nested: ClassVar[type[Section] | None] = None
 
     @model_validator(mode="before")
@@ -93,10 +95,8 @@ class Shorthand(Section):
         if "anyOf" not in schema:
             whole = dict(schema)
             schema.clear()
-            properties = whole["properties"]
-            description = whole.pop("description", None)
-            plain = [properties[cls.shorthand[0]]]
-            schema.update(anyOf=[*plain, whole], **({"description": description} if description else {}))
+            plain = whole["properties"][cls.shorthand[0]] | {"description": cls.plain_value}
+            schema.update(anyOf=[plain, whole], description=whole["description"])
         return reference
 
 

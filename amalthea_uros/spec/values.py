@@ -14,6 +14,7 @@ from amalthea_uros import units
 
 #: In characters.
 MAX_NAME_LENGTH = 200
+_NAME_RULE = f"1 to {MAX_NAME_LENGTH} printable characters without leading or trailing blanks"
 _GREATEST_IDENTIFIER = 2**29 - 1
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
 
@@ -53,10 +54,43 @@ def _not_negative(value: Any) -> Any:
     return value
 
 
-def _text_schema(dimension: units.Dimension) -> WithJsonSchema:
-    known = "|".join(dimension.units)
-    number = r"[+]?([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][-+]?[0-9]+)?"
-    return WithJsonSchema({"type": "string", "pattern": f"^\\s*{number}\\s*({known})\\s*$", "examples": [dimension.example]})
+#: What a pattern has to find before a number, for values above zero, and for values of zero or more.
+_ABOVE_ZERO = r"(?=[+]?[0-9.]*[1-9])[+]?"
+_ZERO_OR_MORE = r"(?!-[0.]*[1-9])[-+]?"
+_DIGITS = r"([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][-+]?[0-9]{1,3})?"
+
+
+def _text_schema(dimension: units.Dimension, *, zero: bool = False) -> WithJsonSchema:
+    """How editors check a quantity.
+
+    Parameters
+    ----------
+    zero : whether it may be zero
+    """
+    pattern = f"^\\s*{_ZERO_OR_MORE if zero else _ABOVE_ZERO}{_DIGITS}\\s*({'|'.join(dimension.units)})\\s*$"
+    bound = "of zero or more" if zero else "above zero"
+    known = ", ".join(unit for unit in dimension.units if unit.isascii())
+    return editor_schema(
+        f"expected {dimension.article} {bound} with a unit such as {dimension.example!r}; units: {known}",
+        type=["string"],  # of a single type, yaml-language-server would replace the message where a mapping is allowed, too
+        pattern=pattern,
+        examples=[dimension.example],
+    )
+
+
+def editor_schema(problem: str, **schema: Any) -> WithJsonSchema:
+    """A JSON schema with the message that yaml-language-server shows for whatever does not match it."""
+    with_pattern = {"patternErrorMessage": problem} if "pattern" in schema else {}
+    return WithJsonSchema({**schema, **with_pattern, "errorMessage": problem})
+
+
+def described(**meanings: str) -> Any:
+    """What editors say of each word of a choice; words with a hyphen are written with an underscore here."""
+
+    def add(schema: dict[str, Any]) -> None:
+        schema["markdownEnumDescriptions"] = [meanings[word.replace("-", "_")] for word in schema["enum"]]
+
+    return Field(json_schema_extra=add)
 
 
 def _name(value: Any) -> Any:
@@ -64,8 +98,7 @@ def _name(value: Any) -> Any:
         raise unexpected("expected a name")
     text = str(value)
     if not text.strip() or text != text.strip() or len(text) > MAX_NAME_LENGTH or not text.isprintable():
-        allowed = f"1 to {MAX_NAME_LENGTH} printable characters without leading or trailing blanks"
-        raise problem(f"{units.shortened(text)!r} is not a name; use {allowed}")
+        raise problem(f"{units.shortened(text)!r} is not a name; use {_NAME_RULE}")
     return text
 
 
@@ -104,19 +137,36 @@ _BIT_RATE = BeforeValidator(_quantity(units.parse_bit_rate, units.BIT_RATE))
 #: A time above zero, in picoseconds.
 Duration: TypeAlias = Annotated[int, _TIME, AfterValidator(_positive), _text_schema(units.TIME)]
 #: A time of zero or more, in picoseconds.
-Offset: TypeAlias = Annotated[int, _TIME, AfterValidator(_not_negative), _text_schema(units.TIME)]
+Offset: TypeAlias = Annotated[int, _TIME, AfterValidator(_not_negative), _text_schema(units.TIME, zero=True)]
 #: A frequency above zero, in hertz.
 Rate: TypeAlias = Annotated[Any, _FREQUENCY, AfterValidator(_positive), _text_schema(units.FREQUENCY)]
 #: A data size above zero, in bits.
 Size: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_positive), _text_schema(units.DATA_SIZE)]
 #: A data size of zero or more, in bits.
-SizeOrNothing: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_not_negative), _text_schema(units.DATA_SIZE)]
+SizeOrNothing: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_not_negative), _text_schema(units.DATA_SIZE, zero=True)]
 #: A bit rate above zero, in bits per second.
 BitRate: TypeAlias = Annotated[int, _BIT_RATE, AfterValidator(_positive), _text_schema(units.BIT_RATE)]
 #: Name of an object.
-Name: TypeAlias = Annotated[str, BeforeValidator(_name), WithJsonSchema({"type": "string", "minLength": 1})]
+Name: TypeAlias = Annotated[
+    str,
+    BeforeValidator(_name),
+    # Numbers are names, too; that they are not is what YAML says, not the author.
+    editor_schema(
+        f"expected a name: {_NAME_RULE}", type=["string", "number"], pattern=r"^\S(.*\S)?$", maxLength=MAX_NAME_LENGTH
+    ),
+]
 #: A number above zero.
-Number: TypeAlias = Annotated[float, BeforeValidator(_number, json_schema_input_type=float), Field(gt=0)]
+Number: TypeAlias = Annotated[
+    float,
+    BeforeValidator(_number),
+    Field(gt=0),
+    editor_schema(
+        "expected a number above zero such as 1.5",
+        type=["number", "string"],
+        exclusiveMinimum=0,
+        pattern=f"^{_ABOVE_ZERO}{_DIGITS}$",
+    ),
+]
 #: Before a choice of whole numbers, for which `true` and "1" would do as well.
 WHOLE_NUMBER = BeforeValidator(_whole_number)
 #: A number of things.
@@ -129,12 +179,12 @@ Priority: TypeAlias = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]
 CanIdentifier: TypeAlias = Annotated[
     int,
     BeforeValidator(_identifier),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "integer", "minimum": 0, "maximum": _GREATEST_IDENTIFIER},
-                {"type": "string", "examples": ["0x120"]},
-            ]
-        }
+    editor_schema(
+        f"expected an identifier of up to 29 bits, 0 to {_GREATEST_IDENTIFIER:#x}",
+        type=["integer", "string"],
+        minimum=0,
+        maximum=_GREATEST_IDENTIFIER,
+        pattern=r"^0x[0-9A-Fa-f_]+\s*$",
+        examples=[0x120],
     ),
 ]

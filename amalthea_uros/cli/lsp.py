@@ -1,0 +1,27 @@
+"""`amuros lsp`: the language server."""
+
+from __future__ import annotations
+
+import os
+
+import click
+
+
+@click.command("lsp")
+@click.option("--stdio", is_flag=True, hidden=True, help="The default, which some editors state.")
+def command(stdio: bool) -> None:
+    """Run the language server on standard input and output; editors start it.
+
+    While an app.yaml or .amxmi file is edited, it shows the findings of `amuros check`, repairs what `--fix` repairs, and shows
+    response times and latencies at the names of tasks, callbacks and chains.
+    """
+    try:
+        import pygls  # noqa: F401
+    except ImportError:
+        raise click.UsageError('the language server needs pygls; install it with: pip install "amuros[lsp]"') from None
+    from amalthea_uros.editor.server import create_server
+
+    # Standard output belongs to the protocol: whatever else is printed goes to the log of the editor.
+    protocol = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    create_server().start_io(stdout=protocol)

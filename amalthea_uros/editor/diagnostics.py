@@ -1,0 +1,79 @@
+"""The findings of `check` about a text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lsprotocol import types
+
+from amalthea_uros._internal.addresses import page_of_finding
+from amalthea_uros._internal.files import overlaid
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.editor.document import Document
+from amalthea_uros.errors import ReadError
+from amalthea_uros.findings.grouping import Group, group
+from amalthea_uros.services.check import check_files
+
+SOURCE = "amuros"
+
+_SEVERITIES = {
+    Severity.ERROR: types.DiagnosticSeverity.Error,
+    Severity.WARNING: types.DiagnosticSeverity.Warning,
+    Severity.INFO: types.DiagnosticSeverity.Information,
+}
+
+
+def diagnostics_of(document: Document) -> list[types.Diagnostic]:
+    """One diagnostic for each flaw, as `amuros check` shows them; none for YAML files of other programs."""
+    with overlaid(document.contents):
+        if not document.is_ours:
+            return []
+        try:
+            groups = check_files(document.path).presentation.groups
+        except ReadError as error:  # the settings of the project
+            groups = group(error.findings)
+    return [_diagnostic(document, found) for found in groups]
+
+
+def _diagnostic(document: Document, found: Group) -> types.Diagnostic:
+    finding = found.shown
+    return types.Diagnostic(
+        range=_range(document, finding.location),
+        message=_message(document, finding),
+        severity=_SEVERITIES[finding.severity],
+        code=finding.rule,
+        code_description=types.CodeDescription(page_of_finding(finding.rule)),
+        source=SOURCE,
+        related_information=list(_related(document, found)) or None,
+    )
+
+
+def _message(document: Document, finding: Finding) -> str:
+    """What is wrong and what to do; where, if it is in another file."""
+    place = finding.location
+    where = f"{place}: " if place is not None and place.path != document.path else ""
+    return f"{where}{finding.message}" + (f"\n{finding.help}" if finding.help else "")
+
+
+def _range(document: Document, place: Location | None) -> types.Range:
+    """The word at a place; the start of the text if the place is not in it."""
+    if place is None or place.line is None or place.path != document.path:
+        return document.token(0, 0)
+    return document.token(place.line - 1, (place.column or 1) - 1)
+
+
+def _related(document: Document, found: Group) -> Iterator[types.DiagnosticRelatedInformation]:
+    """What else is reported because of the same flaw."""
+    for finding in (*found.same[1:], *found.consequences):
+        place = finding.location
+        if place is None:
+            continue
+        start = types.Position((place.line or 1) - 1, (place.column or 1) - 1)
+        is_here = place.path == document.path
+        yield types.DiagnosticRelatedInformation(
+            location=types.Location(
+                uri=document.uri if is_here else place.path.absolute().as_uri(),
+                range=_range(document, place) if is_here else types.Range(start, start),
+            ),
+            message=f"{finding.rule}: {finding.message}",
+        )

@@ -1,0 +1,232 @@
+"""`amuros lsp`, as an editor uses it: a process that answers in JSON-RPC."""
+
+import sys
+
+import pytest
+from command import amuros
+from language_client import LanguageClient, at
+from support import MODEL, ROOT
+
+from amalthea_uros import analyze_files
+from amalthea_uros.services.fix import fix_files
+from amalthea_uros.services.settings import CheckSettings
+
+pytest.importorskip("pygls")
+
+SAMPLE = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text()
+START = "amuros: 1\nname: a\nhardware: single-core\n"
+TASKS = "tasks:\n  - {name: A, period: 10 ms, execution_time: 1 ms}\n  - {name: B, period: 20 ms, execution_time: 2 ms}\n"
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    client = LanguageClient([sys.executable, "-m", "amalthea_uros", "lsp"], tmp_path_factory.mktemp("editor"))
+    yield client
+    client.kill()
+
+
+@pytest.fixture
+def file(server, tmp_path):
+    """The path of an app.yaml that is not on disk."""
+    yield (path := tmp_path / "app.yaml")
+    server.notify("textDocument/didClose", {"textDocument": {"uri": path.as_uri()}})
+
+
+def found(diagnostics):
+    """Each diagnostic as its line, its columns, its id and the first line of its message, counted from 0."""
+    return [
+        (d["range"]["start"]["line"], d["range"]["start"]["character"], d["range"]["end"]["character"], d["code"])
+        for d in diagnostics
+    ]
+
+
+def position_of(text, part):
+    before = text[: text.index(part)]
+    return before.count("\n"), len(before) - before.rfind("\n") - 1
+
+
+def test_a_text_without_findings_has_no_diagnostics(server, file):
+    assert server.open(file, SAMPLE) == []
+
+
+def test_a_finding_is_a_diagnostic_with_its_place_and_page(server, file):
+    (diagnostic,) = server.open(file, START + "tasks:\n  - {name: A, perod: 10 ms, execution_time: 1 ms, period: 1 ms}\n")
+    assert found([diagnostic]) == [(4, 14, 19, "YML010")]
+    assert diagnostic["message"] == "unknown key 'perod'\nDid you mean 'period'?"
+    assert diagnostic["severity"] == 1
+    assert diagnostic["codeDescription"]["href"].endswith("/findings/#YML010")
+
+
+def test_the_diagnostics_are_the_findings_of_check(server, file):
+    # C(A) + C(B) is more than the period of A: overload
+    text = START + TASKS.replace("execution_time: 1 ms", "execution_time: 11 ms")
+    shown = {(line + 1, code) for line, _, _, code in found(server.open(file, text))}
+    file.write_text(text)
+    checked = {line.split(": ")[1].split()[0] for line in amuros("check", file).stdout.splitlines() if "app.yaml:" in line}
+    assert {code for _, code in shown} == checked != set()
+
+
+def test_columns_are_counted_in_units_of_utf_16(server, file):
+    # U+1F600 has two units.
+    text = START + 'tasks:\n  - {name: "\U0001f600", perod: 1 ms, period: 1 ms, execution_time: 1 us}\n'
+    assert found(server.open(file, text)) == [(4, 17, 22, "YML010")]
+
+
+def test_what_is_no_yaml_is_a_diagnostic_too(server, file):
+    ((line, _, _, code),) = found(server.open(file, START + "tasks: [\n"))
+    assert (line >= 3, code) == (True, "YML001")
+    server.change(file, SAMPLE)
+    assert server.diagnostics_of(file) == []
+
+
+def test_yaml_of_other_programs_is_left_alone(server, file):
+    assert server.open(file, "services:\n  web: {image: x}\n") == []
+
+
+def test_many_quick_changes_end_with_the_diagnostics_of_the_last_text(server, file):
+    server.start_open(file, SAMPLE)
+    for end in range(len(SAMPLE) - 60, len(SAMPLE)):
+        server.change(file, SAMPLE[:end])
+    server.change(file, START + "taks: []\n")
+    assert found(server.diagnostics_of(file)) == [(3, 0, 4, "YML010")]
+
+
+def test_a_hover_shows_the_response_time_and_the_verdict_of_analyze(server, file):
+    server.open(file, START + TASKS)
+    # B waits for one job of A: 1 ms + 2 ms
+    hover = server.hover(file, *position_of(START + TASKS, "B,"))
+    assert "**met**: worst-case response time 3 ms (exact), deadline 20 ms (the period)" in hover
+    file.write_text(START + TASKS)
+    explained = amuros("analyze", file, "--explain", "B").stdout
+    assert [line for line in explained.splitlines() if line] == hover.split("```")[1].splitlines()[1:]
+
+
+def test_a_hover_on_a_chain_shows_its_latency(server, file):
+    server.open(file, SAMPLE)
+    hover = server.hover(file, *position_of(SAMPLE, "factor-to-output"))
+    result = analyze_files(ROOT / "samples" / "bodas-test-advanced.yaml")
+    (requirement,) = [each for each in result.analysis.requirements if each.object == "factor-to-output"]
+    assert f"**{requirement.verdict}**: {requirement.quantity} at most 25 ms" in hover
+    assert "Günzel" in hover
+
+
+def test_a_hover_follows_the_text(server, file):
+    server.open(file, START + TASKS)
+    place = position_of(START + TASKS, "A,")
+    assert "response time 1 ms" in server.hover(file, *place)
+    server.change(file, (START + TASKS).replace("execution_time: 1 ms", "execution_time: 11 ms"))
+    assert "**met**" not in server.hover(file, *place)
+    server.change(file, START + "tasks: [\n")
+    assert server.hover(file, *place) == ""
+
+
+def test_there_is_no_hover_on_other_words(server, file):
+    server.open(file, SAMPLE)
+    assert server.hover(file, *position_of(SAMPLE, "hardware")) == ""
+
+
+def test_a_text_that_is_too_large_to_analyze_says_so(server, file):
+    text = START + TASKS + "# " + "x" * 1_000_000
+    assert server.open(file, text) == []
+    assert "too large" in server.hover(file, *position_of(text, "A,"))
+
+
+def test_the_limit_of_the_size_holds(server, file):
+    text = START + "# " + "x" * (5 * 2**20)
+    assert [code for *_, code in found(server.open(file, text))] == ["YML002"]
+
+
+def test_names_are_symbols_and_lead_to_their_definitions(server, file):
+    server.open(file, SAMPLE)
+    symbols = server.request("textDocument/documentSymbol", {"textDocument": {"uri": file.as_uri()}})
+    assert [symbol["name"] for symbol in symbols] == ["Executor_Task", "bodas", "factor-to-output"]
+    assert [symbol["name"] for symbol in symbols[1]["children"]] == ["Message_Factor", "Control_Function"]
+    line, column = position_of(SAMPLE, "Control_Function], reaction")
+    place = server.request("textDocument/definition", at(file, line, column + 3))
+    start = place["range"]["start"]
+    assert (start["line"], start["character"]) == position_of(SAMPLE, "Control_Function, period")
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<swModel><tasks/><tasks name="Task_1"/></swModel>',
+        '<swModel><tasks name="\U0001f600"/><tasks name="T"/><isrs name="T"/><tasks name="T"/></swModel>',
+    ],
+)
+def test_an_action_makes_of_a_model_what_fix_makes_of_it(server, tmp_path, content):
+    path = tmp_path / "model.amxmi"
+    text = MODEL.format(content)
+    diagnostics = server.open(path, text, "xml")
+    everything = {"start": {"line": 0, "character": 0}, "end": {"line": 99, "character": 0}}
+    params = {"textDocument": {"uri": path.as_uri()}, "range": everything, "context": {"diagnostics": diagnostics}}
+    actions = server.request("textDocument/codeAction", params)
+    for action in actions:
+        rules = {found["code"] for found in action.get("diagnostics", [])}
+        path.write_text(text)
+        fix_files(path, CheckSettings(select=tuple(rules)))
+        assert edited(text, action["edit"]["changes"][path.as_uri()]) == path.read_text() != text
+    assert {action["kind"] for action in actions} == {"quickfix", "source.fixAll.amuros"}
+
+
+def edited(text, edits):
+    """A text after edits, whose positions count units of UTF-16."""
+    (edit,) = edits
+    lines = [line.encode("utf-16-le") for line in text.splitlines(keepends=True)]
+
+    def offset(place):
+        return len(b"".join(lines[: place["line"]])) + 2 * place["character"]
+
+    whole = b"".join(lines)
+    before, after = whole[: offset(edit["range"]["start"])], whole[offset(edit["range"]["end"]) :]
+    return (before + edit["newText"].encode("utf-16-le") + after).decode("utf-16-le")
+
+
+def test_a_hover_on_a_name_in_a_model_shows_the_same_as_in_its_description(server, file, tmp_path):
+    file.write_text(START + TASKS)
+    assert amuros("build", file, "-o", tmp_path / "app.amxmi").returncode == 0
+    text = (tmp_path / "app.amxmi").read_text()
+    server.open(tmp_path / "app.amxmi", text, "xml")
+    line, column = position_of(text, 'name="B"')
+    assert "worst-case response time 3 ms (exact)" in server.hover(tmp_path / "app.amxmi", line, column + len('name="'))
+
+
+def test_a_closed_text_has_no_diagnostics(server, tmp_path):
+    path = tmp_path / "closed.yaml"
+    assert server.open(path, START + "taks: []\n") != []
+    server.notify("textDocument/didClose", {"textDocument": {"uri": path.as_uri()}})
+    server.request("textDocument/documentSymbol", {"textDocument": {"uri": path.as_uri()}})
+    assert server.diagnostics[path.as_uri()]["diagnostics"] == []
+
+
+def test_the_server_ends_when_it_is_asked_to(tmp_path):
+    client = LanguageClient([sys.executable, "-m", "amalthea_uros", "lsp", "--stdio"], tmp_path)
+    assert client.open(tmp_path / "app.yaml", SAMPLE) == []
+    assert client.end() == 0
+    assert client.stderr == []
+
+
+def test_an_error_inside_is_a_message_in_the_log_and_the_server_goes_on(tmp_path):
+    broken = """
+from amalthea_uros.editor import server
+def fail(document):
+    raise RuntimeError("a bug")
+server.symbols_of = fail
+server.create_server().start_io()
+"""
+    client = LanguageClient([sys.executable, "-c", broken], tmp_path)
+    path = tmp_path / "app.yaml"
+    client.open(path, START + "taks: []\n")
+    assert client.request("textDocument/documentSymbol", {"textDocument": {"uri": path.as_uri()}}) is None
+    assert [message["method"] for message in client.messages] == ["window/logMessage"]
+    assert "a bug" in client.messages[0]["params"]["message"]
+    client.change(path, SAMPLE)
+    assert client.diagnostics_of(path) == []
+    client.kill()
+
+
+def test_without_pygls_the_command_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pygls", None)
+    run = amuros("lsp")
+    assert run.returncode == 2
+    assert 'pip install "amuros[lsp]"' in run.stderr
