@@ -31,6 +31,9 @@ class Difference:
         """The object and the key, such as "Executor_Task.period"."""
         return f"{self.object}.{self.key}"
 
+    def __str__(self) -> str:
+        return f"{self.target}: {self.before} -> {self.after}"
+
 
 def apply(system: System, settings: Settings, changes: Iterable[Change]) -> Configuration:
     """The system and the settings with changes.
