@@ -164,14 +164,19 @@ class _Update:
                 self._change_references(feature, before, after, target)
 
     def _change_references(self, feature: Feature, before: Sequence[Any], after: Sequence[Any], target: Element) -> None:
-        if len(_values(target, feature)) != len(before):
-            raise UnwritableError(f"{_described(target)} has other {feature.xml_name} than those that are used")
-        found = [self._target(value) for value in after]
-        setattr(target, feature.name, found if feature.many else next(iter(found), None))
+        """Set references; in a list that also has others, only those that differ."""
+        old, new = ([self._target(value) for value in values] for values in (before, after))
+        held = _values(target, feature)
+        if len(held) != len(old):
+            new = [value for value in held if value not in old or value in new] + [value for value in new if value not in held]
+        setattr(target, feature.name, new if feature.many else next(iter(new), None))
 
     def _change_parts(self, feature: Feature, before: Sequence[Element], after: Sequence[Element], target: Element) -> None:
         """Change the parts that are on both sides, add and remove others."""
         held = _own(_values(target, feature))
+        if not feature.many and not held:
+            # What the model leaves open is a default, which the built object states.
+            before = ()
         old, new = _identified(before, _built_key), _identified(after, _built_key)
         present = _identified(held, self._model_key)
         kept = dict.fromkeys(key for key in old if key in new and _meaning(old[key]) != _meaning(new[key]))

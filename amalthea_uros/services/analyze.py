@@ -14,11 +14,13 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.apply import Difference, apply, describe
+from amalthea_uros.services.changes.apply import Difference, apply
 from amalthea_uros.services.changes.change import Change
+from amalthea_uros.services.changes.key import Configuration
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.services.timing_changes import described
 from amalthea_uros.timing.settings import Settings
 
 if TYPE_CHECKING:
@@ -104,9 +106,10 @@ def analyze_files(
     files, settings = as_paths(paths), settings or Settings()
     opened = open_system(files, with_bus=with_bus)
     require_settings(settings, opened.system)
-    differences = describe(opened.system, settings, changes)
-    before = analyze_system(opened.system, settings) if changes else None
-    system, settings = apply(opened.system, settings, changes)
+    given = Configuration(opened.system, settings)
+    before = analyze_system(*given) if changes else None
+    differences = described(given, changes)
+    system, settings = apply(*given, changes)
     analysis = analyze_system(system, settings)
     report_machine_code()
     return AnalysisResult(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.apply import Difference
+from amalthea_uros.services.changes.apply import Difference, apply, describe
+from amalthea_uros.services.changes.change import Change
 from amalthea_uros.services.changes.key import UNSET, Configuration, Kind
 from amalthea_uros.services.changes.kinds import KINDS
 from amalthea_uros.timing.settings import Settings
@@ -43,11 +44,31 @@ _COUNTED = ("task", "ISR", "runnable", "core", "scheduler")
 
 def timing_changes(old: System, new: System) -> tuple[TimingChange, ...]:
     """The differences, by kind and in the order of the new system; what was removed is last of its kind."""
+    return tuple(_changes(Configuration(old, Settings()), Configuration(new, Settings())))
+
+
+def described(given: Configuration, changes: Sequence[Change]) -> tuple[Difference, ...]:
+    """The values before and after changes, those that were set and what else differs because of them; raises as `apply`."""
+    differences = describe(*given, changes)
+    return (*differences, *_consequences(given, apply(*given, changes), differences))
+
+
+def _consequences(old: Configuration, new: Configuration, given: Sequence[Difference]) -> Iterator[Difference]:
+    """What else differs because of some changes, such as the arrivals of messages that an executor with another period takes."""
+    told = {(each.object, each.key) for each in given}
+    times = {(each.before, each.after) for each in given if each.key == "execution_time"}
+    for change in _changes(old, new):
+        for each in change.differences:
+            is_same_time = each.key == "execution_time" and (each.before, each.after) in times
+            if (each.object, each.key) not in told and change.happening is Happening.CHANGED and not is_same_time:
+                yield replace(each, is_consequence=True)
+
+
+def _changes(old: Configuration, new: Configuration) -> Iterator[TimingChange]:
     if old == new:
-        return ()
-    configurations = Configuration(old, Settings()), Configuration(new, Settings())
-    found = [change for kind in KINDS for change in _of_kind(kind, *configurations)]
-    return tuple(_without_repetition(found, old, new))
+        return iter(())
+    found = [change for kind in KINDS for change in _of_kind(kind, old, new)]
+    return _without_repetition(found, old.system, new.system)
 
 
 def _of_kind(kind: Kind, old: Configuration, new: Configuration) -> Iterator[TimingChange]:
@@ -74,7 +95,7 @@ def _differences(kind: Kind, name: str, old: Configuration | None, new: Configur
             yield Difference(name, key, before, after)
 
 
-def _without_repetition(changes: Iterable[TimingChange], old: System, new: System) -> Iterator[TimingChange]:
+def _without_repetition(changes: Sequence[TimingChange], old: System, new: System) -> Iterator[TimingChange]:
     """The changes without those that another one says, too: of a stimulus and its process, a clock and its core."""
     listed = list(changes)
     said = {(each.object, difference.key) for each in listed for difference in each.differences}

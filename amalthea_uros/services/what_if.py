@@ -11,12 +11,14 @@ from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.changed_model import write_changed
-from amalthea_uros.services.changes.apply import Difference, apply, describe
+from amalthea_uros.services.changes.apply import Difference, apply
 from amalthea_uros.services.changes.change import EXAMPLE, FORM, Change, parse_change, split_target
+from amalthea_uros.services.changes.key import Configuration
 from amalthea_uros.services.impact_text import HEADINGS, cells, plain_table, unchanged_text
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.paths import StrPath
 from amalthea_uros.services.subject import Subject, system_of
+from amalthea_uros.services.timing_changes import described
 from amalthea_uros.timing.settings import Settings
 
 #: Changes as callers give them: `{"Task.period": "2 ms"}` or `["Task.period=2ms"]`.
@@ -86,7 +88,7 @@ def what_if(subject: Subject, changes: Changes, settings: Settings | None = None
     parsed, settings = as_changes(changes), settings or Settings()
     system = system_of(given)
     require_settings(settings, system)
-    differences = describe(system, settings, parsed)
+    differences = described(Configuration(system, settings), parsed)
     changed = apply(system, settings, parsed)
     before, after = analyze_system(system, settings), analyze_system(*changed)
     return WhatIf(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.analyze.impact import Amount, Effect, Figure, Impact, ImpactRow, Unit
+from amalthea_uros.analyze.impact import Effect, Figure, Impact, ImpactRow, Unit
 
 
 def content(impact: Impact) -> dict[str, Any]:
@@ -22,30 +22,29 @@ def _row(row: ImpactRow) -> dict[str, Any]:
         "part": row.part,
         "object": row.object,
         "quantity": row.quantity,
-        "unit": _UNITS[row.figure.unit],
         "effect": row.effect,
         "before": _figure(row.before),
         "after": _figure(row.after),
     }
 
 
-_UNITS = {Unit.TIME: "ps", Unit.SHARE: "share", Unit.NUMBER: "number", Unit.VERDICT: "verdict"}
-
-
 def _figure(figure: Figure | None) -> dict[str, Any] | None:
     if figure is None:
         return None
     return {
-        "value": _amount(figure.value),
+        **_value(figure),
         "claim": figure.claim,
-        "at_least": _amount(figure.at_least),
         "overload": figure.is_overload,
         "reason": figure.reason,
     }
 
 
-def _amount(value: Amount | None) -> int | str | None:
-    """A whole number, a word, or a fraction as text such as "3/200", which loses no digit."""
-    if isinstance(value, Fraction):
-        return value.numerator if value.denominator == 1 else str(value)
-    return value
+def _value(figure: Figure) -> dict[str, Any]:
+    match figure.unit, figure.value:
+        case Unit.TIME, value:
+            return {"value_ps": None if value is None else round(Fraction(value))}
+        case Unit.SHARE | Unit.NUMBER, value:
+            exact = None if value is None else Fraction(value)
+            known = {} if figure.at_least is None else {"at_least": float(figure.at_least)}
+            return {"value": None if exact is None else float(exact), "exact": None if exact is None else str(exact), **known}
+    return {"value": figure.value}
