@@ -89,7 +89,9 @@ def test_a_time_in_another_unit_is_replaced_with_its_unit(tmp_path):
     path.write_text(text.replace('<recurrence value="1" unit="ms"/>', '<recurrence value="1000" unit="us"/>'))
     amuros.what_if(path, ["Executor_Task.period=5ms", "Control_Function.period=5ms"]).save(target)
     system = amuros.extract(amuros.load(target)).system
-    periods = {system.stimuli_by_name[system.processes[name].stimuli[0]].period for name in ("Executor_Task", "Control_Function")}
+    periods = {
+        system.stimuli_by_name[system.processes[name].stimuli[0]].period for name in ("Executor_Task", "Control_Function")
+    }
     assert periods == {5 * 10**9}
 
 
