@@ -124,7 +124,7 @@ def test_the_model_of_the_caller_stays_as_it_is(tmp_path):
 
 def test_what_cannot_be_written_is_refused_before_anything_is(tmp_path):
     found = amuros.what_if(SAMPLES / "pump-1.2.0.amxmi", ["Control.deadline=3ms"])
-    with pytest.raises(InvalidArgumentError, match="AMALTHEA 1[.]2[.]0 cannot represent the scheduling parameter 'deadline'"):
+    with pytest.raises(InvalidArgumentError, match=r"AMALTHEA 1[.]2[.]0 cannot represent the scheduling parameter 'deadline'"):
         found.save(tmp_path / "changed.amxmi")
     with pytest.raises(InvalidArgumentError, match="written as an AMALTHEA model, not as a description"):
         found.save(tmp_path / "app.yaml")
