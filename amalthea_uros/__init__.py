@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from amalthea_uros import units as units
     from amalthea_uros.analyze.assignment import Proposal as Proposal
     from amalthea_uros.analyze.assignment import propose_priorities as propose_priorities
+    from amalthea_uros.analyze.impact import Effect as Effect
+    from amalthea_uros.analyze.impact import Impact as Impact
+    from amalthea_uros.analyze.impact import ImpactRow as ImpactRow
     from amalthea_uros.analyze.results import Analysis as Analysis
     from amalthea_uros.analyze.results import CallbackResult as CallbackResult
     from amalthea_uros.analyze.results import ChainResult as ChainResult
@@ -92,6 +95,8 @@ if TYPE_CHECKING:
     from amalthea_uros.services.simulate import simulate as simulate
     from amalthea_uros.services.simulate import simulate_campaign as simulate_campaign
     from amalthea_uros.services.simulate import simulate_files as simulate_files
+    from amalthea_uros.services.what_if import WhatIf as WhatIf
+    from amalthea_uros.services.what_if import what_if as what_if
     from amalthea_uros.simulate.options import Mode as Mode
     from amalthea_uros.simulate.options import Options as Options
     from amalthea_uros.simulate.results import Simulation as Simulation
@@ -109,6 +114,7 @@ if TYPE_CHECKING:
 
 _NAMES = {
     "analyze.assignment": ("Proposal", "propose_priorities"),
+    "analyze.impact": ("Effect", "Impact", "ImpactRow"),
     "analyze.results": (
         "Analysis",
         "CallbackResult",
@@ -146,6 +152,7 @@ _NAMES = {
     "services.migrate": ("MigrationResult", "migrate"),
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
+    "services.what_if": ("WhatIf", "what_if"),
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),
     "timing.dataflow.paths": ("paths",),
