@@ -11,7 +11,7 @@ import click
 from amalthea_uros.analyze.results import EXPLAINED, Quantity
 from amalthea_uros.analyze.summary import Schedulable
 from amalthea_uros.cli.files import INPUT
-from amalthea_uros.cli.output import Output, output_option, show_findings, show_line, shows_text, verbose_option, write_outputs
+from amalthea_uros.cli.output import Output, output_option, show_findings, show_line, shows_text, write_outputs
 from amalthea_uros.cli.settings_options import Assignment, settings_options
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail, explain
@@ -73,7 +73,6 @@ _FAILING = {
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
 @click.option("--metrics", "with_metrics", is_flag=True, help="Show minimum, mean and maximum of all metrics of each process.")
 @output_option(AnalysisResult)
-@verbose_option
 def command(
     paths: tuple[Path, ...],
     settings: Settings,
