@@ -43,15 +43,13 @@ gen: $(READY)
 	$(BIN)/python tools/draw_terminal.py docs/images/check.svg check --profile inchron bodas-test-hardware.yaml
 	$(BIN)/python tools/draw_quantities.py docs/images
 	$(BIN)/python tools/draw_rooms.py
+	$(BIN)/python tools/generate_benchmarks.py
 	$(BIN)/amuros simulate samples/bodas-test-advanced.yaml --gantt docs/images/simulation-gantt.svg --chain factor-to-output
 
+# Measures, and writes docs/benchmarks.md; takes some minutes.
 bench: $(READY)
 	$(BIN)/python -m pip install --quiet --editable '.[bench]'
-	$(BIN)/python benchmarks/load_save.py
-	$(BIN)/python benchmarks/build.py
-	$(BIN)/python benchmarks/response_times.py
-	$(BIN)/python benchmarks/chains.py
-	$(BIN)/python benchmarks/check.py
+	$(BIN)/python tools/generate_benchmarks.py --measure
 
 # The pages are Markdown; their examples are executed and their output is compared.
 docs: $(READY)
