@@ -3,9 +3,10 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+DIST ?= dist
 READY := $(VENV)/.ready
 
-.PHONY: demo test check gen bench docs clean
+.PHONY: demo test check gen bench docs wheel clean
 
 demo: $(READY)
 	@mkdir -p build
@@ -37,23 +38,26 @@ gen: $(READY)
 	$(BIN)/python samples/executor.py samples/executor.amxmi
 	for sample in samples/*.yaml; do $(BIN)/amuros build $$sample --output json=/dev/null; done
 	$(BIN)/python tools/draw_terminal.py docs/images/info.svg info executor.amxmi
+	$(BIN)/python tools/draw_terminal.py docs/images/analyze.svg analyze bodas-test-advanced.yaml
 	$(BIN)/python tools/draw_terminal.py docs/images/build.svg build bodas-test-advanced.yaml
 	$(BIN)/python tools/draw_terminal.py docs/images/check.svg check --profile inchron bodas-test-hardware.yaml
 	$(BIN)/python tools/draw_quantities.py docs/images
 	$(BIN)/python tools/draw_rooms.py
+	$(BIN)/python tools/generate_benchmarks.py
 	$(BIN)/amuros simulate samples/bodas-test-advanced.yaml --gantt docs/images/simulation-gantt.svg --chain factor-to-output
 
+# Measures, and writes docs/benchmarks.md; takes some minutes.
 bench: $(READY)
 	$(BIN)/python -m pip install --quiet --editable '.[bench]'
-	$(BIN)/python benchmarks/load_save.py
-	$(BIN)/python benchmarks/build.py
-	$(BIN)/python benchmarks/response_times.py
-	$(BIN)/python benchmarks/chains.py
-	$(BIN)/python benchmarks/check.py
+	$(BIN)/python tools/generate_benchmarks.py --measure
 
 # The pages are Markdown; their examples are executed and their output is compared.
 docs: $(READY)
 	$(BIN)/python -m pytest tests/test_docs.py
+
+# What is published: the source distribution and the wheel.
+wheel: $(READY)
+	$(BIN)/python -m hatchling build --directory $(DIST)
 
 $(READY): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, set PYTHON=...")'

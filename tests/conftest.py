@@ -17,6 +17,10 @@ settings.register_profile("ci", settings.get_profile("default"), derandomize=Tru
 settings.register_profile("thorough", settings.get_profile("default"), max_examples=THOROUGH)
 settings.load_profile(PROFILE)
 
+# Colours are what the tests of colours ask for.
+for name in ("NO_COLOR", "FORCE_COLOR"):
+    os.environ.pop(name, None)
+
 # What Python and numba compile is kept in one folder, for the other workers, for the commands that tests start, and for the next run.
 # This holds also where Python shall not write beside the sources: without it, each command compiles the package again.
 COMPILED = Path(__file__).parents[1] / "build" / "compiled"

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from support import ROOT
 
+from amalthea_uros._internal.addresses import DOCUMENTATION, REPOSITORY
 from amalthea_uros.validate import registry
 
 FOLDERS = (ROOT / "docs", ROOT / "benchmarks")
@@ -47,8 +48,25 @@ def test_the_examples_of_a_page(page, samples):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_the_links_of_a_page(page):
-    for target in re.findall(r"\]\(([^)#]+)\)", page.read_text()):
-        assert (page.parent / target).exists(), target
+    for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text()):
+        file = linked_file(page, target)
+        assert file is None or file.exists(), target
+
+
+def linked_file(page: Path, target: str) -> Path | None:
+    """The file that a link leads to, also where it is an address of the project; None for addresses of others."""
+    for address in (f"{REPOSITORY}/blob/main/", f"{REPOSITORY}/raw/main/"):
+        if target.startswith(address):
+            return ROOT / target.removeprefix(address)
+    if target.startswith(f"{DOCUMENTATION}/"):
+        return ROOT / "docs" / (target.removeprefix(f"{DOCUMENTATION}/").rstrip("/") + ".md")
+    return None if target.startswith("https://") else page.parent / target
+
+
+def test_the_readme_has_no_relative_link():
+    # It is also the page of the package index, where they lead nowhere.
+    targets = re.findall(r"\]\(([^)]+)\)", (ROOT / "README.md").read_text())
+    assert [target for target in targets if not target.startswith("https://")] == []
 
 
 def test_every_rule_is_documented():
@@ -72,6 +90,7 @@ def test_the_sample_is_what_its_script_builds(tmp_path):
     ("picture", "command"),
     [
         ("info.svg", ["info", "executor.amxmi"]),
+        ("analyze.svg", ["analyze", "bodas-test-advanced.yaml"]),
         ("build.svg", ["build", "bodas-test-advanced.yaml"]),
         ("check.svg", ["check", "--profile", "inchron", "bodas-test-hardware.yaml"]),
     ],

@@ -15,3 +15,8 @@ def resource_folder(name: str) -> Path:
 
 #: The folder of the platforms, which are data and no code.
 PLATFORMS = _PACKAGE / "platforms"
+
+
+def known_platforms() -> list[str]:
+    """The names of the platforms that come with this package."""
+    return sorted(path.stem for path in PLATFORMS.glob("*.yaml"))

@@ -21,7 +21,6 @@ from amalthea_uros.cli.output import (
     show_findings,
     show_line,
     shows_text,
-    verbose_option,
     write_outputs,
 )
 from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
@@ -96,7 +95,6 @@ _FAILING = {
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
 @click.option("--metrics", "with_metrics", is_flag=True, help="Show minimum, mean and maximum of all metrics of each process.")
 @output_option(AnalysisResult)
-@verbose_option
 def command(
     paths: tuple[Path, ...],
     changes: tuple[Change, ...],

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import errno
 import sys
+from functools import cache
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,16 +15,21 @@ from amalthea_uros._version import __version__
 from amalthea_uros.cli.ends import INTERRUPTED, failed
 from amalthea_uros.report.escape import visible
 
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
 #: Command -> its line in `amuros --help`; the module with the same name has the rest.
 COMMANDS = {
     "analyze": "Compute response times, loads, chain latencies and verdicts.",
     "build": "Build an AMALTHEA model from an app.yaml.",
     "chains": "List the paths from one process to another, with their latencies.",
     "check": "Check models by rules.",
+    "completion": "Print what makes a shell complete commands, options and files.",
     "diff": "Compare two models by meaning.",
     "explain": "Explain a rule or another finding.",
     "fmt": "Rewrite models in canonical form.",
     "info": "Show the content of a model.",
+    "init": "Write a commented app.yaml to begin with, or copy an example.",
     "lsp": "Run the language server, for editors.",
     "migrate": "Convert models to another AMALTHEA version.",
     "rules": "List the rules of check.",
@@ -58,8 +64,14 @@ class LazyGroup(click.Group):
             if advice := did_you_mean(cmd_name, COMMANDS):
                 ctx.fail(f"No such command {cmd_name!r}; {advice}")
             return None
-        command: click.Command = import_module(f"amalthea_uros.cli.{cmd_name}").command
-        return command
+        return _load(cmd_name)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """The commands that begin so, without importing them."""
+        from click.shell_completion import CompletionItem
+
+        found = [CompletionItem(name, help=line) for name, line in COMMANDS.items() if name.startswith(incomplete)]
+        return [*found, *click.Command.shell_complete(self, ctx, incomplete)]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing them."""
@@ -74,6 +86,14 @@ def cli() -> None:
 
     Exit codes: 0 success, 1 findings, errors in an app.yaml, differences or missed requirements, 2 wrong use or unreadable input.
     """
+
+
+@cache
+def _load(name: str) -> click.Command:
+    from amalthea_uros.cli.common_options import with_common_options
+
+    command: click.Command = import_module(f"amalthea_uros.cli.{name}").command
+    return with_common_options(command)
 
 
 def _check_environment() -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 from click.core import ParameterSource
+from click.shell_completion import CompletionItem
 
 from amalthea_uros._internal.files import (
     STANDARD_ERROR,
@@ -21,8 +22,9 @@ from amalthea_uros._internal.files import (
     resolved,
 )
 from amalthea_uros.cli.files import output_path, refuse_mixture
-from amalthea_uros.diagnostics import Finding
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report import formats
+from amalthea_uros.report.display import is_brief
 from amalthea_uros.report.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -63,28 +65,9 @@ class OutputType(click.ParamType[Output]):
             self.fail(f"unknown format {name!r}, expected one of {', '.join(self.names)}", param, ctx)
         return Output(name, output_path(path) if path else STANDARD_OUTPUT)
 
-
-def verbose_option(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The option that shows on standard error what the library logs."""
-    return click.option(
-        "-v",
-        "--verbose",
-        is_flag=True,
-        expose_value=False,
-        callback=_show_log,
-        help="Show on standard error whether machine code is used, and why.",
-    )(command)
-
-
-def _show_log(_context: click.Context, _parameter: click.Parameter, value: bool) -> None:
-    if not value:
-        return
-    import logging
-
-    handler = logging.StreamHandler()
-    logger = logging.getLogger("amalthea_uros")
-    logger.handlers, logger.propagate = [handler], False
-    logger.setLevel(logging.INFO)
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        """The formats that begin so."""
+        return [CompletionItem(name) for name in self.names if name.startswith(incomplete)]
 
 
 def output_option(result: type) -> Callable[[Any], Any]:
@@ -213,19 +196,20 @@ def show_line(text: str) -> None:
 
 
 def show_findings(findings: Iterable[Finding]) -> None:
-    """Show findings on standard error."""
-    Terminal(sys.stderr).findings(findings)
+    """Show findings on standard error; where the user wants to be told little, only errors."""
+    quiet = is_brief(sys.stderr)
+    Terminal(sys.stderr).findings(finding for finding in findings if not quiet or finding.severity is Severity.ERROR)
 
 
 def show_differences(differences: Iterable[Difference]) -> None:
     """Show on standard error what changes did."""
-    for difference in differences:
+    for difference in () if is_brief(sys.stderr) else differences:
         show_line(str(difference))
 
 
 def show_summaries(model: Model, targets: Sequence[str]) -> None:
     """Show on standard error what target tools make of a model."""
-    if targets:
+    if targets and not is_brief(sys.stderr):
         from amalthea_uros.findings.targets import summary
         from amalthea_uros.services.check import summaries
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import click
+from click.shell_completion import CompletionItem
 
 
 class Several(click.ParamType[str]):
@@ -20,6 +21,11 @@ class Several(click.ParamType[str]):
             if self.allowed and word not in self.allowed:
                 self.fail(f"{word!r} is not one of {', '.join(self.allowed)}", param, ctx)
         return value
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        """The words that the last one can become."""
+        before, comma, last = incomplete.rpartition(",")
+        return [CompletionItem(f"{before}{comma}{word}") for word in self.allowed if word.startswith(last)]
 
 
 def several(_context: click.Context, _parameter: click.Parameter, values: tuple[str, ...]) -> tuple[str, ...]:

@@ -22,7 +22,6 @@ from amalthea_uros.cli.output import (
     show_findings,
     show_line,
     shows_text,
-    verbose_option,
     write_outputs,
 )
 from amalthea_uros.cli.parsed import Parsed
@@ -145,7 +144,6 @@ def _labels(text: str) -> tuple[str, ...]:
 )
 @click.option("--table", type=OUTPUT_FILE, metavar="FILE", help="Write a row for each run to a .csv, .json or .parquet file.")
 @output_option(CampaignResult)
-@verbose_option
 def command(
     paths: tuple[Path, ...],
     duration: Time,

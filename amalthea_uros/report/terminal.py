@@ -8,6 +8,7 @@ from itertools import zip_longest
 from typing import IO
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.report.display import is_coloured
 from amalthea_uros.report.escape import output_line, visible
 from amalthea_uros.report.table_layout import GAP, column_widths, folded, table_width, with_footnotes
 
@@ -25,12 +26,12 @@ _STYLE = "\ud800["
 
 
 class Terminal:
-    """Writes to a stream, in colour if it is a terminal and `NO_COLOR` is not set."""
+    """Writes to a stream, in colour where the user wants that, by default on terminals."""
 
     def __init__(self, stream: IO[str]) -> None:
         self.stream = stream
         self.width = _width(stream)
-        self.coloured = stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+        self.coloured = is_coloured(stream)
 
     def line(self, text: str = "") -> None:
         """Write one line; of what is not ours in it, hidden characters are shown as escapes."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from amalthea_uros._internal.resources import PLATFORMS
+from amalthea_uros._internal.resources import PLATFORMS, known_platforms
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
@@ -14,11 +14,6 @@ from amalthea_uros.spec.read import read_section
 from amalthea_uros.spec.repair import CERTAIN
 
 _SUFFIXES = (".yaml", ".yml")
-
-
-def known_platforms() -> list[str]:
-    """The names of the platforms that come with this package."""
-    return sorted(path.stem for path in PLATFORMS.glob("*.yaml"))
 
 
 class WholeHardware(NamedTuple):

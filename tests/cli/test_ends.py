@@ -29,7 +29,7 @@ WITH_A_FILE = {
     "simulate": ["{}", "--duration", "1ms"],
 }
 #: Those that read no file.
-WITHOUT = {"explain": ["XMI001"], "lsp": ["--help"], "rules": [], "schema": []}
+WITHOUT = {"completion": ["bash"], "explain": ["XMI001"], "init": ["--list"], "lsp": ["--help"], "rules": [], "schema": []}
 
 
 def test_every_command_is_in_a_table():

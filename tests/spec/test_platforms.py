@@ -4,10 +4,10 @@ import pytest
 from support import ROOT
 
 from amalthea_uros import build
-from amalthea_uros._internal.resources import PLATFORMS
+from amalthea_uros._internal.resources import PLATFORMS, known_platforms
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.hardware import Hardware, Platform
-from amalthea_uros.spec.platforms import known_platforms, whole_hardware
+from amalthea_uros.spec.platforms import whole_hardware
 from amalthea_uros.spec.read import read_section
 
 

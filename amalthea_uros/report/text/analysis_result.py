@@ -49,6 +49,11 @@ def write(result: AnalysisResult, terminal: Terminal) -> None:
     terminal.heading(closing_line(analysis.summary))
 
 
+def write_closing(result: AnalysisResult, terminal: Terminal) -> None:
+    """Write the verdict only."""
+    terminal.line(closing_line(result.analysis.summary))
+
+
 def _processors(terminal: Terminal, analysis: Analysis) -> None:
     used = [processor for processor in analysis.processors if processor.worst != 0]
     if not used:

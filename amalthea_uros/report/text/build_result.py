@@ -14,10 +14,8 @@ from amalthea_uros.uros.initialisation import Initialisation
 
 def write(result: BuildResult, terminal: Terminal) -> None:
     """Write tables of tasks, interrupts, messages, and the start and the pools of the middleware."""
-    document, assembly = result.document, result.assembly
-    objects = counted(sum(1 for _ in result.model.walk()), "object")
-    name = terminal.style(str(document.path or "unsaved"), "1")
-    terminal.line(f"{name}: AMALTHEA {document.version}, {objects}, built from {result.description}")
+    write_closing(result, terminal)
+    assembly = result.assembly
     _tasks(terminal, assembly)
     _isrs(terminal, assembly.system)
     _traffic(terminal, assembly)
@@ -25,6 +23,14 @@ def write(result: BuildResult, terminal: Terminal) -> None:
         terminal.heading("Initialisation of the middleware")
         terminal.line(f"  {start_text(assembly.initialisation)}")
     _pools(terminal, assembly)
+
+
+def write_closing(result: BuildResult, terminal: Terminal) -> None:
+    """Write which file was written."""
+    objects = counted(sum(1 for _ in result.model.walk()), "object")
+    document = result.document
+    name = terminal.style(str(document.path or "unsaved"), "1")
+    terminal.line(f"{name}: AMALTHEA {document.version}, {objects}, built from {result.description}")
 
 
 def _tasks(terminal: Terminal, assembly: Assembly) -> None:

@@ -25,6 +25,11 @@ def write(result: CampaignResult, terminal: Terminal) -> None:
     terminal.heading(closing_line(result))
 
 
+def write_closing(result: CampaignResult, terminal: Terminal) -> None:
+    """Write what was observed, in one line."""
+    terminal.line(closing_line(result))
+
+
 def _values(outcome: Outcome, targets: list[str]) -> Iterator[str]:
     values = {change.target: change.value for change in outcome.run.changes}
     return (values.get(target, "") for target in targets)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.findings.grouping import Group
 from amalthea_uros.findings.presentation import Presentation
 from amalthea_uros.findings.targets import summary
@@ -28,6 +29,15 @@ def write(result: CheckResult, terminal: Terminal) -> None:
         if number > SHOWN:
             terminal.line(f"{rule}: {number - SHOWN} more not shown; --output json has all of them")
     write_sum(result.presentation, terminal)
+
+
+def write_closing(result: CheckResult, terminal: Terminal) -> None:
+    """Write the errors, and the number of all findings."""
+    errors = [group.shown for group in result.presentation.groups if group.shown.severity is Severity.ERROR]
+    terminal.findings(errors[:SHOWN])
+    if len(errors) > SHOWN:
+        terminal.line(f"{len(errors) - SHOWN} more errors not shown; --output json has all of them")
+    terminal.line(findings_text(result.presentation.shown))
 
 
 def _write_rest(group: Group, terminal: Terminal) -> None:

@@ -28,6 +28,11 @@ def write(result: DiffResult, terminal: Terminal) -> None:
         _write_object(group, terminal)
     if result.changes:
         terminal.line()
+    write_closing(result, terminal)
+
+
+def write_closing(result: DiffResult, terminal: Terminal) -> None:
+    """Write how many differences there are."""
     terminal.line(_summary(result.changes))
     if result.impact is not None:
         impact.write(result.impact, terminal)

@@ -32,6 +32,11 @@ def write(result: MigrationResult, terminal: Terminal) -> None:
         terminal.table(("number", "", "what", "example", "first"), rows, right=(0,))
     if result.files:
         terminal.line()
+    write_closing(result, terminal)
+
+
+def write_closing(result: MigrationResult, terminal: Terminal) -> None:
+    """Write the sum of what was done."""
     terminal.line(summary(result))
 
 

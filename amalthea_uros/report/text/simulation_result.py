@@ -48,6 +48,11 @@ def write(result: SimulationShown, terminal: Terminal) -> None:
     terminal.heading(closing_line(simulation))
 
 
+def write_closing(result: SimulationShown, terminal: Terminal) -> None:
+    """Write what was observed, in one line."""
+    terminal.line(closing_line(result.simulation))
+
+
 def _cores(terminal: Terminal, simulation: Simulation) -> None:
     used = [core for core in simulation.cores if core.load]
     if used:

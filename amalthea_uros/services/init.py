@@ -1,0 +1,131 @@
+"""The first `app.yaml` of a user: a commented one for a board, or a copy of an example."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from amalthea_uros._internal.addresses import DOCUMENTATION
+from amalthea_uros._internal.files import is_stream
+from amalthea_uros._internal.resources import PLATFORMS, known_platforms, resource_folder
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import WriteError
+
+#: The board of somebody who names none.
+DEFAULT_BOARD = "generic"
+FILE_NAME = "app.yaml"
+_SUFFIXES = (".yaml", ".yml")
+#: A comment at the start of a file explains the file; its first sentence is enough in a list.
+_COMMENT = re.compile(r"\A(?:#.*\n)+")
+_SENTENCE_END = re.compile(r"[.:](?:\s|$)")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Offered:
+    """Something that a description can begin with.
+
+    Attributes
+    ----------
+    summary : what it is, in one line
+    """
+
+    name: str
+    summary: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InitResult:
+    """A description that was written.
+
+    Attributes
+    ----------
+    path : the file
+    origin : the board or the example that it is for, as people say it
+    """
+
+    path: Path
+    origin: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Catalogue:
+    """Everything that a description can begin with."""
+
+    boards: tuple[Offered, ...]
+    examples: tuple[Offered, ...]
+
+
+def example_names() -> list[str]:
+    """The names of the examples that come with this package."""
+    return sorted(path.stem for path in _samples().glob("*.yaml"))
+
+
+def catalogue() -> Catalogue:
+    """All boards and examples, each with what its file says first."""
+    return Catalogue(
+        boards=tuple(_offered(PLATFORMS / f"{name}.yaml") for name in known_platforms()),
+        examples=tuple(_offered(_samples() / f"{name}.yaml") for name in example_names()),
+    )
+
+
+def init_from_board(target: Path, board: str = DEFAULT_BOARD, *, force: bool = False) -> InitResult:
+    """Write a commented description for a board.
+
+    Parameters
+    ----------
+    target : a file; or a folder, which is created if it does not exist
+    board : the name of a platform
+    force : replace a file that exists
+
+    Raises
+    ------
+    WriteError : the file exists, or cannot be written.
+    """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    folder = resource_folder("templates/init")
+    environment = Environment(loader=FileSystemLoader(folder), undefined=StrictUndefined, keep_trailing_newline=True)
+    text = environment.get_template(FILE_NAME).render(
+        board=board, summary=_offered(PLATFORMS / f"{board}.yaml").summary, documentation=DOCUMENTATION
+    )
+    return InitResult(path=_write(target, text, force), origin=f"board {board}")
+
+
+def init_from_example(target: Path, example: str, *, force: bool = False) -> InitResult:
+    """Write a copy of an example.
+
+    Parameters
+    ----------
+    target, force : as for `init_from_board`
+    example : its name
+
+    Raises
+    ------
+    WriteError : the file exists, or cannot be written.
+    """
+    text = (_samples() / f"{example}.yaml").read_text(encoding="utf-8")
+    return InitResult(path=_write(target, text, force), origin=f"example {example}")
+
+
+def _samples() -> Path:
+    return resource_folder("samples")
+
+
+def _offered(path: Path) -> Offered:
+    comment = _COMMENT.match(path.read_text(encoding="utf-8"))
+    text = " ".join(line.lstrip("# ") for line in comment[0].splitlines()) if comment else ""
+    return Offered(name=path.stem, summary=_SENTENCE_END.split(text)[0])
+
+
+def _write(target: Path, text: str, force: bool) -> Path:
+    from amalthea_uros.xmi.files import FileText, write_text
+
+    path = target if is_stream(target) or (target.suffix in _SUFFIXES and not target.is_dir()) else target / FILE_NAME
+    if not force and not is_stream(path) and path.exists():
+        advice = "Use --force to replace it, or name another file."
+        raise WriteError([Finding("XMI101", Severity.ERROR, "the file exists already", Location(path), advice)])
+    if path != target:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    write_text(path, FileText(text))
+    return path

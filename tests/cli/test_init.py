@@ -1,0 +1,108 @@
+"""`amuros init`: a description that works at once, and never a file lost."""
+
+import json
+
+import pytest
+from command import amuros
+from support import ROOT
+
+from amalthea_uros._internal.resources import known_platforms
+from amalthea_uros.cli.main import COMMANDS
+from amalthea_uros.services.init import example_names
+
+
+@pytest.mark.parametrize("board", known_platforms())
+def test_what_is_written_for_a_board_is_built_checked_and_schedulable(board, tmp_path):
+    assert amuros("init", "--board", board, cwd=tmp_path).returncode == 0
+    assert f"platform: {board} #" in (tmp_path / "app.yaml").read_text()
+    build = amuros("build", "app.yaml", cwd=tmp_path)
+    assert (build.returncode, build.stderr.count("error"), build.stderr.count("warning")) == (0, 0, 0)
+    check = amuros("check", "app.yaml", cwd=tmp_path)
+    assert check.stdout.endswith("no findings\n")
+    analysis = amuros("analyze", "app.yaml", "--output", "json", cwd=tmp_path)
+    assert analysis.returncode == 0
+    assert json.loads(analysis.stdout)["summary"]["schedulable"] == "yes"
+
+
+def test_its_comments_teach_every_part():
+    text = amuros("init", "-").stdout
+    lines = text.splitlines()
+    for key in ("task_periods", "executor", "execution_time: {min", "chains", "requirements"):
+        index = next(i for i, line in enumerate(lines) if key in line)
+        assert "#" in lines[index] or "#" in lines[index - 1], key
+
+
+def test_standard_output_has_nothing_but_the_file():
+    run = amuros("init", "-")
+    assert run.stderr == ""
+    assert amuros("check", "-", given=run.stdout).stdout.endswith("no findings\n")
+
+
+@pytest.mark.parametrize("example", example_names())
+def test_an_example_is_copied_as_it_is(example, tmp_path):
+    assert amuros("init", "--example", example, cwd=tmp_path).returncode == 0
+    assert (tmp_path / "app.yaml").read_bytes() == (ROOT / "samples" / f"{example}.yaml").read_bytes()
+
+
+def test_every_example_is_in_the_wheel():
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    included = project["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"]
+    samples = {source: target for source, target in included.items() if source.startswith("samples/")}
+    assert samples == {f"samples/{name}.yaml": f"amalthea_uros/samples/{name}.yaml" for name in example_names()}
+
+
+@pytest.mark.parametrize(
+    ("target", "path"), [("my.yaml", "my.yaml"), ("new/folder", "new/folder/app.yaml"), (".", "app.yaml"), ("a.yml", "a.yml")]
+)
+def test_a_file_or_a_folder_is_named(target, path, tmp_path):
+    run = amuros("init", target, cwd=tmp_path)
+    assert run.stdout.startswith(f"{path}: written from board generic\n")
+    assert [str(file.relative_to(tmp_path)) for file in tmp_path.rglob("*.y*ml")] == [path]
+
+
+def test_a_file_that_exists_is_replaced_only_with_force(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text("mine")
+    run = amuros("init", cwd=tmp_path)
+    assert run.returncode == 2
+    assert run.stderr == (
+        "app.yaml: XMI101 error: the file exists already\n  help: Use --force to replace it, or name another file.\n"
+    )
+    assert path.read_text() == "mine"
+    assert amuros("init", "--force", cwd=tmp_path).returncode == 0
+    assert path.read_text().startswith("# The timing")
+
+
+@pytest.mark.parametrize(
+    ("option", "name", "advice"),
+    [
+        ("--board", "generik", "did you mean 'generic'?"),
+        ("--board", "?", f"known names: {', '.join(known_platforms())}"),
+        ("--example", "drive-and-left", "did you mean 'drive-and-lift'?"),
+    ],
+)
+def test_a_wrong_name_gets_a_suggestion(option, name, advice, tmp_path):
+    run = amuros("init", option, name, cwd=tmp_path)
+    assert run.returncode == 2
+    assert f"there is no {name!r}; {advice}" in run.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_help_and_list_name_all_boards_and_examples():
+    names = [*known_platforms(), *example_names()]
+    words = amuros("init", "--list").stdout.split()
+    assert [word for word in words if word in names] == names
+    text = "".join(amuros("init", "--help").stdout.split())
+    assert [name for name in names if name not in text] == []
+
+
+def test_it_ends_with_commands_that_exist(tmp_path):
+    lines = amuros("init", cwd=tmp_path).stdout.partition("Next:\n")[2].splitlines()
+    named = [line.split()[1] for line in lines]
+    assert named == ["check", "analyze", "report", "build"]
+    for line in lines:
+        words = line.partition("#")[0].split()[1:]
+        if words[0] in COMMANDS:
+            assert amuros(*words, cwd=tmp_path).returncode == 0
