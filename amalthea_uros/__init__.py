@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from amalthea_uros.perf.activities import Communication as Communication
     from amalthea_uros.perf.system import System as System
     from amalthea_uros.services.analyze import AnalysisResult as AnalysisResult
+    from amalthea_uros.services.analyze import analyze as analyze
     from amalthea_uros.services.analyze import analyze_files as analyze_files
     from amalthea_uros.services.build import BuildResult as BuildResult
     from amalthea_uros.services.build import build as build
@@ -92,6 +93,9 @@ if TYPE_CHECKING:
     from amalthea_uros.services.simulate import simulate as simulate
     from amalthea_uros.services.simulate import simulate_campaign as simulate_campaign
     from amalthea_uros.services.simulate import simulate_files as simulate_files
+    from amalthea_uros.services.taskset import TaskParameters as TaskParameters
+    from amalthea_uros.services.taskset import task as task
+    from amalthea_uros.services.taskset import taskset as taskset
     from amalthea_uros.simulate.options import Mode as Mode
     from amalthea_uros.simulate.options import Options as Options
     from amalthea_uros.simulate.results import Simulation as Simulation
@@ -135,7 +139,7 @@ _NAMES = {
     "metamodel.model": ("Document", "Model", "Reference"),
     "perf.activities": ("Communication",),
     "perf.system": ("System",),
-    "services.analyze": ("AnalysisResult", "analyze_files"),
+    "services.analyze": ("AnalysisResult", "analyze", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
     "services.campaign.run": ("Outcome", "Run"),
     "services.campaign.tables": ("write_table",),
@@ -146,6 +150,7 @@ _NAMES = {
     "services.migrate": ("MigrationResult", "migrate"),
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
+    "services.taskset": ("TaskParameters", "task", "taskset"),
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),
     "timing.dataflow.paths": ("paths",),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,9 +13,12 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.changes.apply import apply
+from amalthea_uros.services.changes.change import Change, parse_change
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.services.subject import Subject, open_subject
 from amalthea_uros.timing.settings import Settings
 
 if TYPE_CHECKING:
@@ -64,6 +67,37 @@ class ChainDetail:
 
     chain: ChainResult
     all_methods: bool
+
+
+def analyze(subject: Subject, settings: Settings | None = None, *, changes: Iterable[str | Change] = ()) -> Analysis:
+    """Compute response times, loads, latencies of chains and verdicts of whatever describes a system.
+
+    >>> analysis = analyze("app.yaml")              # doctest: +SKIP
+    >>> analysis["Control_Function"].response.worst  # doctest: +SKIP
+
+    Parameters
+    ----------
+    subject : the path of an `app.yaml` or of an AMALTHEA model, several paths of one model, the text of an `app.yaml` (with at least
+        one line break), its content as a dict, a `Model`, or a `System`, such as `taskset` makes
+    changes : such as "Executor_Task.period=2ms"
+
+    Returns
+    -------
+    Analysis : its findings include those about the subject, such as references that lead nowhere.
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong; carries a finding for each mistake.
+    InvalidArgumentError : the settings or changes name something that does not exist, or have values that cannot be.
+    TypeError : the subject is something else; the text lists what is accepted.
+    """
+    opened = open_subject(subject)
+    parsed = [change if isinstance(change, Change) else parse_change(change) for change in changes]
+    system, settings = apply(opened.system, settings or Settings(), parsed)
+    require_settings(settings, system)
+    analysis = analyze_system(system, settings)
+    report_machine_code()
+    return replace(analysis, findings=unsuppressed((*opened.findings, *analysis.findings)))
 
 
 def analyze_files(
