@@ -24,6 +24,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from amalthea_uros._internal.shown import Presenter, present_by
 from amalthea_uros._version import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -176,6 +177,16 @@ class _Package(ModuleType):
 
 
 sys.modules[__name__].__class__ = _Package
+
+
+def _presenter() -> Presenter:
+    """What shows results: the rooms that hold them do not know it."""
+    from amalthea_uros.report import notebook
+
+    return notebook
+
+
+present_by(_presenter)
 
 
 def __getattr__(name: str) -> Any:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.response_times.kernel import report_machine_code
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
 from amalthea_uros.analyze.system import analyze_system
@@ -38,7 +39,7 @@ class Explanation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AnalysisResult:
+class AnalysisResult(Shown):
     """The analysis of some files, with what it rests on.
 
     Attributes

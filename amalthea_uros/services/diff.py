@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.difference.comparison import Change, difference
 from amalthea_uros.metamodel.model import Model
@@ -19,7 +20,7 @@ _MIGRATION = ("XMI008", "XMI009")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DiffResult:
+class DiffResult(Shown):
     """The differences of two models.
 
     Attributes

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
@@ -62,7 +63,7 @@ class SimulationPlan:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationResult:
+class SimulationResult(Shown):
     """The simulation of some files, with what it rests on.
 
     Attributes
@@ -90,7 +91,7 @@ class SimulationResult:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CampaignResult:
+class CampaignResult(Shown):
     """Many simulations of some files.
 
     Attributes

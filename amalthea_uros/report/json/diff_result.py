@@ -15,12 +15,13 @@ def content(result: DiffResult) -> dict[str, Any]:
     return {
         "old": result.old,
         "new": result.new,
-        "changes": [_as_json(change) for change in result.changes],
+        "changes": [change_json(change) for change in result.changes],
         "findings": [finding_json(finding) for finding in result.findings],
     }
 
 
-def _as_json(change: Change) -> dict[str, Any]:
+def change_json(change: Change) -> dict[str, Any]:
+    """A difference with its places in the files."""
     return {
         "kind": change.kind,
         "class": change.class_name,
