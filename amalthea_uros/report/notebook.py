@@ -24,7 +24,10 @@ from amalthea_uros.units import time_text
 _ROWS = 100
 
 _TIME = "_ps"
-_TABLE = '<table class="amuros" style="text-align:left">'
+_TABLE = '<table class="amuros" style="border-collapse:collapse">'
+_CELL = "padding:2px 12px 2px 0;vertical-align:top;min-width:4em"
+#: Groups of columns that are too many to be displayed.
+_DETAILS = ("metrics.", "terms.")
 
 
 def text(result: object) -> str:
@@ -106,7 +109,8 @@ def _table_html(headings: Sequence[str], rows: Iterable[Sequence[str]], right: S
     def row(cells: Sequence[str], tag: str) -> str:
         sides = ("right" if index in right else "left" for index in range(len(cells)))
         made = (
-            f'<{tag} style="text-align:{side}">{escape(visible(cell))}</{tag}>' for cell, side in zip(cells, sides, strict=True)
+            f'<{tag} style="{_CELL};text-align:{side}">{escape(visible(cell))}</{tag}>'
+            for cell, side in zip(cells, sides, strict=True)
         )
         return f"<tr>{''.join(made)}</tr>"
 
@@ -115,9 +119,9 @@ def _table_html(headings: Sequence[str], rows: Iterable[Sequence[str]], right: S
 
 
 def _table(rows: Sequence[Record]) -> str:
-    """Records as a table without empty columns and those of all metrics; times are texts with units."""
+    """Records as a table without empty columns and details; times are texts with units."""
     stated = dict.fromkeys(name for row in rows for name, value in row.items() if value not in (None, ""))
-    names = [name for name in stated if not name.startswith("metrics.")]
+    names = [name for name in stated if not name.startswith(_DETAILS)]
     shown = rows[:_ROWS]
     cells = [[_cell(name, row.get(name)) for name in names] for row in shown]
     right = [index for index, name in enumerate(names) if all(not isinstance(row.get(name), str) for row in shown)]

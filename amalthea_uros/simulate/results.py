@@ -20,7 +20,6 @@ from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time, time_text
 
 if TYPE_CHECKING:
-
     from amalthea_uros.trace.table import EventTable
 
 #: A cell of a table of runs.
