@@ -31,6 +31,9 @@ Duration: TypeAlias = str | int
 #: Period and worst-case execution time; numbers are counted in the `unit` of the task set.
 PeriodAndWcet: TypeAlias = tuple[str | float | Fraction, str | float | Fraction]
 
+#: In the theory, jobs wait until their predecessors have ended, however many they are.
+_NO_LIMIT = 2**31 - 1
+
 #: A tick of the cores is a picosecond, so that execution times are exact.
 _CLOCK = Clock(name="Clock", frequency=Fraction(SECOND))
 
@@ -311,6 +314,7 @@ def _task(each: TaskParameters, flows: Iterable[tuple[str, str]]) -> Task:
         stimuli=(f"Activation_{each.name}",),
         activities=(*accesses(AccessKind.READ, 1), Execute(demand=demand), *accesses(AccessKind.WRITE, 0)),
         preemption=each.preemption,
+        activation_limit=_NO_LIMIT,
     )
 
 
