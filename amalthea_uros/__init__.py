@@ -97,6 +97,8 @@ if TYPE_CHECKING:
     from amalthea_uros.services.taskset import TaskParameters as TaskParameters
     from amalthea_uros.services.taskset import task as task
     from amalthea_uros.services.taskset import taskset as taskset
+    from amalthea_uros.services.what_if import WhatIf as WhatIf
+    from amalthea_uros.services.what_if import what_if as what_if
     from amalthea_uros.simulate.options import Mode as Mode
     from amalthea_uros.simulate.options import Options as Options
     from amalthea_uros.simulate.results import Simulation as Simulation
@@ -152,6 +154,7 @@ _NAMES = {
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
     "services.taskset": ("TaskParameters", "task", "taskset"),
+    "services.what_if": ("WhatIf", "what_if"),
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),
     "timing.dataflow.paths": ("paths",),

@@ -9,14 +9,17 @@ from io import StringIO
 from pathlib import Path
 
 from amalthea_uros._internal.shown import Cell, Record
+from amalthea_uros.analyze.impact import Impact
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.report.by_result import module_for, rendered_in
 from amalthea_uros.report.escape import visible
 from amalthea_uros.report.records import records as records
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.report.text import analysis_result, simulation_result
+from amalthea_uros.report.text import analysis_result, impact, simulation_result
 from amalthea_uros.services.analyze import AnalysisResult
+from amalthea_uros.services.changes.apply import Difference
+from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.units import time_text
 
@@ -51,6 +54,10 @@ def _write(result: object, terminal: Terminal) -> bool:
         case Simulation():
             terminal.findings(result.findings)
             simulation_result.write(_SimulationAlone(result), terminal)
+        case WhatIf():
+            for change in result.differences:
+                terminal.line(str(change))
+            impact.write(result.impact, terminal)
         case _ if type(result).__name__ in rendered_in("text"):
             module_for(result, "text").write(result, terminal)
         case _:
@@ -73,6 +80,8 @@ class _SimulationAlone:
     simulation: Simulation
     paths: tuple[Path, ...] = ()
     with_metrics: bool = False
+    differences: tuple[Difference, ...] = ()
+    impact: Impact | None = None
 
     @property
     def findings(self) -> tuple[Finding, ...]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.shown import Record
+from amalthea_uros.analyze.impact import Impact
 from amalthea_uros.analyze.results import (
     Analysis,
     CallbackResult,
@@ -16,11 +17,12 @@ from amalthea_uros.analyze.results import (
     ProcessResult,
     RequirementResult,
 )
-from amalthea_uros.report.json import analysis_result, check_result, diff_result, simulation_result
+from amalthea_uros.report.json import analysis_result, check_result, diff_result, impact, simulation_result
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult
+from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.simulate.results import (
     ChainObservation,
     CoreObservation,
@@ -134,6 +136,16 @@ def _(result: CheckResult) -> list[Record]:
 @records.register
 def _(result: DiffResult) -> list[Record]:
     return [flat(diff_result.change_json(change)) for change in result.changes]
+
+
+@records.register
+def _(result: Impact) -> list[Record]:
+    return [flat(impact.row_json(row)) for row in result.rows]
+
+
+@records.register
+def _(result: WhatIf) -> list[Record]:
+    return records(result.impact)
 
 
 #: What has no place in a cell: distributions, and where in the run something was observed.

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.shown import Shown
+from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.response_times.kernel import report_machine_code
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.apply import apply
-from amalthea_uros.services.changes.change import Change, parse_change
+from amalthea_uros.services.changes.apply import Difference, apply
+from amalthea_uros.services.changes.change import Change
+from amalthea_uros.services.changes.key import Configuration
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.services.subject import Subject, open_subject
+from amalthea_uros.services.timing_changes import described
 from amalthea_uros.timing.settings import Settings
 
 if TYPE_CHECKING:
@@ -27,6 +30,7 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.chains.explanation import ChainExplanation
     from amalthea_uros.analyze.explanation import ProcessExplanation
     from amalthea_uros.analyze.sensitivity import Sensitivity
+    from amalthea_uros.services.what_if import Changes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,6 +52,8 @@ class AnalysisResult(Shown):
     sensitivity, proposals, explanation : None if they were not requested
     all_methods : whether the values of all methods are shown, or the tightest ones
     with_metrics : whether the metrics of all processes are shown
+    differences : what changes did before the analysis
+    impact : what they do to the results; None without changes
     """
 
     paths: tuple[Path, ...]
@@ -60,6 +66,8 @@ class AnalysisResult(Shown):
     explanation: Explanation | None = None
     all_methods: bool = False
     with_metrics: bool = False
+    differences: tuple[Difference, ...] = ()
+    impact: Impact | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +78,7 @@ class ChainDetail:
     all_methods: bool
 
 
-def analyze(subject: Subject, settings: Settings | None = None, *, changes: Iterable[str | Change] = ()) -> Analysis:
+def analyze(subject: Subject, settings: Settings | None = None, *, changes: Changes = ()) -> Analysis:
     """Compute response times, loads, latencies of chains and verdicts of whatever describes a system.
 
     >>> analysis = analyze("app.yaml")              # doctest: +SKIP
@@ -80,7 +88,7 @@ def analyze(subject: Subject, settings: Settings | None = None, *, changes: Iter
     ----------
     subject : the path of an `app.yaml` or of an AMALTHEA model, several paths of one model, the text of an `app.yaml` (with at least
         one line break), its content as a dict, a `Model`, or a `System`, such as `taskset` makes
-    changes : such as "Executor_Task.period=2ms"
+    changes : such as `{"Executor_Task.period": "2 ms"}`, or texts as for `amuros analyze --set`
 
     Returns
     -------
@@ -92,9 +100,10 @@ def analyze(subject: Subject, settings: Settings | None = None, *, changes: Iter
     InvalidArgumentError : the settings or changes name something that does not exist, or have values that cannot be.
     TypeError : the subject is something else; the text lists what is accepted.
     """
+    from amalthea_uros.services.what_if import as_changes
+
     opened = open_subject(subject)
-    parsed = [change if isinstance(change, Change) else parse_change(change) for change in changes]
-    system, settings = apply(opened.system, settings or Settings(), parsed)
+    system, settings = apply(opened.system, settings or Settings(), as_changes(changes))
     require_settings(settings, system)
     analysis = analyze_system(system, settings)
     report_machine_code()
@@ -105,6 +114,7 @@ def analyze_files(
     paths: StrPath | Iterable[StrPath],
     settings: Settings | None = None,
     *,
+    changes: Sequence[Change] = (),
     with_sensitivity: bool = False,
     with_priorities: bool = False,
     all_methods: bool = False,
@@ -115,6 +125,7 @@ def analyze_files(
 
     Parameters
     ----------
+    changes : of the system and the settings, made before the analysis; the result has what they do to it
     with_sensitivity : also find out by how much execution times may grow
     with_priorities : also propose priorities that meet all deadlines
     all_methods : show the values of all methods for chains
@@ -124,13 +135,16 @@ def analyze_files(
     Raises
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
-    InvalidArgumentError : the settings name a core, process, callback or mode label that does not exist, or a phase in which no job is
-        released; there is no bus.
+    InvalidArgumentError : the changes or settings name what does not exist, or a phase in which no job is released; a value is wrong;
+        there is no bus.
     """
     files, settings = as_paths(paths), settings or Settings()
     opened = open_system(files, with_bus=with_bus)
-    system = opened.system
-    require_settings(settings, system)
+    require_settings(settings, opened.system)
+    given = Configuration(opened.system, settings)
+    before = analyze_system(*given) if changes else None
+    differences = described(given, changes)
+    system, settings = apply(*given, changes)
     analysis = analyze_system(system, settings)
     report_machine_code()
     return AnalysisResult(
@@ -143,6 +157,8 @@ def analyze_files(
         proposals=_proposals(analysis) if with_priorities else None,
         all_methods=all_methods,
         with_metrics=with_metrics,
+        differences=differences,
+        impact=None if before is None else impact(before, analysis),
     )
 
 

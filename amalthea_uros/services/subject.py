@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from os import PathLike
-from typing import TYPE_CHECKING, Any, TypeAlias
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard
 
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import SystemInput, open_system
@@ -40,7 +41,7 @@ def open_subject(subject: Subject) -> SystemInput:
 
         extraction = extract(subject)
         return SystemInput(system=extraction.system, model=subject, findings=(*subject.findings, *extraction.findings))
-    if isinstance(subject, Mapping) or (isinstance(subject, str) and "\n" in subject):
+    if isinstance(subject, Mapping) or _is_text(subject):
         from amalthea_uros.services.build import describe_content, describe_text
 
         assembly = describe_text(subject) if isinstance(subject, str) else describe_content(subject)
@@ -48,9 +49,28 @@ def open_subject(subject: Subject) -> SystemInput:
     return open_system(as_paths(_paths(subject)))
 
 
+def paths_of(subject: Subject) -> tuple[Path, ...] | None:
+    """The files of a subject; None if it is none."""
+    from amalthea_uros.metamodel.model import Model
+
+    if isinstance(subject, System | Model | Mapping) or _is_text(subject):
+        return None
+    return as_paths(_paths(subject))
+
+
+def reusable(subject: Subject) -> Subject:
+    """The subject, of which paths can be asked for again."""
+    return paths_of(subject) or subject
+
+
 def system_of(subject: Subject) -> System:
     """The system of a subject; as `open_subject`."""
     return open_subject(subject).system
+
+
+def _is_text(subject: object) -> TypeGuard[str]:
+    """Whether something is a text, and no path."""
+    return isinstance(subject, str) and "\n" in subject
 
 
 def _paths(subject: object) -> list[StrPath]:
