@@ -41,6 +41,7 @@ gen: $(READY)
 	$(BIN)/python tools/draw_terminal.py docs/images/check.svg check --profile inchron bodas-test-hardware.yaml
 	$(BIN)/python tools/draw_quantities.py docs/images
 	$(BIN)/python tools/draw_rooms.py
+	$(BIN)/python tools/run_notebooks.py
 	$(BIN)/amuros simulate samples/bodas-test-advanced.yaml --gantt docs/images/simulation-gantt.svg --chain factor-to-output
 
 bench: $(READY)

@@ -1,17 +1,20 @@
 """Timing models of micro-ROS and AMALTHEA (Eclipse APP4MC `.amxmi`): build, read, change, check, analyze.
 
 >>> import amalthea_uros as amuros
+>>> print(amuros.analyze("app.yaml"))                                          # doctest: +SKIP
 >>> model = amuros.load("app.amxmi")                                           # doctest: +SKIP
 >>> model[amuros.am.Task, "Executor_Task"].multiple_task_activation_limit = 2  # doctest: +SKIP
 >>> amuros.save(model, "app.amxmi")                                            # doctest: +SKIP
 
 This module is the public interface:
 
+- answers about whatever describes a system (files, the text or content of an `app.yaml`, a model, a system): `analyze`, `simulate`,
+  `what_if`; their results have `to_records()` and `to_dataframe()`, and notebooks display them as tables
+- synthetic tasks and chains without any file: `taskset`, `task`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
-- simulations of files, models and systems: `simulate`; their events: `EventTable`; changes of values: `parse_change`,
-  `parse_sweep`
-- AMALTHEA models: `Model`, `check`, `extract`; all AMALTHEA classes are in `amuros.am`
+- events of simulations: `EventTable`; changes of values: `parse_change`, `parse_sweep`
+- AMALTHEA models: `Model` (`Model.new()` is an empty one), `check`, `extract`; all AMALTHEA classes are in `amuros.am`
 - systems of the generic performance model: `analyze_system`, `sensitivity`, `propose_priorities`, `paths`, `build_model`; their classes
   are in `amuros.perf`
 - times and other quantities as text and numbers: `amuros.units`; exceptions: `amuros.errors`
