@@ -116,7 +116,7 @@ class _Page(Terminal):
 
 def _table_html(headings: Sequence[str], rows: Iterable[Sequence[str]], right: Sequence[int]) -> str:
     def row(cells: Sequence[str], tag: str) -> str:
-        sides = ("right" if index in right else "left" for index in range(len(cells)))
+        sides = ("right;white-space:nowrap" if index in right else "left" for index in range(len(cells)))
         made = (
             f'<{tag} style="{_CELL};text-align:{side}">{escape(visible(cell))}</{tag}>'
             for cell, side in zip(cells, sides, strict=True)
