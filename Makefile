@@ -44,6 +44,7 @@ gen: $(READY)
 	$(BIN)/python tools/draw_quantities.py docs/images
 	$(BIN)/python tools/draw_rooms.py
 	$(BIN)/python tools/generate_benchmarks.py
+	$(BIN)/python tools/run_notebooks.py
 	$(BIN)/amuros simulate samples/bodas-test-advanced.yaml --gantt docs/images/simulation-gantt.svg --chain factor-to-output
 
 # Measures, and writes docs/benchmarks.md; takes some minutes.

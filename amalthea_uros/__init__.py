@@ -1,17 +1,20 @@
 """Timing models of micro-ROS and AMALTHEA (Eclipse APP4MC `.amxmi`): build, read, change, check, analyze.
 
 >>> import amalthea_uros as amuros
+>>> print(amuros.analyze("app.yaml"))                                          # doctest: +SKIP
 >>> model = amuros.load("app.amxmi")                                           # doctest: +SKIP
 >>> model[amuros.am.Task, "Executor_Task"].multiple_task_activation_limit = 2  # doctest: +SKIP
 >>> amuros.save(model, "app.amxmi")                                            # doctest: +SKIP
 
 This module is the public interface:
 
+- answers about whatever describes a system (files, the text or content of an `app.yaml`, a model, a system): `analyze`, `simulate`,
+  `what_if`; their results have `to_records()` and `to_dataframe()`, and notebooks display them as tables
+- synthetic tasks and chains without any file: `taskset`, `task`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
-- simulations of files, models and systems: `simulate`; their events: `EventTable`; changes of values: `parse_change`,
-  `parse_sweep`
-- AMALTHEA models: `Model`, `check`, `extract`; all AMALTHEA classes are in `amuros.am`
+- events of simulations: `EventTable`; changes of values: `parse_change`, `parse_sweep`
+- AMALTHEA models: `Model` (`Model.new()` is an empty one), `check`, `extract`; all AMALTHEA classes are in `amuros.am`
 - systems of the generic performance model: `analyze_system`, `sensitivity`, `propose_priorities`, `paths`, `build_model`; their classes
   are in `amuros.perf`
 - times and other quantities as text and numbers: `amuros.units`; exceptions: `amuros.errors`
@@ -24,6 +27,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from amalthea_uros._internal.shown import Presenter, present_by
 from amalthea_uros._version import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -71,6 +75,7 @@ if TYPE_CHECKING:
     from amalthea_uros.perf.activities import Communication as Communication
     from amalthea_uros.perf.system import System as System
     from amalthea_uros.services.analyze import AnalysisResult as AnalysisResult
+    from amalthea_uros.services.analyze import analyze as analyze
     from amalthea_uros.services.analyze import analyze_files as analyze_files
     from amalthea_uros.services.build import BuildResult as BuildResult
     from amalthea_uros.services.build import build as build
@@ -95,6 +100,9 @@ if TYPE_CHECKING:
     from amalthea_uros.services.simulate import simulate as simulate
     from amalthea_uros.services.simulate import simulate_campaign as simulate_campaign
     from amalthea_uros.services.simulate import simulate_files as simulate_files
+    from amalthea_uros.services.taskset import TaskParameters as TaskParameters
+    from amalthea_uros.services.taskset import task as task
+    from amalthea_uros.services.taskset import taskset as taskset
     from amalthea_uros.services.what_if import WhatIf as WhatIf
     from amalthea_uros.services.what_if import what_if as what_if
     from amalthea_uros.simulate.options import Mode as Mode
@@ -141,7 +149,7 @@ _NAMES = {
     "metamodel.model": ("Document", "Model", "Reference"),
     "perf.activities": ("Communication",),
     "perf.system": ("System",),
-    "services.analyze": ("AnalysisResult", "analyze_files"),
+    "services.analyze": ("AnalysisResult", "analyze", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
     "services.campaign.run": ("Outcome", "Run"),
     "services.campaign.tables": ("write_table",),
@@ -152,6 +160,7 @@ _NAMES = {
     "services.migrate": ("MigrationResult", "migrate"),
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
+    "services.taskset": ("TaskParameters", "task", "taskset"),
     "services.what_if": ("WhatIf", "what_if"),
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),
@@ -178,6 +187,16 @@ class _Package(ModuleType):
 
 
 sys.modules[__name__].__class__ = _Package
+
+
+def _presenter() -> Presenter:
+    """What shows results: the rooms that hold them do not know it."""
+    from amalthea_uros.report import notebook
+
+    return notebook
+
+
+present_by(_presenter)
 
 
 def __getattr__(name: str) -> Any:

@@ -15,6 +15,13 @@ graph: amuros.am.ActivityGraph | None = task.activity_graph
 amuros.save(model, "model.amxmi")
 migrated: amuros.Model = amuros.migrate("old.amxmi", to="3.0.0").model
 
+analysis: amuros.Analysis = amuros.analyze({"amuros": 1})
+changed: amuros.Analysis = amuros.what_if(model, {"Executor_Task.period": "2 ms"}).after
+process: amuros.ProcessResult = analysis["Executor_Task"]
+system: amuros.System = amuros.taskset([amuros.task("T", period="5 ms", wcet="1 ms"), ("5 ms", 1.5)], policy="EDF")
+rows: list[dict[str, str | int | float | bool | None]] = analysis.chains.to_records()
+new: Task = amuros.Model.new().add_task("T", period="5 ms", wcet="1 ms", priority=1)
+
 Task(name=3)  # type: ignore[arg-type]
 Task(nme="t")  # type: ignore[call-arg]
 task.preemption = "preemptive"  # type: ignore[assignment]

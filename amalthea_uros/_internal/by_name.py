@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol, SupportsIndex, TypeVar, overload
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros._internal.similar import did_you_mean
 
 
@@ -17,8 +18,11 @@ class HasName(Protocol):
 
 N = TypeVar("N", bound=HasName)
 
+#: So many names are listed.
+_NAMES = 10
 
-class Results(tuple[N, ...]):
+
+class Results(tuple[N, ...], Shown):
     """Results in their order, also found by name: `results["Task_5ms"]`."""
 
     __slots__ = ()
@@ -41,6 +45,11 @@ class Results(tuple[N, ...]):
             advice = did_you_mean(key, self.names) or f"known: {', '.join(self.names) or 'none'}"
             raise KeyError(f"no result named {key!r}; {advice}")
         return found
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.names[:_NAMES])
+        more = f", and {len(self) - _NAMES} more" if len(self) > _NAMES else ""
+        return f"<Results: {names or 'none'}{more}>"
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import TypeAlias
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results import (
     Analysis,
     CallbackResult,
@@ -156,7 +157,7 @@ class ImpactRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Impact:
+class Impact(Shown):
     """What a change of a system does to the results.
 
     Attributes
@@ -167,6 +168,10 @@ class Impact:
 
     rows: tuple[ImpactRow, ...]
     unchanged: int
+
+    def __repr__(self) -> str:
+        counts = (f"{number} {effect}" for effect, number in self.counts.items())
+        return f"<Impact: {', '.join((*counts, f'{self.unchanged} unchanged'))}>"
 
     def __bool__(self) -> bool:
         """Whether anything changed."""

@@ -9,10 +9,12 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.by_name import Results as Results
+from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.verdicts import Failure, Verdict
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.timing.job_metric import JobMetric as JobMetric
-from amalthea_uros.units import Frequency, Time
+from amalthea_uros.units import Frequency, Time, time_text
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.solution import Solution
@@ -83,7 +85,7 @@ class Metric:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ProcessorResult:
+class ProcessorResult(Shown):
     """A core: its clock, and its load in the best, mean and worst case (1 is full); None if it is unknown.
 
     Attributes
@@ -105,7 +107,7 @@ class ProcessorResult:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ProcessResult:
+class ProcessResult(Shown):
     """A task or interrupt service routine.
 
     Attributes
@@ -141,6 +143,11 @@ class ProcessResult:
     max_interarrival: Time | None = None
     metrics: Mapping[JobMetric, Metric] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        worst = "unknown" if self.response is None else _text(self.response.worst)
+        verdict = f", {self.failure or self.verdict}" if self.verdict else ""
+        return f"<ProcessResult {self.name}: response time {worst}, deadline {_text(self.deadline)}{verdict}>"
+
     @property
     def margin(self) -> Time | None:
         """Distance of the worst-case response time from the deadline; negative if it is later."""
@@ -150,7 +157,7 @@ class ProcessResult:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CallbackResult:
+class CallbackResult(Shown):
     """A callback that a process calls, or another runnable with a requirement.
 
     Attributes
@@ -217,7 +224,7 @@ class Value:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ChainResult:
+class ChainResult(Shown):
     """A chain.
 
     Attributes
@@ -237,13 +244,18 @@ class ChainResult:
     why: str = ""
     reason: str = ""
 
+    def __repr__(self) -> str:
+        shown = [value for value in self.values if value.quantity in EXPLAINED] or self.values
+        texts = [f"{value.quantity.replace('_', ' ')} {_text(value.value)} ({value.claim})" for value in shown]
+        return f"<ChainResult {self.name}: {', '.join(texts) or self.reason or 'no values'}>"
+
     def value(self, quantity: Quantity) -> Value | None:
         """The tightest value of a quantity."""
         return next((value for value in self.values if value.quantity is quantity), None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RequirementResult:
+class RequirementResult(Shown):
     """The verdict on a requirement or a constraint; the margin is not negative if it is met.
 
     Attributes
@@ -277,7 +289,7 @@ class RequirementResult:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Analysis:
+class Analysis(Shown):
     """The results for a system.
 
     Attributes
@@ -302,6 +314,12 @@ class Analysis:
     findings: tuple[Finding, ...]
     worst_solutions: Mapping[str, Solution] = field(default_factory=dict, repr=False, compare=False)
 
+    def __repr__(self) -> str:
+        parts = [counted(len(self.processes), "process"), counted(len(self.chains), "chain")]
+        if self.requirements:
+            parts.append(counted(len(self.requirements), "requirement"))
+        return f"<Analysis of {', '.join(parts)}; schedulable: {self.summary.schedulable}>"
+
     def solution_of(self, process: str) -> Solution:
         """The solution that the response time of a process is from."""
         return self.worst_solutions.get(process, self.solution)
@@ -316,10 +334,13 @@ class Analysis:
         return self.processes[process]
 
 
+def _text(value: Time | None) -> str:
+    return "unknown" if value is None else time_text(value)
+
+
 def require_analysis(analysis: Analysis) -> None:
     """Raise a TypeError that says where an analysis comes from, if it is something else."""
     if not isinstance(analysis, Analysis):
         raise TypeError(
-            f"expected an Analysis, not {type(analysis).__name__}; analyze_system(system) makes one, for a model "
-            "analyze_system(extract(model).system), for a file analyze_files(path).analysis"
+            f"expected an Analysis, not {type(analysis).__name__}; analyze(...) makes one of a file, a model or a system"
         )

@@ -11,7 +11,7 @@ from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.kinds import Kind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel import magnitudes
-from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit, TimeUnit
+from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.magnitudes import bits, bits_per_second, hertz, picoseconds
 
@@ -81,21 +81,16 @@ _RATE_UNITS = (
 
 def build_time(value: int | None) -> am.Time | None:
     """Picoseconds in the largest unit that gives a whole number."""
-    if value is None:
-        return None
-    unit = next(unit for unit, size in magnitudes.TIMES.items() if value % size == 0) if value else TimeUnit.MS
-    return am.Time(value=value // magnitudes.TIMES[unit], unit=unit)
+    return None if value is None else magnitudes.time_of(value)
 
 
 def _build_frequency(value: Fraction | None, context: Building) -> am.Frequency | None:
     if value is None:
         return None
-    for unit, size in magnitudes.FREQUENCIES.items():
-        number = value / size
-        if (number >= 1 or size == 1) and Fraction(repr(float(number))) == number:
-            return am.Frequency(value=float(number), unit=unit)
-    context.refuse(None, f"the frequency {value} Hz has no exact decimal representation")
-    return None
+    found = magnitudes.frequency_of(value)
+    if found is None:
+        context.refuse(None, f"the frequency {value} Hz has no exact decimal representation")
+    return found
 
 
 def _build_size(value: int | None, _context: Building) -> am.DataSize | None:

@@ -138,8 +138,9 @@ class Element:
         )
 
     def __repr__(self) -> str:
-        name = self.__dict__.get("name")
-        return f"<{type(self).__name__} {name!r}>" if name else f"<{type(self).__name__}>"
+        from amalthea_uros.metamodel.representation import representation
+
+        return representation(self)
 
     def __dir__(self) -> list[str]:
         return sorted({*object.__dir__(self), *features_of(type(self))})

@@ -1,6 +1,6 @@
 """Quantities of AMALTHEA as exact numbers in the internal units of `amalthea_uros.units`.
 
-A quantity that is not given, or whose unit is undefined, gives None.
+In the other direction, a number becomes a quantity. A quantity that is not given, or whose unit is undefined, gives None.
 """
 
 from __future__ import annotations
@@ -43,6 +43,21 @@ def hertz(frequency: Frequency | None) -> Fraction | None:
     if frequency is None or frequency.unit not in FREQUENCIES or not isfinite(frequency.value or 0.0):
         return None
     return Fraction(repr(frequency.value or 0.0)) * FREQUENCIES[frequency.unit]
+
+
+def time_of(value: int) -> Time:
+    """Picoseconds in the largest unit that gives a whole number."""
+    unit = next(unit for unit, size in TIMES.items() if value % size == 0) if value else TimeUnit.MS
+    return Time(value=value // TIMES[unit], unit=unit)
+
+
+def frequency_of(value: Fraction) -> Frequency | None:
+    """Hertz in the largest unit in which it is at least 1; None if it has no exact decimal representation."""
+    for unit, size in FREQUENCIES.items():
+        number = value / size
+        if (number >= 1 or size == 1) and Fraction(repr(float(number))) == number:
+            return Frequency(value=float(number), unit=unit)
+    return None
 
 
 def bits(size: DataSize | None) -> int | None:

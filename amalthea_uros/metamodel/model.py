@@ -6,11 +6,13 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.diagnostics import Finding, Location
 from amalthea_uros.metamodel.changes import Changes
 from amalthea_uros.metamodel.classes.base import Amalthea
 from amalthea_uros.metamodel.containment import Revision
+from amalthea_uros.metamodel.editing import Editing
 from amalthea_uros.metamodel.element import Element, references_of
 from amalthea_uros.metamodel.naming import qualified_name
 from amalthea_uros.metamodel.source import Source
@@ -104,7 +106,7 @@ class Document:
         return f"<Document {self.path or 'unsaved'} AMALTHEA {self.version}>"
 
 
-class Model:
+class Model(Editing):
     """Documents that refer to each other by unique names, such as the files of one directory.
 
     Attributes
@@ -125,6 +127,16 @@ class Model:
     def of(cls, root: Amalthea, version: str | None = None) -> Model:
         """A new model with one document; the newest known version if none is given."""
         return cls([Document(root, version)])
+
+    @classmethod
+    def new(cls, version: str | None = None) -> Model:
+        """An empty model; `add_core`, `add_task`, `add_label` and `add_chain` fill it.
+
+        >>> model = Model.new()
+        >>> core = model.add_core("Core_0", frequency="100 MHz")
+        >>> task = model.add_task("Control", period="1 ms", wcet="20 us", priority=2)
+        """
+        return cls.of(Amalthea(), version)
 
     @property
     def root(self) -> Amalthea:
@@ -214,4 +226,6 @@ class Model:
         self._revision = Revision.number
 
     def __repr__(self) -> str:
-        return f"<Model {', '.join(str(d.path or 'unsaved') for d in self.documents)}>"
+        paths = ", ".join(str(document.path or "unsaved") for document in self.documents)
+        versions = ", ".join(dict.fromkeys(document.version for document in self.documents))
+        return f"<Model {paths}, AMALTHEA {versions}, {counted(sum(1 for _ in self.walk()), 'object')}>"

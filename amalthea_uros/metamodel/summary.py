@@ -213,14 +213,15 @@ def _process(process: Process, allocation: TaskAllocation | ISRAllocation | None
         name=name_of(process),
         kind="isr" if isinstance(process, ISR) else "task",
         stimuli=tuple(map(stimulus_text, process.stimuli)),
-        priority=_priority(allocation),
+        priority=priority_text(allocation),
         preemption=preemption,
         scheduler=name_of(controller),
         runnable_calls=sum(isinstance(part, RunnableCall) for part in process.walk()),
     )
 
 
-def _priority(allocation: TaskAllocation | ISRAllocation | None) -> str:
+def priority_text(allocation: TaskAllocation | ISRAllocation | None) -> str:
+    """The priority of an allocation; "" if it states none."""
     if isinstance(allocation, ISRAllocation):
         return str(allocation.priority) if allocation.priority is not None else ""
     for parameter in allocation.scheduling_parameters if allocation else ():

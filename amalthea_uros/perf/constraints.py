@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
 
-from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.units import Frequency, Time
 
 
@@ -283,7 +283,7 @@ class Requirement(Named):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Constraints:
+class Constraints(Brief):
     """All that is demanded of a system."""
 
     constraints: tuple[Constraint, ...] = ()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
 
-from amalthea_uros.perf.named import Located, Named
+from amalthea_uros.perf.named import Brief, Located, Named
 
 
 class ProcessChange(StrEnum):
@@ -212,7 +212,7 @@ class EventChain(Named):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Events:
+class Events(Brief):
     """All events of a system, and the chains between them."""
 
     events: tuple[Event, ...] = ()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from amalthea_uros.perf.distributions import Distribution
-from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.units import BitRate, DataSize, Frequency
 
 
@@ -190,7 +190,7 @@ class Structure(Named):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Hardware:
+class Hardware(Brief):
     """All hardware of a system."""
 
     clocks: tuple[Clock, ...] = ()

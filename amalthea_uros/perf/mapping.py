@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from amalthea_uros.perf.named import Located
+from amalthea_uros.perf.named import Brief, Located
 from amalthea_uros.perf.os import Parameter
 from amalthea_uros.units import Time
 
@@ -52,7 +52,7 @@ class Placement(Located):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Mapping:
+class Mapping(Brief):
     """The mapping of software to hardware."""
 
     tasks: tuple[TaskAllocation, ...] = ()

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import partial
+from reprlib import Repr
 from typing import Any, TypeAlias
 
 from amalthea_uros.diagnostics import Location
@@ -13,8 +14,30 @@ from amalthea_uros.diagnostics import Location
 Locate: TypeAlias = Callable[[], Location | None]
 
 
+_SHORT = Repr()
+_SHORT.maxlevel, _SHORT.maxtuple, _SHORT.maxstring, _SHORT.maxother = 2, 3, 60, 60
+
+
+class Brief:
+    """An object with a short text for debuggers and notebooks: its name, and the beginnings of the values that are not defaults."""
+
+    __slots__ = ()
+
+    def __init_subclass__(cls, **arguments: Any) -> None:
+        super().__init_subclass__(**arguments)
+        # Otherwise each dataclass gets a text of everything in it, which for a system are thousands of lines.
+        cls.__repr__ = Brief.__repr__  # type: ignore[method-assign]
+
+    def __repr__(self) -> str:
+        own: Any = self
+        values = ((each, getattr(self, each.name)) for each in fields(own) if each.repr and each.name != "name")
+        stated = [f"{each.name}={_SHORT.repr(value)}" for each, value in values if value != each.default and value != ()]
+        name = f"{type(self).__name__} {getattr(self, 'name', '')}".rstrip()
+        return f"<{', '.join((name, *stated))}>"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Located:
+class Located(Brief):
     """An object that may come from a file.
 
     Attributes

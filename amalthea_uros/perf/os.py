@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import TypeAlias
 
 from amalthea_uros.perf.activities import Demand, Execute, LabelAccess, Protection
-from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.units import Time
 
 
@@ -198,7 +198,7 @@ class Semaphore(Named):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Os:
+class Os(Brief):
     """Everything of operating systems in a system."""
 
     systems: tuple[OperatingSystem, ...] = ()

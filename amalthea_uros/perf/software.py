@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from amalthea_uros.perf.activities import Activity, Protection
 from amalthea_uros.perf.conditions import Condition
-from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.units import DataSize
 
 
@@ -118,7 +118,7 @@ class ModeLabel(Named):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Software:
+class Software(Brief):
     """All software of a system."""
 
     tasks: tuple[Task, ...] = ()

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from amalthea_uros.perf.conditions import Condition, ModeAssignment
 from amalthea_uros.perf.distributions import Distribution
-from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.units import Frequency, Time
 
 
@@ -251,7 +251,7 @@ Clock: TypeAlias = ClockFunction | ClockSteps
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stimuli:
+class Stimuli(Brief):
     """All stimuli of a system, and the clocks that drive some of them."""
 
     stimuli: tuple[Stimulus, ...] = ()

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeVar
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.perf.activities import Activity, walk
 from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Event, EventChain, Events
@@ -34,6 +35,15 @@ class System:
     mapping: SystemMapping = field(default_factory=SystemMapping)
     events: Events = field(default_factory=Events)
     constraints: Constraints = field(default_factory=Constraints)
+
+    def __repr__(self) -> str:
+        parts = (
+            ("core", self.cores),
+            ("task", self.software.tasks),
+            ("ISR", self.software.isrs),
+            ("chain", self.events.chains),
+        )
+        return f"<System: {', '.join(counted(len(items), noun) for noun, items in parts if items) or 'empty'}>"
 
     @cached_property
     def clocks(self) -> Mapping[str, Clock]:

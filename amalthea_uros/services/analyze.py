@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.response_times.kernel import report_machine_code
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
@@ -20,6 +21,7 @@ from amalthea_uros.services.changes.key import Configuration
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.services.subject import Subject, open_subject
 from amalthea_uros.services.timing_changes import described
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.explanation import ProcessExplanation
     from amalthea_uros.analyze.sensitivity import Sensitivity
     from amalthea_uros.services.improvements import Improvements
+    from amalthea_uros.services.what_if import Changes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,7 +54,7 @@ class Explanation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AnalysisResult:
+class AnalysisResult(Shown):
     """The analysis of some files, with what it rests on.
 
     Attributes
@@ -86,6 +89,38 @@ class ChainDetail:
 
     chain: ChainResult
     all_methods: bool
+
+
+def analyze(subject: Subject, settings: Settings | None = None, *, changes: Changes = ()) -> Analysis:
+    """Compute response times, loads, latencies of chains and verdicts of whatever describes a system.
+
+    >>> analysis = analyze("app.yaml")              # doctest: +SKIP
+    >>> analysis["Control_Function"].response.worst  # doctest: +SKIP
+
+    Parameters
+    ----------
+    subject : the path of an `app.yaml` or of an AMALTHEA model, several paths of one model, the text of an `app.yaml` (with at least
+        one line break), its content as a dict, a `Model`, or a `System`, such as `taskset` makes
+    changes : such as `{"Executor_Task.period": "2 ms"}`, or texts as for `amuros analyze --set`
+
+    Returns
+    -------
+    Analysis : its findings include those about the subject, such as references that lead nowhere.
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong; carries a finding for each mistake.
+    InvalidArgumentError : the settings or changes name something that does not exist, or have values that cannot be.
+    TypeError : the subject is something else; the text lists what is accepted.
+    """
+    from amalthea_uros.services.what_if import as_changes
+
+    opened = open_subject(subject)
+    system, settings = apply(opened.system, settings or Settings(), as_changes(changes))
+    require_settings(settings, system)
+    analysis = analyze_system(system, settings)
+    report_machine_code()
+    return replace(analysis, findings=unsuppressed((*opened.findings, *analysis.findings)))
 
 
 def analyze_files(

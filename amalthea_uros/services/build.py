@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT, is_file
 from amalthea_uros._internal.garbage import paused_garbage_collection
@@ -17,6 +18,10 @@ from amalthea_uros.uros.assemble import Assembly, assemble
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Document, Model
     from amalthea_uros.spec.description import Description
+    from amalthea_uros.spec.read import Draft
+
+#: What a text is called in findings that has no file.
+TEXT = Path("<text>")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,11 +64,36 @@ def describe(path: StrPath, platform: str | None = None) -> Assembly:
     from amalthea_uros.spec.read import read_draft
 
     file = Path(path)
-    draft = read_draft(file, Description)
+    return _assembly(read_draft(file, Description), folder_of(file), platform)
+
+
+def describe_text(text: str) -> Assembly:
+    """The system that the text of an `app.yaml` describes; files that it names are relative to the current folder.
+
+    Raises
+    ------
+    ReadError : something in it is wrong; carries a finding for each mistake.
+    """
+    from amalthea_uros.spec.description import Description
+    from amalthea_uros.spec.read import text_draft
+
+    return _assembly(text_draft(TEXT, text, Description), Path())
+
+
+def describe_content(content: Mapping[str, Any]) -> Assembly:
+    """The system that the content of an `app.yaml` describes, which may come from any program; raises as `describe_text`."""
+    from amalthea_uros.spec.description import Description
+    from amalthea_uros.spec.read import content_draft
+
+    return _assembly(content_draft(content, Description), Path())
+
+
+def _assembly(draft: Draft[Description], folder: Path, platform: str | None = None) -> Assembly:
+    """The system of a draft, unless something in it is wrong."""
     try:
         if draft.section is None:
             raise ReadError(draft.findings)
-        assembly = _assembled(draft.section, folder_of(file), platform)
+        assembly = _assembled(draft.section, folder, platform)
     except ReadError as error:
         raise ReadError(draft.with_more(error.findings)) from None
     if draft.findings:

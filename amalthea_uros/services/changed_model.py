@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -16,8 +15,8 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.services.changes.apply import apply
 from amalthea_uros.services.changes.change import Change
 from amalthea_uros.services.changes.key import CLOCKS
-from amalthea_uros.services.paths import StrPath, as_paths, is_description
-from amalthea_uros.services.subject import Subject, system_of
+from amalthea_uros.services.paths import StrPath, is_description
+from amalthea_uros.services.subject import Subject, paths_of, system_of
 from amalthea_uros.timing.phases import with_stated_phases
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Frequency
@@ -54,8 +53,6 @@ def _read(subject: Subject) -> Model | None:
     from amalthea_uros.xmi.load import load
     from amalthea_uros.xmi.save import save
 
-    if isinstance(subject, System):
-        return None
     if isinstance(subject, Model):
         _refuse_several(subject)
         # The caller keeps the model without the changes.
@@ -63,8 +60,8 @@ def _read(subject: Subject) -> Model | None:
             copy = Path(folder, "model.amxmi")
             save(subject, copy)
             return load(copy)
-    paths = (subject,) if isinstance(subject, str | PathLike) else as_paths(subject)
-    if len(paths) == 1 and is_description(paths[0]):
+    paths = paths_of(subject)
+    if paths is None or (len(paths) == 1 and is_description(paths[0])):
         return None
     model = load(*paths)
     _refuse_several(model)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.diagnostics import Finding, Severity, by_place
 from amalthea_uros.errors import InvalidArgumentError, ReadError
@@ -30,7 +31,7 @@ from amalthea_uros.validate.user_rules import rules_of_file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CheckResult:
+class CheckResult(Shown):
     """The findings about some files that are not suppressed, by file and line.
 
     Attributes

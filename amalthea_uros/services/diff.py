@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.difference.comparison import Change, difference
@@ -27,7 +28,7 @@ _MIGRATION = ("XMI008", "XMI009")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DiffResult:
+class DiffResult(Shown):
     """The differences of two models.
 
     Attributes

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
@@ -23,7 +24,7 @@ from amalthea_uros.services.changes.sweep import Sweep
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require_labels, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
-from amalthea_uros.services.subject import Subject, system_of
+from amalthea_uros.services.subject import Subject, open_subject
 from amalthea_uros.services.timing_changes import described
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
@@ -67,7 +68,7 @@ class SimulationPlan:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationResult:
+class SimulationResult(Shown):
     """The simulation of some files, with what it rests on.
 
     Attributes
@@ -97,7 +98,7 @@ class SimulationResult:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CampaignResult:
+class CampaignResult(Shown):
     """Many simulations of some files.
 
     Attributes
@@ -266,13 +267,14 @@ def simulate(
     trace_paths: Iterable[StrPath] = (),
     labels: Iterable[str] = (),
 ) -> Simulation:
-    """Simulate files, an AMALTHEA model, or a system.
+    """Simulate whatever describes a system: files, a description as text or dict, an AMALTHEA model, or a system.
 
     >>> simulation = simulate("app.yaml", "100 ms", trace=True)  # doctest: +SKIP
     >>> simulation.trace.to_dataframe()                                # doctest: +SKIP
 
     Parameters
     ----------
+    subject : as for `analyze`
     duration : model time, such as "5 min", or picoseconds
     mode : how values that vary are chosen: "sampled", "worst", "best" or "average"
     changes : such as "Executor_Task.period=2ms"
@@ -284,9 +286,9 @@ def simulate(
     ------
     ReadError, WriteError, InvalidArgumentError : as for `simulate_files`.
     """
-    system = system_of(subject)
+    opened = open_subject(subject)
     parsed = [change if isinstance(change, Change) else parse_change(change) for change in changes]
-    system, settings = apply(system, settings or Settings(), parsed)
+    system, settings = apply(opened.system, settings or Settings(), parsed)
     require_settings(settings, system)
     from amalthea_uros.trace.recorder import Recorder
 
@@ -297,7 +299,8 @@ def simulate(
     traced = (0, time) if sinks else None
     options = Options(duration=time, seed=seed, mode=_mode(mode), settings=settings, traced=traced, labels=observed)
     simulation = _simulated(system, options, sinks)
-    return replace(simulation, trace=recorder.table) if trace else simulation
+    findings = unsuppressed((*opened.findings, *simulation.findings))
+    return replace(simulation, findings=findings, trace=recorder.table if trace else None)
 
 
 def simulate_campaign(

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
@@ -17,7 +18,7 @@ from amalthea_uros.services.changes.key import Configuration
 from amalthea_uros.services.impact_text import HEADINGS, cells, plain_table, unchanged_text
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.paths import StrPath
-from amalthea_uros.services.subject import Subject, system_of
+from amalthea_uros.services.subject import Subject, reusable, system_of
 from amalthea_uros.services.timing_changes import described
 from amalthea_uros.timing.settings import Settings
 
@@ -26,7 +27,7 @@ Changes: TypeAlias = Mapping[str, object] | Iterable[str | Change]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class WhatIf:
+class WhatIf(Shown):
     """The results of a system before and after changes of its values.
 
     Attributes
@@ -84,7 +85,7 @@ def what_if(subject: Subject, changes: Changes, settings: Settings | None = None
     ReadError : a file cannot be read, or something in a description is wrong.
     InvalidArgumentError : the changes or settings name what does not exist, or a value is wrong.
     """
-    given = tuple(subject) if isinstance(subject, Iterable) and not isinstance(subject, str) else subject
+    given = reusable(subject)
     parsed, settings = as_changes(changes), settings or Settings()
     system = system_of(given)
     require_settings(settings, system)

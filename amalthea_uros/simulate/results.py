@@ -13,14 +13,13 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.shown import Record, Shown
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.simulate.options import Mode
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time, time_text
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from amalthea_uros.trace.table import EventTable
 
 #: A cell of a table of runs.
@@ -149,7 +148,7 @@ class CountObservation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CoreObservation:
+class CoreObservation(Shown):
     """A core.
 
     Attributes
@@ -162,7 +161,7 @@ class CoreObservation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ProcessObservation:
+class ProcessObservation(Shown):
     """A task or interrupt service routine.
 
     Attributes
@@ -240,7 +239,7 @@ class RouteObservation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ChainObservation:
+class ChainObservation(Shown):
     """A chain.
 
     Attributes
@@ -278,7 +277,7 @@ class ChainObservation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RunnableObservation:
+class RunnableObservation(Shown):
     """A runnable that a requirement limits, in all processes that call it.
 
     Attributes
@@ -295,7 +294,7 @@ class RunnableObservation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LabelObservation:
+class LabelObservation(Shown):
     """The accesses to a label.
 
     Attributes
@@ -315,7 +314,7 @@ class LabelObservation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RequirementObservation:
+class RequirementObservation(Shown):
     """The verdict on a requirement or a constraint.
 
     Attributes
@@ -349,7 +348,7 @@ Judged: TypeAlias = ProcessObservation | RequirementObservation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Simulation:
+class Simulation(Shown):
     """What was observed in a run.
 
     Attributes
@@ -427,22 +426,12 @@ class Simulation:
         """The values as one row of a table, such as `Task_5ms.response_time.max_ps`; times in whole picoseconds."""
         return dict(self._cells())
 
-    def to_dataframe(self) -> pd.DataFrame:
-        """The metrics of all processes and the latencies of all chains as a table; needs the package pandas.
-
-        Raises
-        ------
-        ImportError : pandas is not installed; the text says how to install it.
-        """
-        try:
-            import pandas as pd
-        except ImportError as error:
-            raise ImportError("a data frame needs pandas; install it with: pip install pandas") from error
-        rows = [
+    def to_records(self) -> list[Record]:
+        """The metrics of all processes and the latencies of all chains; times are picoseconds in columns `..._ps`."""
+        return [
             {"object": name, "quantity": quantity, "count": found.count, **_times(found)}
             for name, quantity, found in self._observations()
         ]
-        return pd.DataFrame(rows, columns=["object", "quantity", "count", *_COLUMNS])
 
     def _observations(self) -> Iterator[tuple[str, str, MetricObservation]]:
         # Of equal names, that of a process counts in a row of a table: the last one.

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from pydantic import ValidationError
 
@@ -13,9 +13,10 @@ from amalthea_uros._internal.files import FileError, FileTooLargeError, read_tex
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.spec.content import nodes_of
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.mistakes import Mistake, finding_of, without_consequences
-from amalthea_uros.spec.nodes import MAX_FINDINGS, Node, Scalar, plain, read_nodes
+from amalthea_uros.spec.nodes import MAX_FINDINGS, Node, Scalar, Source, plain, read_nodes
 from amalthea_uros.spec.repair import repair
 from amalthea_uros.spec.section import Section, attach_locations
 
@@ -48,16 +49,16 @@ class Draft(Generic[S]):
     ----------
     section : without what is wrong in it; None if what is left says too little
     findings : what is wrong
-    doubtful : places in the text about which nothing more can be said, because of what is wrong there
+    doubtful : places about which nothing more can be said, because of what is wrong there
     """
 
     section: S | None
     findings: tuple[Finding, ...]
-    doubtful: frozenset[tuple[int | None, int | None]] = frozenset()
+    doubtful: frozenset[Location] = frozenset()
 
     def with_more(self, findings: Iterable[Finding]) -> tuple[Finding, ...]:
         """The findings together with those about the rest, without the consequences of what is wrong."""
-        more = [f for f in findings if f.location is None or (f.location.line, f.location.column) not in self.doubtful]
+        more = [finding for finding in findings if finding.location not in self.doubtful]
         return _in_order([*self.findings, *more])
 
 
@@ -68,11 +69,30 @@ def read_draft(path: Path, kind: type[S]) -> Draft[S]:
     ------
     ReadError : the file cannot be read at all.
     """
-    text = _text(path)
+    return text_draft(path, _text(path), kind)
+
+
+def text_draft(path: Path, text: str, kind: type[S]) -> Draft[S]:
+    """A text as a section of some kind, as the content of a file with this path; raises as `read_draft`."""
     _refuse_xml(path, text)
     node, source, findings = read_nodes(path, text)
     if isinstance(node, Scalar) and node.value is None:
         raise ReadError([*findings, Finding("YML001", Severity.ERROR, "the file is empty", Location(path))])
+    return _draft(node, source, findings, kind)
+
+
+def content_draft(content: Mapping[Any, Any], kind: type[S]) -> Draft[S]:
+    """The content of a file as a section of some kind; the findings have the paths of keys instead of lines.
+
+    Raises
+    ------
+    ReadError : the content exceeds a limit, or holds something that YAML cannot.
+    """
+    node, source = nodes_of(content)
+    return _draft(node, source, [], kind)
+
+
+def _draft(node: Node, source: Source, findings: list[Finding], kind: type[S]) -> Draft[S]:
     section, mistakes = _validated(node, kind)
     if section is not None:
         attach_locations(section, node, source)
@@ -81,7 +101,7 @@ def read_draft(path: Path, kind: type[S]) -> Draft[S]:
     touched = repair(mistakes, kind)
     if touched is None:
         return Draft(None, _in_order(findings))
-    doubtful = frozenset((place.line + 1, place.column + 1) for place in touched)
+    doubtful = frozenset(map(source.location, touched))
     section, mistakes = _validated(node, kind)
     rest = Draft(section, _in_order(findings), doubtful)
     if section is not None:

@@ -146,7 +146,7 @@ class EventTable:
         try:
             import pandas as pd
         except ImportError as error:
-            raise ImportError("a data frame needs pandas; install it with: pip install pandas") from error
+            raise ImportError("a data frame needs pandas; install it with: pip install amuros[pandas]") from error
         words = {int(kind): kind.name.lower() for kind in EventKind}
         sources, targets = ([self.entities[number] for number in column.tolist()] for column in (self.source, self.target))
         return pd.DataFrame(

@@ -32,7 +32,7 @@ def test_creating_reads_well():
     task = Task(name="t", preemption=Preemption.PREEMPTIVE, stimuli=[PeriodicStimulus(name="p", recurrence=Time(10, "ms"))])
     assert task.preemption == "preemptive"
     assert (task.stimuli[0].recurrence.value, task.stimuli[0].recurrence.unit) == (10, TimeUnit.MS)
-    assert repr(task) == "<Task 't'>"
+    assert repr(task) == "<Task 't', every 10 ms>"
 
 
 def test_unset_is_unset():

@@ -102,7 +102,7 @@ def test_a_data_frame_has_a_row_for_each_metric():
 
 def test_without_pandas_the_message_says_what_to_install(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "pandas", None)
-    with pytest.raises(ImportError, match="pip install pandas"):
+    with pytest.raises(ImportError, match=r"pip install amuros\[pandas\]"):
         SIMULATION.to_dataframe()
 
 

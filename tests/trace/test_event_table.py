@@ -65,5 +65,5 @@ def test_a_data_frame_has_words_and_names():
 
 def test_without_pandas_the_message_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ImportError, match="pip install pandas"):
+    with pytest.raises(ImportError, match=r"pip install amuros\[pandas\]"):
         triggers(0).to_dataframe()

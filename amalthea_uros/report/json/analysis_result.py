@@ -6,7 +6,17 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.analyze.results import Analysis, CallbackResult, ChainResult, JobMetric, Metric, ProcessResult
+from amalthea_uros.analyze.results import (
+    Analysis,
+    CallbackResult,
+    ChainResult,
+    JobMetric,
+    Metric,
+    ProcessorResult,
+    ProcessResult,
+    RequirementResult,
+    Value,
+)
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.findings import finding_json, joined
 from amalthea_uros.report.json import changes, explanation, impact
@@ -20,36 +30,11 @@ def content(result: AnalysisResult) -> dict[str, Any]:
         "model": joined(result.paths),
         "assumptions": list(analysis.assumptions),
         "findings": [finding_json(finding) for finding in result.findings],
-        "processors": [
-            {
-                "name": processor.name,
-                "utilisation": {
-                    "bcet": _number(processor.best),
-                    "acet": _number(processor.mean),
-                    "wcet": _number(processor.worst),
-                    "wcet_at_least": _number(processor.at_least),
-                },
-            }
-            for processor in analysis.processors
-        ],
-        "processes": [_process_json(process) for process in analysis.processes],
-        "callbacks": [_callback_json(callback) for callback in analysis.callbacks],
+        "processors": [processor_json(processor) for processor in analysis.processors],
+        "processes": [process_json(process) for process in analysis.processes],
+        "callbacks": [callback_json(callback) for callback in analysis.callbacks],
         "chains": [_chain_json(chain, result.all_methods) for chain in analysis.chains],
-        "requirements": [
-            {
-                "name": requirement.name,
-                "object": requirement.object,
-                "quantity": requirement.quantity,
-                "limit_ps": requirement.limit,
-                "value_ps": requirement.value,
-                "lower_ps": requirement.lower,
-                "upper_ps": requirement.upper,
-                "margin_ps": requirement.margin,
-                "verdict": requirement.verdict,
-                "reason": requirement.reason,
-            }
-            for requirement in analysis.requirements
-        ],
+        "requirements": [requirement_json(requirement) for requirement in analysis.requirements],
         "summary": _summary_json(analysis),
     }
     if result.impact is not None:
@@ -88,7 +73,21 @@ def _number(value: Fraction | None) -> float | None:
     return None if value is None else float(value)
 
 
-def _process_json(process: ProcessResult) -> dict[str, Any]:
+def processor_json(processor: ProcessorResult) -> dict[str, Any]:
+    """The load of a core."""
+    return {
+        "name": processor.name,
+        "utilisation": {
+            "bcet": _number(processor.best),
+            "acet": _number(processor.mean),
+            "wcet": _number(processor.worst),
+            "wcet_at_least": _number(processor.at_least),
+        },
+    }
+
+
+def process_json(process: ProcessResult) -> dict[str, Any]:
+    """The response time of a process, with its verdict and metrics."""
     response = process.response
     return {
         "name": process.name,
@@ -114,7 +113,8 @@ def _process_json(process: ProcessResult) -> dict[str, Any]:
     }
 
 
-def _callback_json(callback: CallbackResult) -> dict[str, Any]:
+def callback_json(callback: CallbackResult) -> dict[str, Any]:
+    """The response time of a callback."""
     response = callback.response
     return {
         "name": callback.name,
@@ -153,14 +153,32 @@ def _chain_json(chain: ChainResult, all_methods: bool) -> dict[str, Any]:
         "routes": list(chain.routes),
         "why": chain.why,
         "reason": chain.reason,
-        "values": [
-            {
-                "quantity": value.quantity,
-                "value_ps": value.value,
-                "claim": value.claim,
-                "method": value.method,
-                "source": value.source,
-            }
-            for value in (chain.all_values if all_methods else chain.values)
-        ],
+        "values": [value_json(value) for value in (chain.all_values if all_methods else chain.values)],
+    }
+
+
+def value_json(value: Value) -> dict[str, Any]:
+    """A latency of a chain by one method."""
+    return {
+        "quantity": value.quantity,
+        "value_ps": value.value,
+        "claim": value.claim,
+        "method": value.method,
+        "source": value.source,
+    }
+
+
+def requirement_json(requirement: RequirementResult) -> dict[str, Any]:
+    """The verdict on a requirement or constraint."""
+    return {
+        "name": requirement.name,
+        "object": requirement.object,
+        "quantity": requirement.quantity,
+        "limit_ps": requirement.limit,
+        "value_ps": requirement.value,
+        "lower_ps": requirement.lower,
+        "upper_ps": requirement.upper,
+        "margin_ps": requirement.margin,
+        "verdict": requirement.verdict,
+        "reason": requirement.reason,
     }

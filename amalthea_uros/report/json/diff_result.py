@@ -18,7 +18,7 @@ def content(result: DiffResult) -> dict[str, Any]:
         "old": result.old,
         "new": result.new,
         "timing": [_timing_json(change) for change in result.timing],
-        "changes": [_as_json(change) for change in result.changes],
+        "changes": [change_json(change) for change in result.changes],
         "findings": [finding_json(finding) for finding in result.findings],
     }
     if result.impact is not None:
@@ -35,7 +35,8 @@ def _timing_json(change: TimingChange) -> dict[str, Any]:
     }
 
 
-def _as_json(change: Change) -> dict[str, Any]:
+def change_json(change: Change) -> dict[str, Any]:
+    """A difference with its places in the files."""
     return {
         "kind": change.kind,
         "class": change.class_name,

@@ -11,13 +11,14 @@ from amalthea_uros.analyze.impact import Effect, Figure, Impact, ImpactRow, Unit
 def content(impact: Impact) -> dict[str, Any]:
     """The figures that changed, and the number of the others."""
     return {
-        "rows": [_row(row) for row in impact.rows],
+        "rows": [row_json(row) for row in impact.rows],
         "unchanged": impact.unchanged,
         "effects": {effect: impact.counts.get(effect, 0) for effect in Effect},
     }
 
 
-def _row(row: ImpactRow) -> dict[str, Any]:
+def row_json(row: ImpactRow) -> dict[str, Any]:
+    """A figure before and after the change."""
     return {
         "part": row.part,
         "object": row.object,

@@ -11,6 +11,7 @@ from amalthea_uros.report.json import changes, impact
 from amalthea_uros.report.simulated import SimulationShown, closing_line
 from amalthea_uros.simulate.results import (
     ChainObservation,
+    CoreObservation,
     Histogram,
     LabelObservation,
     MetricObservation,
@@ -33,13 +34,13 @@ def content(result: SimulationShown) -> dict[str, Any]:
         "duration_ps": simulation.duration,
         "seed": simulation.seed,
         "mode": simulation.mode,
-        "processors": [{"name": core.name, "load": float(core.load)} for core in simulation.cores],
-        "processes": [_process(process) for process in simulation.processes],
-        "chains": [_chain(chain) for chain in simulation.chains],
-        "runnables": [_runnable(runnable) for runnable in simulation.runnables],
-        "labels": [_label(label) for label in simulation.labels],
+        "processors": [core_json(core) for core in simulation.cores],
+        "processes": [process_json(process) for process in simulation.processes],
+        "chains": [chain_json(chain) for chain in simulation.chains],
+        "runnables": [runnable_json(runnable) for runnable in simulation.runnables],
+        "labels": [label_json(label) for label in simulation.labels],
         "lost_activations": simulation.lost_activations,
-        "requirements": [_requirement(requirement) for requirement in simulation.requirements],
+        "requirements": [requirement_json(requirement) for requirement in simulation.requirements],
         "summary": _summary(simulation),
     }
     if result.impact is not None:
@@ -48,7 +49,13 @@ def content(result: SimulationShown) -> dict[str, Any]:
     return found
 
 
-def _process(process: ProcessObservation) -> dict[str, Any]:
+def core_json(core: CoreObservation) -> dict[str, Any]:
+    """The load of a core."""
+    return {"name": core.name, "load": float(core.load)}
+
+
+def process_json(process: ProcessObservation) -> dict[str, Any]:
+    """What was observed of a process."""
     return {
         "name": process.name,
         "kind": "isr" if process.is_isr else "task",
@@ -69,7 +76,8 @@ def _process(process: ProcessObservation) -> dict[str, Any]:
     }
 
 
-def _runnable(runnable: RunnableObservation) -> dict[str, Any]:
+def runnable_json(runnable: RunnableObservation) -> dict[str, Any]:
+    """What was observed of a runnable."""
     return {
         "name": runnable.name,
         "executions": runnable.executions,
@@ -79,7 +87,8 @@ def _runnable(runnable: RunnableObservation) -> dict[str, Any]:
     }
 
 
-def _label(label: LabelObservation) -> dict[str, Any]:
+def label_json(label: LabelObservation) -> dict[str, Any]:
+    """The accesses to a label."""
     return {
         "name": label.name,
         "reads": label.reads,
@@ -90,7 +99,8 @@ def _label(label: LabelObservation) -> dict[str, Any]:
     }
 
 
-def _chain(chain: ChainObservation) -> dict[str, Any]:
+def chain_json(chain: ChainObservation) -> dict[str, Any]:
+    """What was observed of a chain."""
     return {
         "name": chain.name,
         "observations": chain.observations,
@@ -140,7 +150,8 @@ def _histogram(found: Histogram) -> dict[str, list[int]]:
     return {"edges_ps": [round(edge) for edge in found.edges], "counts": list(found.counts)}
 
 
-def _requirement(requirement: RequirementObservation) -> dict[str, Any]:
+def requirement_json(requirement: RequirementObservation) -> dict[str, Any]:
+    """The observed verdict on a requirement or constraint."""
     values = {"limit": requirement.limit, "value": requirement.value, "margin": requirement.margin}
     return {
         "name": requirement.name,

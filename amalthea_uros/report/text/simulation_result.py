@@ -30,7 +30,8 @@ def write(result: SimulationShown, terminal: Terminal) -> None:
     """Write tables of loads, response times, chains and requirements, with assumptions and what was observed."""
     simulation = result.simulation
     run = f"{duration_text(simulation.duration)}, seed {simulation.seed}, mode {simulation.mode}"
-    terminal.line(f"{terminal.style('Simulation', '1')} of {joined(result.paths)}: {run}")
+    of_files = f" of {joined(result.paths)}" if result.paths else ""
+    terminal.line(f"{terminal.style('Simulation', '1')}{of_files}: {run}")
     _cores(terminal, simulation)
     _processes(terminal, simulation)
     if result.with_metrics:

@@ -1,0 +1,337 @@
+"""Systems of synthetic tasks, without any file: for textbook examples and experiments with many random task sets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+from math import ceil, floor
+from typing import Literal, TypeAlias, TypeVar
+
+from amalthea_uros._internal.similar import did_you_mean
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.activities import AccessKind, Communication, Demand, Execute, LabelAccess
+from amalthea_uros.perf.distributions import Boundaries, Constant, Uniform
+from amalthea_uros.perf.events import EventChain, Events, ProcessChange, ProcessEvent, Segment
+from amalthea_uros.perf.events import Sequence as InSequence
+from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure, StructureKind
+from amalthea_uros.perf.mapping import Mapping as SystemMapping
+from amalthea_uros.perf.mapping import TaskAllocation
+from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
+from amalthea_uros.perf.software import Label, Preemption, Software, Task
+from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic, Stimuli
+from amalthea_uros.perf.system import System
+from amalthea_uros.units import SECOND, TIME, Time, parse_time, time_text
+
+E = TypeVar("E", Preemption, Communication)
+
+#: Text with a unit, such as "5 ms", or picoseconds.
+Duration: TypeAlias = str | int
+#: Period and worst-case execution time; numbers are counted in the `unit` of the task set.
+PeriodAndWcet: TypeAlias = tuple[str | float | Fraction, str | float | Fraction]
+
+#: In the theory, jobs wait until their predecessors have ended, however many they are.
+_NO_LIMIT = 2**31 - 1
+
+#: A tick of the cores is a picosecond, so that execution times are exact.
+_CLOCK = Clock(name="Clock", frequency=Fraction(SECOND))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TaskParameters:
+    """The parameters of a synthetic task; `task` makes it of texts.
+
+    Attributes
+    ----------
+    period : time from one activation to the next; None for a sporadic task
+    min_distance : least time from one activation to the next of a sporadic task
+    bcet, wcet : execution times
+    deadline : relative to the activation; None: the period or the minimum distance
+    offset : time of the first activation; None: any, so that results hold for every combination of phases
+    jitter : greatest delay of an activation
+    priority : higher numbers are served first; None: not stated
+    communication : when the task reads and writes the data of its chains; None: not stated, which means implicit
+    """
+
+    name: str
+    period: Time | None
+    min_distance: Time | None
+    bcet: Time
+    wcet: Time
+    deadline: Time | None = None
+    offset: Time | None = None
+    jitter: Time = 0
+    priority: int | None = None
+    core: str = "Core_0"
+    preemption: Preemption = Preemption.PREEMPTIVE
+    communication: Communication | None = None
+
+    @property
+    def distance(self) -> Time:
+        """The period or the minimum distance."""
+        return self.period or self.min_distance or 0
+
+
+def task(
+    name: str,
+    *,
+    wcet: Duration,
+    period: Duration | None = None,
+    min_distance: Duration | None = None,
+    bcet: Duration = 0,
+    deadline: Duration | None = None,
+    offset: Duration | None = None,
+    jitter: Duration = 0,
+    priority: int | None = None,
+    core: str = "Core_0",
+    preemption: Literal["preemptive", "cooperative", "non-preemptive"] = "preemptive",
+    communication: Literal["implicit", "explicit", "LET"] | None = None,
+) -> TaskParameters:
+    """A task of a `taskset`; times are texts such as "5 ms", or picoseconds.
+
+    >>> control = task("Control", period="5 ms", wcet="1 ms", priority=3)
+    >>> brake = task("Brake", min_distance="20 ms", wcet="2 ms", deadline="10 ms", priority=4)
+
+    Parameters
+    ----------
+    period, min_distance : one of them: a periodic task, or a sporadic one
+    bcet : 0 if it is not stated, so that jobs may end at any time up to their worst case
+    offset : of the first activation; if it is not stated, any phase is possible
+    deadline : if it is not stated, the period or the minimum distance
+    priority : higher numbers are served first
+
+    Raises
+    ------
+    InvalidArgumentError : a value is wrong.
+    """
+
+    def time(what: str, value: Duration, least: Time = 0) -> Time:
+        return _time(name, what, value, least)
+
+    if (period is None) == (min_distance is None):
+        raise InvalidArgumentError(f"{name}: expected either a period, or the min_distance of a sporadic task")
+    if communication == "LET" and offset is None:
+        raise InvalidArgumentError(
+            f"{name}: the times at which LET communication takes place need an offset; state it, e.g. '0 ms'"
+        )
+    if min_distance is not None and (offset is not None or jitter):
+        raise InvalidArgumentError(f"{name}: a sporadic task has no offset and no jitter; use a period, or leave them out")
+    made = TaskParameters(
+        name=name,
+        period=None if period is None else time("period", period, 1),
+        min_distance=None if min_distance is None else time("min_distance", min_distance, 1),
+        bcet=time("bcet", bcet),
+        wcet=time("wcet", wcet),
+        deadline=None if deadline is None else time("deadline", deadline, 1),
+        offset=None if offset is None else time("offset", offset),
+        jitter=time("jitter", jitter),
+        priority=priority,
+        core=core,
+        preemption=_member(name, "preemption", Preemption, preemption),
+        communication=None if communication is None else _member(name, "communication", Communication, communication),
+    )
+    if made.bcet > made.wcet:
+        raise InvalidArgumentError(f"{name}: the bcet {time_text(made.bcet)} exceeds the wcet {time_text(made.wcet)}")
+    return made
+
+
+def _time(name: str, what: str, value: object, least: Time) -> Time:
+    if isinstance(value, str):
+        try:
+            value = parse_time(value)
+        except ValueError as error:
+            raise InvalidArgumentError(f"{name}: {what}: {error}") from None
+    if not isinstance(value, int) or isinstance(value, bool):
+        raise InvalidArgumentError(f"{name}: {what}: expected a time such as '10 ms', or whole picoseconds, not {value!r}")
+    if value < least:
+        raise InvalidArgumentError(f"{name}: {what}: {time_text(value)} is {'not positive' if least else 'negative'}")
+    return value
+
+
+def _member(name: str, what: str, kind: type[E], value: str) -> E:
+    try:
+        return kind(value)
+    except ValueError:
+        expected = ", ".join(kind)
+        raise InvalidArgumentError(f"{name}: unknown {what} {value!r}; expected one of {expected}") from None
+
+
+def taskset(
+    tasks: Iterable[TaskParameters | PeriodAndWcet],
+    *,
+    chains: Mapping[str, Sequence[str]] | None = None,
+    policy: Literal["fixed priority", "EDF"] = "fixed priority",
+    priorities: Literal["rate monotonic", "deadline monotonic"] | None = None,
+    unit: str | None = None,
+) -> System:
+    """A system of synthetic tasks and cause-effect chains.
+
+    >>> liu_layland = taskset([(100, 40), (150, 40), (350, 100)], unit="ms", priorities="rate monotonic")
+
+    Parameters
+    ----------
+    tasks : made by `task`; or pairs of period and worst-case execution time, which get the names T1, T2, ...
+    chains : names of tasks, in the order in which they pass data to each other; each chain begins with the start of a job of its
+        first task, and ends with the end of a job of its last one
+    policy : of all cores; under EDF, tasks without a deadline are scheduled by their periods
+    priorities : how tasks get their priorities; without it, each task has the stated one, and nothing is assumed of the others
+    unit : of the numbers in pairs; fractions of a picosecond are rounded to the safe side
+
+    Raises
+    ------
+    InvalidArgumentError : a value is wrong, or a chain names a task that does not exist.
+    """
+    made = [item if isinstance(item, TaskParameters) else _pair(number, item, unit) for number, item in enumerate(tasks, 1)]
+    _check_names(made)
+    if priorities is not None:
+        made = _with_priorities(made, priorities)
+    if policy not in _POLICIES:
+        raise InvalidArgumentError(f"unknown policy {policy!r}; expected one of {', '.join(_POLICIES)}")
+    flows = _flows(made, chains or {})
+    cores = tuple(dict.fromkeys(each.core for each in made))
+    return System(
+        hardware=_hardware(cores),
+        os=Os(systems=(OperatingSystem(name="OS", schedulers=tuple(_scheduler(core, _POLICIES[policy]) for core in cores)),)),
+        stimuli=Stimuli(stimuli=tuple(map(_stimulus, made))),
+        software=Software(tasks=tuple(_task(each, flows) for each in made), labels=tuple(map(_label, flows))),
+        mapping=SystemMapping(tasks=tuple(_allocation(each, policy) for each in made)),
+        events=_events(chains or {}),
+    )
+
+
+_POLICIES = {"fixed priority": Policy.FIXED_PRIORITY_PREEMPTIVE, "EDF": Policy.EARLIEST_DEADLINE_FIRST}
+#: By what tasks are ordered, the most urgent first.
+_URGENCY: Mapping[str, Callable[[TaskParameters], Time]] = {
+    "rate monotonic": lambda each: each.distance,
+    "deadline monotonic": lambda each: each.deadline or each.distance,
+}
+
+
+def _pair(number: int, pair: PeriodAndWcet, unit: str | None) -> TaskParameters:
+    if not isinstance(pair, tuple | list) or len(pair) != 2:
+        raise TypeError(f"expected tasks made by task(), or pairs (period, wcet), not {pair!r}")
+    name, (period, wcet) = f"T{number}", pair
+    return task(name, period=_counted(name, period, unit, floor), wcet=_counted(name, wcet, unit, ceil))
+
+
+def _counted(name: str, value: str | float | Fraction, unit: str | None, rounding: Callable[[Fraction], int]) -> Duration:
+    """A number of units in picoseconds; texts have their own unit."""
+    if isinstance(value, str):
+        return value
+    if unit is None:
+        raise InvalidArgumentError(f"{name}: {value!r} has no unit; state the unit of all pairs, e.g. unit='ms'")
+    if unit not in TIME.units:
+        raise InvalidArgumentError(f"{unit!r} is not a unit of time; known units: {', '.join(TIME.units)}")
+    try:
+        return rounding(Fraction(value) * TIME.units[unit])
+    except (OverflowError, ValueError, TypeError):
+        raise InvalidArgumentError(f"{name}: expected a finite number, not {value!r}") from None
+
+
+def _check_names(tasks: Sequence[TaskParameters]) -> None:
+    seen: set[str] = set()
+    for each in tasks:
+        if each.name in seen:
+            raise InvalidArgumentError(f"duplicate task {each.name!r}; give each task a name of its own")
+        seen.add(each.name)
+
+
+def _with_priorities(tasks: Sequence[TaskParameters], order: str) -> list[TaskParameters]:
+    """The tasks with different priorities by an order; of equally urgent ones the first has the higher priority."""
+    if order not in _URGENCY:
+        raise InvalidArgumentError(f"unknown priorities {order!r}; expected one of {', '.join(_URGENCY)}")
+    stated = next((each.name for each in tasks if each.priority is not None), None)
+    if stated is not None:
+        raise InvalidArgumentError(f"{stated!r} states a priority already; remove it, or priorities={order!r}")
+    urgent = sorted(range(len(tasks)), key=lambda index: _URGENCY[order](tasks[index]))
+    ranks = {index: len(tasks) - rank for rank, index in enumerate(urgent)}
+    return [replace(each, priority=ranks[index]) for index, each in enumerate(tasks)]
+
+
+def _hardware(cores: Sequence[str]) -> Hardware:
+    made = tuple(Core(name=core, clock=_CLOCK.name) for core in cores)
+    return Hardware(clocks=(_CLOCK,), structures=(Structure(name="ECU", kind=StructureKind.ECU, cores=made),))
+
+
+def _scheduler(core: str, policy: Policy) -> Scheduler:
+    return Scheduler(name=_scheduler_name(core), policy=policy, cores=(core,), executing_core=core)
+
+
+def _scheduler_name(core: str) -> str:
+    return f"Scheduler_{core}"
+
+
+def _stimulus(each: TaskParameters) -> Periodic | RelativePeriodic:
+    name = f"Activation_{each.name}"
+    if each.period is None:
+        return RelativePeriodic(name=name, distance=Constant(each.distance), has_maximum=False)
+    if each.offset is None and not each.jitter:
+        # The phase is unknown: all distances are the period, but the time of the first activation says nothing.
+        return RelativePeriodic(name=name, distance=Constant(each.period))
+    jitter = Uniform(lower=0, upper=each.jitter) if each.jitter else None
+    return Periodic(name=name, period=each.period, offset=each.offset or 0, jitter=jitter)
+
+
+def _allocation(each: TaskParameters, policy: str) -> TaskAllocation:
+    deadline = each.distance if each.deadline is None and policy == "EDF" else each.deadline
+    return TaskAllocation(task=each.name, scheduler=_scheduler_name(each.core), priority=each.priority, deadline=deadline)
+
+
+def _flows(tasks: Sequence[TaskParameters], chains: Mapping[str, Sequence[str]]) -> dict[tuple[str, str], None]:
+    """From which tasks to which ones data flow."""
+    names = {each.name for each in tasks}
+    for chain, path in chains.items():
+        if isinstance(path, str) or not path:
+            raise InvalidArgumentError(f"chain {chain!r}: expected a list of tasks, e.g. ['A', 'B'], not {path!r}")
+        for name in path:
+            if name not in names:
+                advice = did_you_mean(name, names) or f"known: {', '.join(sorted(names))}"
+                raise InvalidArgumentError(f"chain {chain!r}: undefined task {name!r}; {advice}")
+        if len(set(path)) < len(path):
+            raise InvalidArgumentError(f"chain {chain!r}: a task occurs twice, but a chain cannot contain cycles")
+    return dict.fromkeys(link for path in chains.values() for link in pairwise(path))
+
+
+def _label_name(flow: tuple[str, str]) -> str:
+    return "_to_".join(flow)
+
+
+def _label(flow: tuple[str, str]) -> Label:
+    return Label(name=_label_name(flow), size=32)
+
+
+def _task(each: TaskParameters, flows: Iterable[tuple[str, str]]) -> Task:
+    def accesses(kind: AccessKind, end: int) -> Iterator[LabelAccess]:
+        for flow in flows:
+            if flow[end] == each.name:
+                yield LabelAccess(label=_label_name(flow), kind=kind, communication=each.communication)
+
+    constant = each.bcet == each.wcet
+    demand = Demand(Constant(each.wcet) if constant else Boundaries(lower=each.bcet, upper=each.wcet))
+    return Task(
+        name=each.name,
+        stimuli=(f"Activation_{each.name}",),
+        activities=(*accesses(AccessKind.READ, 1), Execute(demand=demand), *accesses(AccessKind.WRITE, 0)),
+        preemption=each.preemption,
+        activation_limit=_NO_LIMIT,
+    )
+
+
+def _events(chains: Mapping[str, Sequence[str]]) -> Events:
+    events: dict[str, ProcessEvent] = {}
+
+    def event(name: str, change: ProcessChange) -> str:
+        made = ProcessEvent(name=f"{name}_{change}", process=name, change=change)
+        return events.setdefault(made.name, made).name
+
+    def chain(name: str, path: Sequence[str]) -> EventChain:
+        first = event(path[0], ProcessChange.START)
+        ends = [event(each, ProcessChange.TERMINATE) for each in (path[1:] or path)]
+        segments = tuple(Segment(stimulus=one, response=then) for one, then in pairwise((first, *ends)))
+        return EventChain(
+            name=name, stimulus=first, response=ends[-1], items=InSequence(segments) if len(segments) > 1 else None
+        )
+
+    made = tuple(chain(name, path) for name, path in chains.items())
+    return Events(events=tuple(events.values()), chains=made)

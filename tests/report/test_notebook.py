@@ -1,0 +1,130 @@
+"""Results as records, data frames, text, and HTML."""
+
+import json
+from html.parser import HTMLParser
+from io import StringIO
+
+import pytest
+from support import ROOT
+
+import amalthea_uros as amuros
+from amalthea_uros.report import formats
+
+YAML = ROOT / "samples" / "bodas-test-advanced.yaml"
+MODEL = ROOT / "samples" / "executor.amxmi"
+
+
+@pytest.fixture(scope="module")
+def analysis():
+    return amuros.analyze(YAML)
+
+
+@pytest.fixture(scope="module")
+def simulation():
+    return amuros.simulate(YAML, "100 ms")
+
+
+def written(result, name):
+    stream = StringIO()
+    formats.write(name, result, stream)
+    return stream.getvalue()
+
+
+def test_records_have_the_names_and_values_of_the_json_output(analysis):
+    content = json.loads(written(amuros.analyze_files(YAML), "json"))
+    for record, process in zip(analysis.to_records(), content["processes"], strict=True):
+        plain = {key: value for key, value in process.items() if not isinstance(value, dict)}
+        assert record.items() >= plain.items()
+        assert record["terms.own_ps"] == process["terms"]["own_ps"]
+        assert record["metrics.response_time.max_ps"] == process["metrics"]["response_time"]["max_ps"]
+    for record, requirement in zip(analysis.requirements.to_records(), content["requirements"], strict=True):
+        assert record == requirement
+
+
+def test_a_chain_has_a_row_for_each_latency(analysis):
+    rows = {row["quantity"]: row for row in analysis.chains.to_records()}
+    assert rows["max_reduced_reaction_time"]["value_ps"] == amuros.parse_time("20.029 ms")
+    assert {row["name"] for row in rows.values()} == {"factor-to-output"}
+
+
+def test_a_chain_without_values_has_a_row_with_the_reason():
+    system = amuros.taskset([(5, 1), (10, 1)], unit="ms", chains={"c": ["T1", "T2"]})
+    (row,) = amuros.analyze(system).chains.to_records()
+    assert (row["name"], row["value_ps"]) == ("c", None)
+    assert row["reason"]
+
+
+def everything(analysis, simulation):
+    yield from (analysis, analysis.processors, analysis.processes, analysis.callbacks, analysis.chains, analysis.requirements)
+    yield from (analysis.processes[0], analysis.chains[0], amuros.analyze_files(YAML))
+    yield from (simulation, simulation.processes, simulation.chains, simulation.cores, simulation.requirements)
+    yield from (amuros.check_files(MODEL), amuros.diff(MODEL, ROOT / "samples" / "bodas-test-advanced.amxmi"))
+    yield amuros.simulate_campaign(YAML, amuros.Options(duration=10**9), repetitions=2, workers=1)
+
+
+class Tags(HTMLParser):
+    """Refuses tags that do not close each other."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.seen = [], set()
+
+    def handle_starttag(self, tag, attrs):
+        self.open.append(tag)
+        self.seen.add(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def test_every_result_is_plain_rows_a_text_and_a_page(analysis, simulation):
+    for result in everything(analysis, simulation):
+        rows = result.to_records()
+        assert all(isinstance(value, str | int | float | None) for row in rows for value in row.values())
+        json.dumps(rows)
+        assert str(result)
+        assert len(repr(result)) < 700 or not isinstance(result, amuros.Analysis | amuros.Simulation)
+        page = Tags()
+        page.feed(result._repr_html_())
+        assert not page.open
+        assert page.seen <= {"div", "p", "b", "table", "thead", "tbody", "tr", "th", "td"}
+
+
+def test_data_frames(analysis):
+    pytest.importorskip("pandas")
+    frame = analysis.to_dataframe().set_index("name")
+    assert frame.loc["Control_Function", "wcrt_ps"] == amuros.parse_time("29 us")
+
+
+def test_without_pandas_the_message_says_what_to_install(analysis, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "pandas", None)
+    with pytest.raises(ImportError, match=r"pip install amuros\[pandas\]"):
+        analysis.to_dataframe()
+
+
+def test_print_gives_what_the_command_line_prints(analysis):
+    assert str(analysis) == written(amuros.analyze_files(YAML), "text").strip("\n")
+
+
+def test_names_are_escaped():
+    task = amuros.task("<script>alert(1)</script>", period="1 ms", wcet="1 us", priority=1)
+    analysis = amuros.analyze(amuros.taskset([task]))
+    for result in (analysis, analysis.processes, analysis.processes[0]):
+        page = result._repr_html_()
+        assert "<script" not in page
+        assert "&lt;script&gt;" in page
+
+
+def test_findings_are_shown():
+    model = amuros.load(MODEL)
+    model[amuros.am.Task, "Message_Factor"].stimuli = [amuros.am.CustomStimulus(name="elsewhere")]
+    analysis = amuros.analyze(model)
+    assert analysis.findings[0].message in str(analysis)
+
+
+def test_short_texts(analysis, simulation):
+    assert repr(analysis) == "<Analysis of 3 processes, 1 chain, 2 requirements; schedulable: yes>"
+    assert repr(analysis.processes) == "<Results: Executor_Task, Message_Factor, Control_Function>"
+    assert repr(analysis["Control_Function"]) == "<ProcessResult Control_Function: response time 29 us, deadline 1 ms, met>"
+    assert "max reduced reaction time 20.029 ms (exact)" in repr(analysis.chains[0])
+    assert repr(amuros.analyze(amuros.taskset([])).processes) == "<Results: none>"

@@ -1,0 +1,156 @@
+"""Synthetic task sets: published examples in one line each."""
+
+import pytest
+
+import amalthea_uros as amuros
+from amalthea_uros.units import MILLISECOND as MS
+
+#: Pairs of period and execution time, in order of priority, and the worst-case response times.
+PUBLISHED = {
+    # Burns and Wellings, Real-Time Systems and Programming Languages, process sets B and D
+    "Burns and Wellings, set B": ([(16, 4), (40, 5), (80, 32)], [4, 9, 58]),
+    "Burns and Wellings, set D": ([(7, 3), (12, 3), (20, 5)], [3, 6, 20]),
+    # IEEE Computer 23(4), 1990: above the bound of Liu and Layland, and still schedulable
+    "Sha and Goodenough 1990": ([(100, 40), (150, 40), (350, 100)], [40, 80, 300]),
+    # RTSS 1990, example 1: the worst response is not that of the first job, and longer than the period
+    "Lehoczky 1990": ([(70, 26), (100, 62)], [26, 118]),
+}
+
+
+def worst(system):
+    return [process.response.worst for process in amuros.analyze(system).processes]
+
+
+@pytest.mark.parametrize(("pairs", "expected"), PUBLISHED.values(), ids=PUBLISHED)
+def test_published_response_times(pairs, expected):
+    assert worst(amuros.taskset(pairs, unit="ms", priorities="rate monotonic")) == [time * MS for time in expected]
+
+
+def test_deadline_monotonic_priorities():
+    # Burns and Wellings, deadline-monotonic example: periods say nothing about the order
+    rows = [("a", 20, 5, 3), ("b", 15, 7, 3), ("c", 10, 10, 4), ("d", 20, 20, 3)]
+    tasks = [
+        amuros.task(name, period=period * MS, deadline=deadline * MS, wcet=wcet * MS) for name, period, deadline, wcet in rows
+    ]
+    system = amuros.taskset(reversed(tasks), priorities="deadline monotonic")
+    assert sorted(worst(system)) == [3 * MS, 6 * MS, 10 * MS, 20 * MS]
+    assert amuros.analyze(system).summary.schedulable is amuros.Schedulable.YES
+
+
+def test_liu_and_layland_1973_theorem_7():
+    # EDF: schedulable exactly if the load is at most 1. With fixed priorities, the second task needs 2.5 + 3 * 1 ms after a release
+    # together with the first one, which is a certain miss only if the phases are stated.
+    pairs = [(2, 1), (5, 2.5)]
+    assert amuros.analyze(amuros.taskset(pairs, unit="ms", policy="EDF")).summary.schedulable == "yes"
+    assert amuros.analyze(amuros.taskset(pairs, unit="ms", priorities="rate monotonic")).summary.schedulable == "unknown"
+    together = [amuros.task(f"T{p}", period=f"{p} ms", wcet=f"{c} ms", offset=0) for p, c in pairs]
+    assert amuros.analyze(amuros.taskset(together, priorities="rate monotonic")).summary.schedulable == "no"
+
+
+def test_nothing_is_assumed_of_priorities():
+    analysis = amuros.analyze(amuros.taskset([(5, 1), (10, 1)], unit="ms"))
+    assert (analysis.summary.schedulable, analysis["T1"].reason) == ("unknown", "it has no priority")
+
+
+def non_preemptive(**offset):
+    """A short task, and a long one that it cannot preempt."""
+    long = amuros.task("Long", period="10 ms", wcet="4 ms", priority=1, preemption="non-preemptive", **offset)
+    return amuros.taskset([amuros.task("Short", period="10 ms", wcet="1 ms", priority=2, **offset), long])
+
+
+def test_a_phase_that_nobody_stated_can_be_the_worst_one():
+    # Released together, the short task runs first. Just after the long one has started, it waits for that one's 4 ms.
+    assert amuros.analyze(non_preemptive(offset=0))["Short"].response.worst == 1 * MS
+    assert 5 * MS - 1 <= amuros.analyze(non_preemptive())["Short"].response.worst <= 5 * MS
+
+
+def test_execution_times_can_be_shorter_unless_stated():
+    free, exact = (
+        amuros.taskset([amuros.task("A", period="5 ms", wcet="1 ms", priority=1)]),
+        amuros.taskset([amuros.task("A", period="5 ms", wcet="1 ms", bcet="1 ms", priority=1)]),
+    )
+    assert [amuros.analyze(system)["A"].response.best for system in (free, exact)] == [0, MS]
+
+
+def test_sporadic_tasks_and_jitter():
+    # Audsley and others 1993: R = C + J + interference, where jitter brings a second job of A into the window of B
+    late = amuros.task("A", period="10 ms", wcet="2 ms", jitter="7 ms", priority=2)
+    system = amuros.taskset([late, amuros.task("B", min_distance="20 ms", wcet="2 ms", priority=1)])
+    assert amuros.analyze(system)["B"].response.worst == (2 + 2 * 2) * MS
+    assert amuros.analyze(system)["B"].deadline == 20 * MS
+
+
+def chained(communication):
+    tasks = [
+        amuros.task(name, period="10 ms", wcet="1 ms", bcet="1 ms", offset=0, priority=priority, communication=communication)
+        for name, priority in (("A", 2), ("B", 1))
+    ]
+    return amuros.analyze(amuros.taskset(tasks, chains={"a-b": ["A", "B"]})).chains["a-b"]
+
+
+def test_chains():
+    # From the start of a job of A to the end of the first job of B that used its data. Implicit: B starts when A has ended, after 1 ms.
+    # LET: A writes at the end of its period, 10 ms; the job of B that reads it waits 1 ms for A and takes 1 ms.
+    first, age = amuros.Quantity.MIN_FIRST_TO_FIRST, amuros.Quantity.MAX_REDUCED_DATA_AGE
+    assert chained("implicit").value(first).value == 2 * MS
+    assert chained("LET").value(first).value == 12 * MS
+    assert chained("implicit").value(age).value < chained("LET").value(age).value
+
+
+def test_several_cores():
+    tasks = [amuros.task(name, period="5 ms", wcet="4 ms", core=name, priority=1) for name in ("X", "Y")]
+    analysis = amuros.analyze(amuros.taskset(tasks))
+    assert analysis.processors.names == ("X", "Y")
+    assert [process.response.worst for process in analysis.processes] == [4 * MS, 4 * MS]
+
+
+def test_a_task_set_can_be_simulated_and_built():
+    system = amuros.taskset([(5, 1), (10, 2)], unit="ms", priorities="rate monotonic")
+    assert amuros.simulate(system, "100 ms", mode="worst")["T2"].response_time.max == 3 * MS
+    assert worst(amuros.build_model(system)) == worst(system)
+
+
+def a_task(**values):
+    return amuros.task("A", **({"wcet": "1 ms"} | values))
+
+
+WRONG = {
+    "no activation": (lambda: a_task(), "A: expected either a period, or the min_distance"),
+    "two activations": (lambda: a_task(period="5 ms", min_distance="5 ms"), "either a period"),
+    "no unit": (lambda: a_task(period="5"), "A: period: '5' has no unit"),
+    "a float": (lambda: a_task(period=5.0), "or whole picoseconds, not 5.0"),
+    "period 0": (lambda: a_task(period=0), "period: 0 s is not positive"),
+    "a negative time": (lambda: a_task(period="5 ms", offset="-1 ms"), "offset: -1 ms is negative"),
+    "bcet above wcet": (lambda: a_task(period="5 ms", bcet="2 ms"), "the bcet 2 ms exceeds the wcet 1 ms"),
+    "a sporadic task with jitter": (lambda: a_task(min_distance="5 ms", jitter="1 ms"), "has no offset and no jitter"),
+    "LET without offset": (lambda: a_task(period="5 ms", communication="LET"), "need an offset"),
+    "an unknown preemption": (lambda: a_task(period="5 ms", preemption="never"), "expected one of preemptive, cooperative"),
+    "numbers without unit": (lambda: amuros.taskset([(5, 1)]), "state the unit of all pairs, e.g. unit='ms'"),
+    "an unknown unit": (lambda: amuros.taskset([(5, 1)], unit="msec"), "'msec' is not a unit of time; known units: ps"),
+    "not a number": (lambda: amuros.taskset([(float("nan"), 1)], unit="ms"), "expected a finite number, not nan"),
+    "an unknown policy": (lambda: amuros.taskset([], policy="RM"), "expected one of fixed priority, EDF"),
+    "unknown priorities": (lambda: amuros.taskset([], priorities="RM"), "expected one of rate monotonic, deadline mono"),
+    "a name twice": (lambda: amuros.taskset([a_task(period="5 ms")] * 2), "duplicate task 'A'"),
+    "priorities twice": (
+        lambda: amuros.taskset([a_task(period="5 ms", priority=1)], priorities="rate monotonic"),
+        "'A' states a priority already",
+    ),
+    "an undefined task": (
+        lambda: amuros.taskset([(5, 1)], unit="ms", chains={"c": ["T1", "T2"]}),
+        "chain 'c': undefined task 'T2'; known: T1",
+    ),
+    "a task twice in a chain": (lambda: amuros.taskset([(5, 1)], unit="ms", chains={"c": ["T1", "T1"]}), "occurs twice"),
+    "a chain that is a text": (lambda: amuros.taskset([(5, 1)], unit="ms", chains={"c": "T1"}), "expected a list of tasks"),
+}
+
+
+@pytest.mark.parametrize(("make", "message"), WRONG.values(), ids=WRONG)
+def test_wrong_values(make, message):
+    with pytest.raises(amuros.InvalidArgumentError) as raised:
+        make()
+    assert message in str(raised.value)
+
+
+def test_other_objects_than_tasks():
+    with pytest.raises(TypeError, match="made by task"):
+        amuros.taskset([3])
