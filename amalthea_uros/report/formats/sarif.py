@@ -50,12 +50,13 @@ def _rule(identifier: str) -> dict[str, Any]:
     kind = registry.kind(identifier)
     if kind is None:
         return {"id": identifier}
+    url = registry.rule_url(identifier)
     return {
         "id": kind.id,
         "shortDescription": {"text": kind.title},
         "fullDescription": {"text": kind.rationale},
         "help": {"text": f"{kind.remedy} `amuros explain {identifier}` shows more."},
-        "helpUri": f"{DOCUMENTATION}/findings/#{quote(identifier)}",
+        **({} if url is None else {"helpUri": url}),
         "defaultConfiguration": {"level": _LEVELS[kind.severity]},
         "properties": {"tags": [profile_name(identifier)]},
     }

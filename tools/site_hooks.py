@@ -1,0 +1,37 @@
+"""What mkdocs calls while it builds the site: a page for each finding, lists that follow the code, links out of docs/."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.structure.files import File, Files
+from mkdocs.structure.pages import Page
+from site_api import api_lists
+from site_commands import command_lists
+from site_rules import rule_pages
+
+from amalthea_uros._internal.addresses import REPOSITORY
+
+#: Pages that end with what is generated from the code when the site is built, so that it is never stale.
+GENERATED: dict[str, Callable[[], str]] = {"api.md": api_lists, "commands.md": command_lists}
+
+_OUTSIDE = re.compile(r"\]\(\.\./([^)]+)\)")
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the pages of the findings."""
+    for path, text in rule_pages():
+        files.append(File.generated(config, path, content=text))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Complete a page, and lead links to files outside of docs/ to the repository."""
+    path = page.file.src_uri
+    if path in GENERATED:
+        markdown = f"{markdown.rstrip()}\n\n{GENERATED[path]()}"
+    if page.file.generated_by:
+        return markdown
+    return _OUTSIDE.sub(rf"]({REPOSITORY}/blob/main/\1)", markdown)
