@@ -35,13 +35,7 @@ def _row(option: click.Option, context: click.Context) -> str:
     record = option.get_help_record(context)
     assert record is not None
     spelling, meaning = record
-    return f"| {'<br>'.join(f'`{each}`' for each in _spellings(spelling))} | {_escaped(' '.join(meaning.split()))} |"
-
-
-def _spellings(spelling: str) -> Iterator[str]:
-    """`-o, --output FILE` as two, with every option on a line of its own; a choice stays together."""
-    for each in spelling.split(", "):
-        yield each.replace("|", "\\|")
+    return f"| {'<br>'.join(f'`{each}`' for each in spelling.split(', '))} | {_escaped(' '.join(meaning.split()))} |"
 
 
 def _escaped(text: str) -> str:
