@@ -18,7 +18,7 @@ from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
 from amalthea_uros.analyze.response_times import kernel, schedule
 from amalthea_uros.analyze.response_times.schedule import Jobs, PeriodicTask
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf import events, mapping, os, software, stimuli
+from amalthea_uros.perf import activities, events, mapping, os, software, stimuli
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
@@ -58,15 +58,15 @@ def four_quantities(jobs: list[Jobs], chain: list[int], cycle: int) -> tuple[int
 
 def whole_system(tasks: list[PeriodicTask], chains: list[list[int]]) -> System:
     """The tasks as a system, each of which reads what any other one writes, with chains through them."""
-    labels = [software.LabelAccess(label=task.name, kind=software.AccessKind.READ) for task in tasks]
+    labels = [activities.LabelAccess(label=task.name, kind=activities.AccessKind.READ) for task in tasks]
     made = [
         software.Task(
             name=task.name,
             stimuli=(task.name,),
             activities=(
                 *labels,
-                software.Execute(demand=software.Demand(Constant(task.demand.worst // 1000))),
-                software.LabelAccess(label=task.name, kind=software.AccessKind.WRITE),
+                activities.Execute(demand=activities.Demand(Constant(task.demand.worst // 1000))),
+                activities.LabelAccess(label=task.name, kind=activities.AccessKind.WRITE),
             ),
         )
         for task in tasks

@@ -17,7 +17,7 @@ from random import Random
 from amalthea_uros.analyze.response_times import kernel, priority_levels
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf import mapping, os, software, stimuli
+from amalthea_uros.perf import activities, mapping, os, software, stimuli
 from amalthea_uros.perf.distributions import Statistics
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
@@ -50,15 +50,15 @@ def challenge_system(random: Random) -> System:
     runnables = []
     for index in range(1250):
         accesses = tuple(
-            software.LabelAccess(label=random.choice(labels).name, kind=random.choice(list(software.AccessKind)))
+            activities.LabelAccess(label=random.choice(labels).name, kind=random.choice(list(activities.AccessKind)))
             for _ in range(12 + (index < 255))
         )
         ticks = Statistics(lower=500, average=1000.0, upper=2000)
-        execute = software.Execute(demand=software.Demand(ticks))
+        execute = activities.Execute(demand=activities.Demand(ticks))
         runnables.append(software.Runnable(name=f"R{index}", activities=(*accesses, execute)))
     tasks, allocations, sources = [], [], []
     for index in range(21):
-        calls = tuple(software.Call(runnable=runnable.name) for runnable in runnables[index::21])
+        calls = tuple(activities.Call(runnable=runnable.name) for runnable in runnables[index::21])
         tasks.append(software.Task(name=f"T{index}", stimuli=(f"S{index}",), activities=calls))
         allocations.append(mapping.TaskAllocation(task=f"T{index}", scheduler=cores[index % 4], priority=21 - index))
         jitter = Statistics(lower=0, average=10**6, upper=10**7) if index < 4 else None
