@@ -5,7 +5,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test check gen bench docs clean
+.PHONY: demo test check gen bench docs site clean
 
 demo: $(READY)
 	@mkdir -p build
@@ -54,6 +54,11 @@ bench: $(READY)
 # The pages are Markdown; their examples are executed and their output is compared.
 docs: $(READY)
 	$(BIN)/python -m pytest tests/test_docs.py
+
+# The same pages as a site, in build/site.
+site: $(READY)
+	$(BIN)/python -m pip install --quiet --editable '.[docs]'
+	$(BIN)/python -m mkdocs build --strict
 
 $(READY): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, set PYTHON=...")'
