@@ -1,10 +1,9 @@
-"""docs/json.md against the JSON of all commands: no field is missing from the page, none is there that nothing writes, all types hold."""
+"""docs/json.md against the JSON of all commands: the page has every field, nothing else, and the right types."""
 
 import json
 import re
 import shutil
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
@@ -29,10 +28,22 @@ RUNS = {
     "amuros simulate": (
         ("simulate", ADVANCED, "--duration", "100ms", "--labels", "all"),
         ("simulate", "unknown.amxmi", "--duration", "20ms"),
-        ("simulate", ADVANCED, "--duration", "20ms", "--sweep", "Message_Factor.phase=0ms,5ms", "--set", "Control_Function.period=2ms"),
+        (
+            "simulate",
+            ADVANCED,
+            "--duration",
+            "20ms",
+            "--sweep",
+            "Message_Factor.phase=0ms,5ms",
+            "--set",
+            "Control_Function.period=2ms",
+        ),
     ),
     "amuros check": (("check", ADVANCED, "--profile", "inchron,ta"),),
-    "amuros build": (("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"), ("build", "drive-and-lift.yaml", "-o", "too.amxmi")),
+    "amuros build": (
+        ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),
+        ("build", "drive-and-lift.yaml", "-o", "too.amxmi"),
+    ),
     "amuros diff": (("diff", "bodas-test-advanced.amxmi", "bodas-test-simple.amxmi"),),
     "amuros migrate": (("migrate", "pump-1.2.0.amxmi", "-o", "migrated.amxmi"),),
     "amuros info": (("info", "bodas-test-hardware.amxmi"), ("info", "pump-1.2.0.amxmi")),
@@ -42,15 +53,15 @@ RUNS = {
 #: Sections of types -> the section whose runs have each of their fields.
 SHARED = {"finding": "amuros check", "metric": "amuros analyze", "observation": "amuros simulate"}
 
-Path_ = tuple[str, ...]
+Place = tuple[str, ...]
 
 
 class Field(NamedTuple):
-    path: Path_
+    path: Place
     types: tuple[str, ...]
     shared: str = ""
 
-    def holds(self, path: Path_) -> bool:
+    def holds(self, path: Place) -> bool:
         return len(path) == len(self.path) and all(mine in ("*", key) for mine, key in zip(self.path, path, strict=True))
 
 
@@ -63,7 +74,7 @@ def rows(section: str) -> Iterator[Field]:
             yield from expanded(tuple(name.replace("[]", ".[]").split(".")), types)
 
 
-def expanded(path: Path_, types: tuple[str, ...]) -> Iterator[Field]:
+def expanded(path: Place, types: tuple[str, ...]) -> Iterator[Field]:
     plain = tuple(kind for kind in types if not kind.startswith("["))
     if plain:
         yield Field(path, plain)
@@ -72,7 +83,7 @@ def expanded(path: Path_, types: tuple[str, ...]) -> Iterator[Field]:
         yield from (Field(path + field.path, field.types, shared) for field in rows(shared))
 
 
-def values(found: Any, path: Path_ = ()) -> Iterator[tuple[Path_, Any]]:
+def values(found: Any, path: Place = ()) -> Iterator[tuple[Place, Any]]:
     """The places of a result, and what is there; lists and objects are looked into."""
     if isinstance(found, list):
         for item in found:
@@ -122,5 +133,5 @@ def test_every_command_with_json_is_on_the_page():
     assert with_json == {section.removeprefix("amuros ") for section in RUNS}
 
 
-def show(path: Path_) -> str:
+def show(path: Place) -> str:
     return ".".join(path).replace(".[]", "[]")

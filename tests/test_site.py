@@ -1,4 +1,4 @@
-"""The documentation as a site: it builds without a warning, loads nothing from elsewhere, and has a page for everything that points to it."""
+"""The documentation as a site: it builds without a warning, loads nothing from elsewhere, and has what others point to."""
 
 import os
 import re
@@ -59,7 +59,6 @@ def text_of(site: Path, page: str) -> str:
 
 
 @needs_mkdocs
-@pytest.mark.xdist_group("site")
 def test_the_site(site):
     """One test, so that the site is built once also with several workers."""
     is_page_of_every_finding(site)

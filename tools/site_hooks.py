@@ -18,6 +18,8 @@ from amalthea_uros._internal.addresses import REPOSITORY
 GENERATED: dict[str, Callable[[], str]] = {"api.md": api_lists, "commands.md": command_lists}
 
 _OUTSIDE = re.compile(r"\]\(\.\./([^)]+)\)")
+_GRAPH = re.compile(r"```mermaid\n(.*?)```", re.DOTALL)
+_ARROW = re.compile(r"(\w+) --> (\w+)")
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
@@ -34,4 +36,12 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         markdown = f"{markdown.rstrip()}\n\n{GENERATED[path]()}"
     if page.file.generated_by:
         return markdown
+    markdown = _GRAPH.sub(lambda found: _arrows(found[1]), markdown)
     return _OUTSIDE.sub(rf"]({REPOSITORY}/blob/main/\1)", markdown)
+
+
+def _arrows(graph: str) -> str:
+    """A graph as a list: the theme would load the script that draws it from another host."""
+    arrows = sorted(_ARROW.findall(graph))
+    ends = {start: ", ".join(f"`{end}`" for source, end in arrows if source == start) for start, _ in arrows}
+    return "\n".join(f"- `{start}` \N{RIGHTWARDS ARROW} {found}" for start, found in ends.items()) + "\n"

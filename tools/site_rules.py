@@ -20,7 +20,10 @@ def rule_pages() -> Iterator[tuple[str, str]]:
 
 
 def _page(kind: FindingKind) -> str:
-    return "\n\n".join([f"# {kind.id}", f"**{kind.title}** ({kind.severity})", *_origin(kind), *_text(kind), *_examples(kind)]) + "\n"
+    return (
+        "\n\n".join([f"# {kind.id}", f"**{kind.title}** ({kind.severity})", *_origin(kind), *_text(kind), *_examples(kind)])
+        + "\n"
+    )
 
 
 def _origin(kind: FindingKind) -> Iterator[str]:
