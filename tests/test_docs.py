@@ -50,7 +50,7 @@ def test_the_examples_of_a_page(page, samples):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_the_links_of_a_page(page):
-    for target in re.findall(r"\]\(([^)#]+)\)", page.read_text()):
+    for target in re.findall(r"\]\((?!https:)([^)#]+)\)", page.read_text()):
         assert (page.parent / target).exists(), target
 
 
