@@ -68,7 +68,9 @@ def test_the_site(site):
 
 
 def is_page_of_every_finding(site: Path) -> None:
+    lists = text_of(site, "check") + text_of(site, "findings")
     for identifier in (*registry.ids(), *catalogue.ids()):
+        assert f'href="../rules/{identifier}/"' in lists
         url = registry.rule_url(identifier)
         assert url is not None
         assert "<h1 id=" in text_of(site, unquote(url.removeprefix(DOCUMENTATION + "/")))

@@ -18,6 +18,7 @@ from amalthea_uros._internal.addresses import REPOSITORY
 GENERATED: dict[str, Callable[[], str]] = {"api.md": api_lists, "commands.md": command_lists}
 
 _OUTSIDE = re.compile(r"\]\(\.\./([^)]+)\)")
+_FINDING = re.compile(r"^\| ([A-Z][\w/.-]+) (?=\| (?:error|warning|info) \|)", re.MULTILINE)
 _GRAPH = re.compile(r"```mermaid\n(.*?)```", re.DOTALL)
 _ARROW = re.compile(r"(\w+) --> (\w+)")
 
@@ -30,12 +31,13 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Complete a page, and lead links to files outside of docs/ to the repository."""
+    """Complete a page, and lead ids of findings to their pages, and links to files outside of docs/ to the repository."""
     path = page.file.src_uri
     if path in GENERATED:
         markdown = f"{markdown.rstrip()}\n\n{GENERATED[path]()}"
     if page.file.generated_by:
         return markdown
+    markdown = _FINDING.sub(r"| [\1](rules/\1.md) ", markdown)
     markdown = _GRAPH.sub(lambda found: _arrows(found[1]), markdown)
     return _OUTSIDE.sub(rf"]({REPOSITORY}/blob/main/\1)", markdown)
 
