@@ -7,9 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from importlib.resources import files
-from urllib.parse import quote
 
-from amalthea_uros._internal.addresses import DOCUMENTATION
+from amalthea_uros._internal.addresses import page_of_finding
 from amalthea_uros.findings import catalogue
 from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.validate.rule import ModelRule, Profile, Rule
@@ -63,7 +62,7 @@ def profile_of(identifier: str) -> Profile | None:
 def rule_url(identifier: str) -> str | None:
     """The page of a rule or another kind of finding; None for the rules of users, whose pages are elsewhere, and for unknown ids."""
     if profile_of(identifier) in _BUILT_IN or catalogue.find(identifier) is not None:
-        return f"{DOCUMENTATION}/rules/{quote(identifier)}/"
+        return page_of_finding(identifier)
     return None
 
 
