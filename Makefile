@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 DIST ?= dist
 READY := $(VENV)/.ready
 
-.PHONY: demo test check gen bench docs wheel clean
+.PHONY: demo test check gen bench docs site wheel clean
 
 demo: $(READY)
 	@mkdir -p build
@@ -55,6 +55,11 @@ bench: $(READY)
 # The pages are Markdown; their examples are executed and their output is compared.
 docs: $(READY)
 	$(BIN)/python -m pytest tests/test_docs.py
+
+# The same pages as a site, in build/site.
+site: $(READY)
+	$(BIN)/python -m pip install --quiet --editable '.[docs]'
+	$(BIN)/python -m mkdocs build --strict
 
 # What is published: the source distribution and the wheel.
 wheel: $(READY)

@@ -1,4 +1,4 @@
-"""Every example of the pages is executed, and every output compared."""
+"""Every example of the pages is executed, and every output compared; a block with a title is a file of the examples after it."""
 
 import os
 import re
@@ -15,7 +15,7 @@ from amalthea_uros.validate import registry
 
 FOLDERS = (ROOT / "docs", ROOT / "benchmarks")
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(page for folder in FOLDERS for page in sorted(folder.glob("*.md")))]
-BLOCK = re.compile(r"```(python|console)\n(.*?)```", re.DOTALL)
+BLOCK = re.compile(r"^```(?:(python|console)|\w+ title=\"([^\"]+)\")\n(.*?)^```", re.DOTALL | re.MULTILINE)
 
 
 @pytest.fixture
@@ -38,7 +38,10 @@ def printed(command: str) -> str:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_the_examples_of_a_page(page, samples):
     names: dict[str, object] = {}
-    for language, text in BLOCK.findall(page.read_text()):
+    for language, file, text in BLOCK.findall(page.read_text()):
+        if file:
+            Path(file).write_text(text)
+            continue
         if language == "python":
             exec(compile(text, str(page), "exec"), names)
             continue

@@ -8,4 +8,4 @@ DOCUMENTATION = "https://amuros.github.io/amuros"
 
 def page_of_finding(identifier: str) -> str:
     """Where an id of a finding is explained."""
-    return f"{DOCUMENTATION}/findings/#{quote(identifier)}"
+    return f"{DOCUMENTATION}/rules/{quote(identifier)}/"

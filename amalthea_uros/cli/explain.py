@@ -25,6 +25,8 @@ def command(identifier: str) -> None:
         click.echo(f"\nFails:\n{kind.fails.rstrip()}")
     if isinstance(kind, Rule):
         click.echo(f"\nPasses:\n{kind.passes.rstrip()}")
+    if (url := registry.rule_url(kind.id)) is not None:
+        click.echo(f"\nSee {url}")
 
 
 def _targets(rule: ModelRule) -> str:

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 from lsprotocol import types
 
-from amalthea_uros._internal.addresses import page_of_finding
 from amalthea_uros._internal.files import overlaid
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.editor.document import Document
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings.grouping import Group, group
 from amalthea_uros.services.check import check_files
+from amalthea_uros.validate.registry import rule_url
 
 SOURCE = "amuros"
 
@@ -37,12 +37,13 @@ def diagnostics_of(document: Document) -> list[types.Diagnostic]:
 
 def _diagnostic(document: Document, found: Group) -> types.Diagnostic:
     finding = found.shown
+    url = rule_url(finding.rule)
     return types.Diagnostic(
         range=_range(document, finding.location),
         message=_message(document, finding),
         severity=_SEVERITIES[finding.severity],
         code=finding.rule,
-        code_description=types.CodeDescription(page_of_finding(finding.rule)),
+        code_description=None if url is None else types.CodeDescription(url),
         source=SOURCE,
         related_information=list(_related(document, found)) or None,
     )

@@ -8,6 +8,7 @@ from functools import cache
 from importlib import import_module
 from importlib.resources import files
 
+from amalthea_uros._internal.addresses import page_of_finding
 from amalthea_uros.findings import catalogue
 from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.validate.rule import ModelRule, Profile, Rule
@@ -56,6 +57,13 @@ def profile_of(identifier: str) -> Profile | None:
     name = _module(identifier)
     built_in = next((profile for profile in _BUILT_IN if name in _modules(profile)), None)
     return Profile.USER if built_in is None and identifier in _user_rules() else built_in
+
+
+def rule_url(identifier: str) -> str | None:
+    """The page of a rule or another kind of finding; None for the rules of users, whose pages are elsewhere, and for unknown ids."""
+    if profile_of(identifier) in _BUILT_IN or catalogue.find(identifier) is not None:
+        return page_of_finding(identifier)
+    return None
 
 
 def rule(identifier: str) -> Rule:

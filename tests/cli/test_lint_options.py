@@ -213,7 +213,7 @@ def test_sarif_links_rules_to_the_documentation_that_the_package_states(amuros, 
     run = json.loads(amuros("check", two_tasks, "--select", "TIM-STIMULUS", "--output", "sarif").stdout)["runs"][0]
     assert f"Documentation, {DOCUMENTATION}" in (metadata("amuros").get_all("Project-URL") or [])
     (rule,) = run["tool"]["driver"]["rules"]
-    assert rule["helpUri"] == f"{DOCUMENTATION}/findings/#TIM-STIMULUS"
+    assert rule["helpUri"] == f"{DOCUMENTATION}/rules/TIM-STIMULUS/"
 
 
 ITEA = "http://www.amalthea.itea2.org/model/1.3.0/sw"

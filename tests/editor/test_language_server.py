@@ -54,7 +54,7 @@ def test_a_finding_is_a_diagnostic_with_its_place_and_page(server, file):
     assert found([diagnostic]) == [(4, 14, 19, "YML010")]
     assert diagnostic["message"] == "unknown key 'perod'\nDid you mean 'period'?"
     assert diagnostic["severity"] == 1
-    assert diagnostic["codeDescription"]["href"].endswith("/findings/#YML010")
+    assert diagnostic["codeDescription"]["href"].endswith("/rules/YML010/")
 
 
 def test_the_diagnostics_are_the_findings_of_check(server, file):

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from amalthea_uros._internal.addresses import DOCUMENTATION, page_of_finding
+from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros._internal.files import resolved
 from amalthea_uros._version import __version__
 from amalthea_uros.diagnostics import Severity
@@ -50,12 +50,13 @@ def _rule(identifier: str) -> dict[str, Any]:
     kind = registry.kind(identifier)
     if kind is None:
         return {"id": identifier}
+    url = registry.rule_url(identifier)
     return {
         "id": kind.id,
         "shortDescription": {"text": kind.title},
         "fullDescription": {"text": kind.rationale},
         "help": {"text": f"{kind.remedy} `amuros explain {identifier}` shows more."},
-        "helpUri": page_of_finding(identifier),
+        **({} if url is None else {"helpUri": url}),
         "defaultConfiguration": {"level": _LEVELS[kind.severity]},
         "properties": {"tags": [profile_name(identifier)]},
     }

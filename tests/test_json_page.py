@@ -1,0 +1,137 @@
+"""docs/json.md against the JSON of all commands: the page has every field, nothing else, and the right types."""
+
+import json
+import re
+import shutil
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import pytest
+from command import amuros
+from support import ROOT
+
+from amalthea_uros import am, load, save
+
+PAGE = (ROOT / "docs" / "json.md").read_text()
+TYPES = {"text": str, "integer": int, "number": (int, float), "boolean": bool, "object": dict, "null": type(None)}
+ADVANCED = "bodas-test-advanced.yaml"
+
+#: Section -> commands whose results, all together, have each of its fields.
+RUNS = {
+    "amuros analyze": (
+        ("analyze", ADVANCED, "--sensitivity", "--assign-priorities", "--explain", "Executor_Task"),
+        ("analyze", ADVANCED, "--explain", "factor-to-output", "--method", "all"),
+        ("analyze", ADVANCED, "--explain", "Control_Function"),
+        ("analyze", ADVANCED, "--scale", "80", "--explain", "Control_Function"),
+        ("analyze", "rclc-in-executor.yaml"),
+    ),
+    "amuros simulate": (
+        ("simulate", ADVANCED, "--duration", "100ms", "--labels", "all"),
+        ("simulate", "unknown.amxmi", "--duration", "20ms"),
+        (
+            "simulate",
+            ADVANCED,
+            "--duration",
+            "20ms",
+            "--sweep",
+            "Message_Factor.phase=0ms,5ms",
+            "--set",
+            "Control_Function.period=2ms",
+        ),
+    ),
+    "amuros check": (("check", ADVANCED, "--profile", "inchron,ta"),),
+    "amuros build": (
+        ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),
+        ("build", "drive-and-lift.yaml", "-o", "too.amxmi"),
+    ),
+    "amuros diff": (("diff", "bodas-test-advanced.amxmi", "bodas-test-simple.amxmi"),),
+    "amuros migrate": (("migrate", "pump-1.2.0.amxmi", "-o", "migrated.amxmi"),),
+    "amuros info": (("info", "bodas-test-hardware.amxmi"), ("info", "pump-1.2.0.amxmi")),
+    "amuros rules": (("rules", "TIM"),),
+}
+
+#: Sections of types -> the section whose runs have each of their fields.
+SHARED = {"finding": "amuros check", "metric": "amuros analyze", "observation": "amuros simulate"}
+
+Place = tuple[str, ...]
+
+
+class Field(NamedTuple):
+    path: Place
+    types: tuple[str, ...]
+    shared: str = ""
+
+    def holds(self, path: Place) -> bool:
+        return len(path) == len(self.path) and all(mine in ("*", key) for mine, key in zip(self.path, path, strict=True))
+
+
+def rows(section: str) -> Iterator[Field]:
+    """The fields of a section; those of a type that has a section of its own instead of it."""
+    text = PAGE.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
+    for names, kinds in re.findall(r"^\| (`.+?) \| (.+?) \|", text, re.MULTILINE):
+        types = tuple(re.split(", | or ", kinds))
+        for name in re.findall(r"`([^`]+)`", names):
+            yield from expanded(tuple(name.replace("[]", ".[]").split(".")), types)
+
+
+def expanded(path: Place, types: tuple[str, ...]) -> Iterator[Field]:
+    plain = tuple(kind for kind in types if not kind.startswith("["))
+    if plain:
+        yield Field(path, plain)
+    for kind in set(types) - set(plain):
+        shared = kind[1:].partition("]")[0]
+        yield from (Field(path + field.path, field.types, shared) for field in rows(shared))
+
+
+def values(found: Any, path: Place = ()) -> Iterator[tuple[Place, Any]]:
+    """The places of a result, and what is there; lists and objects are looked into."""
+    if isinstance(found, list):
+        for item in found:
+            yield from values(item, (*path, "[]"))
+    elif isinstance(found, dict):
+        for key, item in found.items():
+            yield from values(item, (*path, key))
+    else:
+        yield path, found
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for path in (ROOT / "samples").iterdir():
+        if path.is_file():
+            shutil.copy(path, tmp_path)
+    model = load(tmp_path / "bodas-test-advanced.amxmi")
+    limit = am.TimeRequirementLimit(
+        limit_type=am.LimitType.UPPER_LIMIT, metric=am.TimeMetric.RESPONSE_TIME, limit_value=am.Time(1, "ms")
+    )
+    runnable = model[am.Runnable, "Control_Function_Callback"]
+    model.root.constraints_model.requirements.append(am.RunnableRequirement(name="callback", runnable=runnable, limit=limit))
+    model.root.sw_model.tasks.append(am.Task(name="Empty", stimuli=[model[am.Task, "Control_Function"].stimuli[0]]))
+    save(model, tmp_path / "unknown.amxmi")
+    return tmp_path
+
+
+@pytest.mark.parametrize("section", RUNS)
+def test_a_command_writes_the_fields_of_the_page(section, folder):
+    fields = [Field(("amuros",), ("text",)), *rows(section)]
+    unseen = {field.path for field in fields if "object" not in field.types and SHARED.get(field.shared, section) == section}
+    for number, command in enumerate(RUNS[section]):
+        file = folder / f"{number}.json"
+        amuros(*command, "--output", f"json={file}", cwd=folder)
+        for path, value in values(json.loads(file.read_text())):
+            matching = [field for field in fields if field.holds(path)]
+            assert matching, f"docs/json.md lacks {show(path)} in '{section}'"
+            allowed = tuple(TYPES[kind] for field in matching for kind in field.types)
+            assert any(isinstance(value, kind) for kind in allowed), f"{show(path)} is {value!r}"
+            assert not isinstance(value, bool) or bool in allowed, f"{show(path)} is {value!r}"
+            unseen -= {field.path for field in matching}
+    assert not unseen, f"nothing writes {', '.join(map(show, sorted(unseen)))}"
+
+
+def test_every_command_with_json_is_on_the_page():
+    with_json = {path.stem for path in (ROOT / "amalthea_uros" / "cli").glob("*.py") if "@output_option(" in path.read_text()}
+    assert with_json == {section.removeprefix("amuros ") for section in RUNS}
+
+
+def show(path: Place) -> str:
+    return ".".join(path).replace(".[]", "[]")

@@ -1,0 +1,49 @@
+"""What mkdocs calls while it builds the site: a page for each finding, lists that follow the code, links out of docs/."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.structure.files import File, Files
+from mkdocs.structure.pages import Page
+from site_api import api_lists
+from site_commands import command_lists
+from site_rules import rule_pages
+
+from amalthea_uros._internal.addresses import REPOSITORY
+
+#: Pages that end with what is generated from the code when the site is built, so that it is never stale.
+GENERATED: dict[str, Callable[[], str]] = {"api.md": api_lists, "commands.md": command_lists}
+
+_OUTSIDE = re.compile(r"\]\(\.\./([^)]+)\)")
+_FINDING = re.compile(r"^\| ([A-Z][\w/.-]+) (?=\| (?:error|warning|info) \|)", re.MULTILINE)
+_GRAPH = re.compile(r"```mermaid\n(.*?)```", re.DOTALL)
+_ARROW = re.compile(r"(\w+) --> (\w+)")
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the pages of the findings."""
+    for path, text in rule_pages():
+        files.append(File.generated(config, path, content=text))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Complete a page, and lead ids of findings to their pages, and links to files outside of docs/ to the repository."""
+    path = page.file.src_uri
+    if path in GENERATED:
+        markdown = f"{markdown.rstrip()}\n\n{GENERATED[path]()}"
+    if page.file.generated_by:
+        return markdown
+    markdown = _FINDING.sub(r"| [\1](rules/\1.md) ", markdown)
+    markdown = _GRAPH.sub(lambda found: _arrows(found[1]), markdown)
+    return _OUTSIDE.sub(rf"]({REPOSITORY}/blob/main/\1)", markdown)
+
+
+def _arrows(graph: str) -> str:
+    """A graph as a list: the theme would load the script that draws it from another host."""
+    arrows = sorted(_ARROW.findall(graph))
+    ends = {start: ", ".join(f"`{end}`" for source, end in arrows if source == start) for start, _ in arrows}
+    return "\n".join(f"- `{start}` \N{RIGHTWARDS ARROW} {found}" for start, found in ends.items()) + "\n"
