@@ -1,0 +1,31 @@
+"""The messages on the CAN bus."""
+
+from __future__ import annotations
+
+from amalthea_uros.report.html.blocks import Section, Table, columns
+from amalthea_uros.report.html.times import load_text
+from amalthea_uros.services.report import ReportContent
+from amalthea_uros.units import time_text
+
+
+def section(content: ReportContent) -> Section | None:
+    """What an `app.yaml` sends and receives."""
+    if content.assembly is None or not content.assembly.messages:
+        return None
+    rows = [
+        (
+            each.message.topic,
+            "received" if each.incoming else "sent",
+            time_text(each.message.interval),
+            f"{each.length} B",
+            f"{each.frames}",
+            "common" if each.identifier is None else f"0x{each.identifier:X}",
+            time_text(each.transmission_time),
+            load_text(each.bus_load, is_worst=True),
+        )
+        for each in content.assembly.messages
+    ]
+    titles = columns("topic", "direction", ">interval", ">with headers", ">frames", ">identifier", ">transmission", ">bus load")
+    total = load_text(sum((each.bus_load for each in content.assembly.messages), content.assembly.messages[0].bus_load * 0), is_worst=True)
+    lead = f"Each message with its headers and maximum bit stuffing; together they need at most {total} of the bus."
+    return Section("messages", "Messages on the CAN bus", lead, [Table("Messages of the application", titles, rows)])
