@@ -70,9 +70,9 @@ def _of(item: Judged, what: str, lower: Time | None, upper: Time | None, limit: 
         item=item,
         what=what,
         value=_value_text(item, lower, upper, limit, is_upper),
-        limit="–" if limit is None else f"{'≤' if is_upper else '≥'} {time_text(limit)}",
+        limit="-" if limit is None else f"{'≤' if is_upper else '≥'} {time_text(limit)}",
         margin=margin_text(item),
-        used=_used(upper, limit) if is_upper else "–",
+        used=_used(upper, limit) if is_upper else "-",
         claim=claim,
     )
 
@@ -90,13 +90,13 @@ def _value_text(item: Judged, lower: Time | None, upper: Time | None, limit: Tim
 def margin_text(item: Judged) -> str:
     """The distance from the limit, where it is certain."""
     if item.margin is None or item.verdict is Verdict.UNKNOWN:
-        return "–"
+        return "-"
     return rounded_time_text(item.margin, Rounding.DOWN)
 
 
 def _used(value: Time | None, limit: Time | None) -> str:
     if value is None or not limit:
-        return "–"
+        return "-"
     return f"{number_text(rounded(Fraction(value * 100, limit), Rounding.UP, 100))} %"
 
 

@@ -211,9 +211,7 @@ def histogram_picture(result: SimulationResult, name: str, more: Iterable[Mark] 
     return _histogram_of(result, of, quantity, observed[quantity], more)
 
 
-def _histogram_of(
-    result: SimulationResult, name: str, quantity: str, observed: MetricObservation, more: Iterable[Mark]
-) -> str:
+def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: MetricObservation, more: Iterable[Mark]) -> str:
     assert observed.histogram is not None
     # Bins are a whole number of picoseconds wide.
     edges = tuple(map(int, observed.histogram.edges))

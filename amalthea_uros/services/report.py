@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,7 +21,7 @@ from amalthea_uros.services.changes.change import Change, parse_change
 from amalthea_uros.services.inputs import ModelInput, refuse_descriptions
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.paths import StrPath, as_paths, is_description
-from amalthea_uros.services.simulate import SimulationPlan, SimulationResult, simulate_plan
+from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.services.subject import Subject
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.load import activation_rates
@@ -34,7 +34,13 @@ if TYPE_CHECKING:
     from amalthea_uros.uros.assemble import Assembly
 
 #: How long a run may be if nobody says it, the longest first.
-_DURATIONS = (10 * SECOND, 5 * SECOND, 2 * SECOND, SECOND, *(part * MILLISECOND for part in (500, 200, 100, 50, 20, 10, 5, 2, 1)))
+_DURATIONS = (
+    10 * SECOND,
+    5 * SECOND,
+    2 * SECOND,
+    SECOND,
+    *(part * MILLISECOND for part in (500, 200, 100, 50, 20, 10, 5, 2, 1)),
+)
 #: About so many jobs and calls of runnables are executed in such a run: a second on a usual computer.
 _MOST_WORK = 50_000
 
@@ -108,7 +114,7 @@ def compile_report(
     simulation = None
     if with_simulation:
         options = Options(duration=duration or default_duration(analysis), seed=seed, settings=used)
-        simulation = _simulated(system, options)
+        simulation = _simulated(system, options, is_kept=duration is None)
     return ReportContent(
         title=title or opened.name,
         date=date,
@@ -192,8 +198,19 @@ def _name(paths: Iterable[Path]) -> str:
     return ", ".join("standard input" if path == STANDARD_INPUT else path.name or str(path) for path in paths)
 
 
-def _simulated(system: System, options: Options) -> SimulationResult:
-    return simulate_plan(SimulationPlan(paths=(), system=system, options=options, differences=(), findings=()))
+def _simulated(system: System, options: Options, *, is_kept: bool) -> SimulationResult:
+    """A run; if the events are kept, which takes memory, pictures need not repeat it."""
+    from amalthea_uros.simulate.system import simulate_system
+    from amalthea_uros.trace.recorder import Recorder
+
+    recorder = Recorder()
+    if is_kept:
+        simulation = simulate_system(system, replace(options, traced=(0, options.duration)), [recorder])
+        simulation = replace(simulation, trace=recorder.table)
+    else:
+        simulation = simulate_system(system, options)
+    findings = unsuppressed(simulation.findings)
+    return SimulationResult(paths=(), system=system, options=options, simulation=simulation, findings=findings)
 
 
 def _checked(opened: _Opened) -> Presentation | None:

@@ -15,6 +15,10 @@ from amalthea_uros.report.pictures.embedding import embedded
 _MOST_ROWS, _ROWS_OF_LONG = 30, 15
 
 
+#: What a cell shows if there is nothing to show.
+_NOTHING = ("", "-")
+
+
 class Tone(StrEnum):
     """How something is marked: by an icon, a word and a colour."""
 
@@ -26,7 +30,7 @@ class Tone(StrEnum):
     @property
     def icon(self) -> str:
         """A sign that needs no colour."""
-        return {Tone.GOOD: "✓", Tone.BAD: "✗", Tone.UNKNOWN: "?", Tone.NEUTRAL: "–"}[self]
+        return {Tone.GOOD: "✓", Tone.BAD: "✗", Tone.UNKNOWN: "?", Tone.NEUTRAL: "-"}[self]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +50,6 @@ class Column:
 
     title: str
     is_number: bool = False
-
-
-def columns(*titles: str) -> tuple[Column, ...]:
-    """Columns by their titles; those that begin with `>` have numbers."""
-    return tuple(Column(title.removeprefix(">"), title.startswith(">")) for title in titles)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +72,13 @@ class Table:
         return self.rows[len(self.shown) :]
 
 
+def table(caption: str, titles: Sequence[str], rows: Sequence[Sequence[Cell]]) -> Table:
+    """A table without the columns in which there is nothing; titles that begin with `>` are those of numbers."""
+    kept = [number for number in range(len(titles)) if any(row[number] not in _NOTHING for row in rows)]
+    columns = [Column(titles[number].removeprefix(">"), titles[number].startswith(">")) for number in kept]
+    return Table(caption, columns, [[row[number] for number in kept] for row in rows])
+
+
 @dataclass(frozen=True, slots=True)
 class Figure:
     """A picture of ours; its name tells its ids from those of the others of the page."""
@@ -84,7 +90,7 @@ class Figure:
     @property
     def markup(self) -> Markup:
         """The picture as a part of a page; its text is escaped already."""
-        return Markup(embedded(self.picture, self.name))  # noqa: S704
+        return Markup(embedded(self.picture, self.name))
 
 
 @dataclass(frozen=True, slots=True)

@@ -84,7 +84,7 @@ def render(content: ReportContent) -> str:
         facts=_facts(content),
         verdict=_verdict(content),
         sections=sections,
-        picture_style=Markup(style_sheet()),  # noqa: S704 - ours
+        picture_style=Markup(style_sheet()),
         version=__version__,
         documentation=DOCUMENTATION,
     )
@@ -110,7 +110,7 @@ def _finalized(value: object) -> object:
 
 def _file(name: str) -> Markup:
     """A file of ours, to be a part of the page."""
-    return Markup((resource_folder("templates/report") / name).read_text(encoding="utf-8"))  # noqa: S704 - ours
+    return Markup((resource_folder("templates/report") / name).read_text(encoding="utf-8"))
 
 
 def _facts(content: ReportContent) -> str:
@@ -126,6 +126,9 @@ def _verdict(content: ReportContent) -> Verdict:
     summary = content.analysis.summary
     tone = tone_of(summary.schedulable)
     overloads = [(core.name, "the core is overloaded") for core in summary.overloaded]
-    others = [(item.name, f"{item.verdict}: {why(item)}" if why(item) else str(item.verdict)) for item in (*summary.failing, *summary.unknown)]
+    others = [
+        (item.name, f"{item.verdict}: {why(item)}" if why(item) else str(item.verdict))
+        for item in (*summary.failing, *summary.unknown)
+    ]
     reasons = list(dict.fromkeys((*overloads, *others)))
     return Verdict(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))

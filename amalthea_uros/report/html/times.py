@@ -27,7 +27,7 @@ def about(value: Time | Fraction | None) -> str:
 
 def deadline_text(deadline: Time | None, is_implicit: bool) -> str:
     """A deadline, and whether it is the period."""
-    return "–" if deadline is None else f"{time_text(deadline)}{' (period)' if is_implicit else ''}"
+    return "-" if deadline is None else f"{time_text(deadline)}{' (period)' if is_implicit else ''}"
 
 
 def load_text(load: Fraction | None, *, is_worst: bool = False) -> str:

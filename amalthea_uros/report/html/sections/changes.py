@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.report.closing_line import closing_line
-from amalthea_uros.report.html.blocks import Section, Sentences, Table, columns
+from amalthea_uros.report.html.blocks import Section, Sentences, table
 from amalthea_uros.services.report import ReportContent
 
 
@@ -17,7 +17,7 @@ def section(content: ReportContent) -> Section | None:
         "What was changed",
         "This report is about the system with these changes; the files are as they were.",
         (
-            Table("Changed values", columns("value", "before", "after"), rows),
+            table("Changed values", ("value", "before", "after"), rows),
             Sentences([f"Before the changes: {closing_line(content.before.summary)}"]),
         ),
     )

@@ -9,7 +9,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Severity, worst
 from amalthea_uros.findings.targets import summary
 from amalthea_uros.report.html.badges import badge
-from amalthea_uros.report.html.blocks import Block, Folded, Section, Sentences, Table, columns
+from amalthea_uros.report.html.blocks import Block, Folded, Section, Sentences, table
 from amalthea_uros.report.wording import findings_text
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.validate import registry
@@ -48,6 +48,6 @@ def _folded(rule: str, findings: Sequence[Finding]) -> Folded:
     kind = registry.kind(rule)
     severity = worst(findings) or Severity.INFO
     title = f"{rule}{f': {kind.title}' if kind is not None else ''} ({counted(len(findings), 'finding')})"
-    rows = [(str(each.location or each.object or "–"), each.message, each.help) for each in findings[:_MOST]]
+    rows = [(str(each.location or each.object or "-"), each.message, each.help) for each in findings[:_MOST]]
     caption = f"Findings of {rule}" + (f", the first {_MOST} of {len(findings):,}" if len(findings) > _MOST else "")
-    return Folded(title, [Table(caption, columns("where", "what", "help"), rows)], badge(severity))
+    return Folded(title, [table(caption, ("where", "what", "help"), rows)], badge(severity))

@@ -19,7 +19,9 @@ def section(content: ReportContent) -> Section | None:
     """Those of the worst chains and of the tightest tasks."""
     if content.simulation is None:
         return None
-    figures = [Figure(f"histogram-{number}", picture) for number, picture in enumerate((*_chains(content), *_processes(content)))]
+    figures = [
+        Figure(f"histogram-{number}", picture) for number, picture in enumerate((*_chains(content), *_processes(content)))
+    ]
     lead = "How often each time was observed; the bound of the analysis is never exceeded, the limit must not be."
     return Section("histograms", "Distributions of observed times", lead, figures) if figures else None
 
@@ -27,7 +29,9 @@ def section(content: ReportContent) -> Section | None:
 def _chains(content: ReportContent) -> Iterator[str]:
     assert content.simulation is not None
     observed = content.simulation.simulation.chains
-    chains = [each for each in worst_chains(content.analysis) if ChainQuantity.REDUCED_REACTION_TIME in observed[each.name].quantities]
+    chains = [
+        each for each in worst_chains(content.analysis) if ChainQuantity.REDUCED_REACTION_TIME in observed[each.name].quantities
+    ]
     for chain in chains[:_MOST_CHAINS]:
         marks = [
             Mark("limit", each.limit, MarkKind.LIMIT)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros.analyze.chains.explanation import ChainExplanation, Hop, explain_chain
 from amalthea_uros.analyze.results import Claim
-from amalthea_uros.report.html.blocks import Block, Heading, Section, Sentences, Table, columns
+from amalthea_uros.report.html.blocks import Block, Heading, Section, Sentences, table
 from amalthea_uros.report.judged import decisive_quantity, worst_chains
 from amalthea_uros.report.latencies import value_text
 from amalthea_uros.services.report import ReportContent
@@ -38,20 +38,24 @@ def _blocks(explanation: ChainExplanation) -> list[Block]:
     rows = [_row(hop) for hop in explanation.hops]
     if explanation.overwritten:
         rows.append(("until overwritten", "", "", "", "", "", time_text(explanation.overwritten), ""))
-    titles = columns("process", ">job", ">release", ">start", ">read", ">write", ">wait", ">run")
+    titles = ("process", ">job", ">release", ">start", ">read", ">write", ">wait", ">run")
     notes = [f"{explanation.route}.", f"{value.claim}: {value.method} ({value.source})."]
     if value.claim is Claim.BOUND:
         notes.append("Each read is as early and each write as late as possible, which need not occur in one run.")
-    return [*found, Table(f"Hops of {explanation.chain.name}; times are relative to the first read", titles, rows), Sentences(notes)]
+    return [
+        *found,
+        table(f"Hops of {explanation.chain.name}; times are relative to the first read", titles, rows),
+        Sentences(notes),
+    ]
 
 
 def _row(hop: Hop) -> tuple[str, ...]:
     return (
         hop.process,
-        "–" if hop.job is None else f"{hop.job:,}",
+        "-" if hop.job is None else f"{hop.job:,}",
         *(_time(time) for time in (hop.release, hop.start, hop.read, hop.write, hop.wait, hop.run)),
     )
 
 
 def _time(time: Time | None) -> str:
-    return "–" if time is None else time_text(time)
+    return "-" if time is None else time_text(time)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.analyze.results import ProcessorResult
-from amalthea_uros.report.html.badges import badge
-from amalthea_uros.report.html.blocks import Badge, Cell, Section, Table, Tone, columns
+from amalthea_uros.report.html.blocks import Badge, Cell, Section, Tone, table
 from amalthea_uros.report.html.times import UNKNOWN, load_text
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.units import frequency_text
@@ -15,10 +14,10 @@ def section(content: ReportContent) -> Section | None:
     used = [core for core in content.analysis.processors if core.worst != 0]
     if not used:
         return None
-    titles = columns("core", ">clock", ">best", ">mean", ">worst", ">observed", "")
+    titles = ("core", ">clock", ">best", ">mean", ">worst", ">observed", "")
     rows = [_row(core, content) for core in used]
     lead = "The part of its time that a core needs for what is activated; above 100 % work piles up without end."
-    return Section("load", "Load of the cores", lead, [Table("Load of each core", titles, rows)])
+    return Section("load", "Load of the cores", lead, [table("Load of each core", titles, rows)])
 
 
 def _row(core: ProcessorResult, content: ReportContent) -> tuple[Cell, ...]:
@@ -33,6 +32,12 @@ def _row(core: ProcessorResult, content: ReportContent) -> tuple[Cell, ...]:
         load_text(core.best),
         load_text(core.mean),
         worst,
-        "–" if observed is None else load_text(observed),
-        Badge("overload", Tone.BAD) if core.is_overloaded else badge(None, "") if core.worst is not None else Badge("part unknown", Tone.UNKNOWN),
+        "-" if observed is None else load_text(observed),
+        _remark(core),
     )
+
+
+def _remark(core: ProcessorResult) -> Cell:
+    if core.is_overloaded:
+        return Badge("overload", Tone.BAD)
+    return "" if core.worst is not None else Badge("partly unknown", Tone.UNKNOWN)

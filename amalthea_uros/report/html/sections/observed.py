@@ -5,11 +5,11 @@ from __future__ import annotations
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.report.html.badges import badge
-from amalthea_uros.report.html.blocks import Block, Cell, Section, Sentences, Table, columns
+from amalthea_uros.report.html.blocks import Block, Cell, Section, Sentences, table
 from amalthea_uros.report.html.times import about, at_least, at_most
 from amalthea_uros.report.latencies import value_text
 from amalthea_uros.report.process_order import by_core_and_priority
-from amalthea_uros.report.simulated import closing_line, duration_text
+from amalthea_uros.report.simulated import REMINDER, closing_line, duration_text
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.simulate.results import ChainObservation, ChainQuantity, MetricObservation, ProcessObservation, Simulation
 
@@ -25,15 +25,15 @@ def section(content: ReportContent) -> Section | None:
     if content.simulation is None:
         return None
     simulation = content.simulation.simulation
-    blocks: list[Block] = [Sentences([_run(content, simulation), closing_line(simulation)])]
+    blocks: list[Block] = [Sentences([_run(content, simulation), closing_line(simulation).removesuffix(REMINDER).rstrip()])]
     ordered = sorted(simulation.processes, key=lambda each: by_core_and_priority(each.core, each.is_isr, each.priority))
-    titles = columns("process", ">jobs", ">observed min", ">mean", ">max", ">worst case", ">lost", "observed verdict", "remark")
+    titles = ("process", ">jobs", ">observed min", ">mean", ">max", ">worst case", ">lost", "observed verdict", "remark")
     if ordered:
-        blocks.append(Table("Response times: observed and worst case", titles, [_process(each, content) for each in ordered]))
+        blocks.append(table("Response times: observed and worst case", titles, [_process(each, content) for each in ordered]))
     if simulation.chains:
-        titles = columns("chain", "latency", ">values", ">observed min", ">mean", ">max", ">worst case", "remark")
+        titles = ("chain", "latency", ">values", ">observed min", ">mean", ">max", ">worst case", "remark")
         rows = [row for chain in simulation.chains for row in _chain(chain, content)]
-        blocks.append(Table("Latencies: observed and worst case", titles, rows))
+        blocks.append(table("Latencies: observed and worst case", titles, rows))
     lead = "What one simulated run showed, beside the worst case of the analysis: observed values are typical, never a bound."
     return Section("observed", "Observed in a simulation", lead, blocks)
 
@@ -70,4 +70,4 @@ def _chain(chain: ChainObservation, content: ReportContent) -> list[tuple[Cell, 
 
 
 def _observed(found: MetricObservation | None) -> tuple[str, ...]:
-    return ("–",) * 3 if found is None else (at_least(found.min), about(found.mean), at_most(found.max))
+    return ("-",) * 3 if found is None else (at_least(found.min), about(found.mean), at_most(found.max))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.report.html.blocks import Badge, Listing, Section, Table, Tone, columns
+from amalthea_uros.report.html.blocks import Badge, Listing, Section, Tone, table
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.uros.colcon_meta import colcon_meta
 from amalthea_uros.uros.pools import Pool
@@ -14,9 +14,9 @@ def section(content: ReportContent) -> Section | None:
     if not pools:
         return None
     rows = [(each.option, f"{each.needed}", f"{each.available}", _origin(each), _verdict(each)) for each in pools]
-    table = Table("Pools of rmw_microxrcedds", columns("option", ">needed", ">available", "set by", "verdict"), rows)
-    lead = "The middleware takes its objects from pools whose sizes are fixed in the build; this file sets those that the application needs."
-    return Section("pools", "Static pools", lead, [table, Listing("colcon.meta", colcon_meta(pools).splitlines())])
+    sizes = table("Pools of rmw_microxrcedds", ("option", ">needed", ">available", "set by", "verdict"), rows)
+    lead = "The middleware takes its objects from pools of fixed size; this file sets those that the application needs in the build."
+    return Section("pools", "Static pools", lead, [sizes, Listing("colcon.meta", colcon_meta(pools).splitlines())])
 
 
 def _origin(pool: Pool) -> str:

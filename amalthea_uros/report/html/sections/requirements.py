@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.report.html.badges import verdict_badge
-from amalthea_uros.report.html.blocks import Section, Table, columns
+from amalthea_uros.report.html.blocks import Section, table
 from amalthea_uros.report.judged import judged_rows, why
 from amalthea_uros.services.report import ReportContent
 
@@ -13,10 +13,10 @@ def section(content: ReportContent) -> Section | None:
     rows = judged_rows(content.analysis)
     if not rows:
         return None
-    titles = columns("requirement", "what", ">value", ">limit", ">margin", ">used", "claim", "verdict", "why")
+    titles = ("requirement", "what", ">value", ">limit", ">margin", ">used", "claim", "verdict", "why")
     cells = [
         (row.item.name, row.what, row.value, row.limit, row.margin, row.used, row.claim, verdict_badge(row.item), why(row.item))
         for row in rows
     ]
     lead = "“Met” and “missed” are certain; a limit between the known ends of a value is unknown, with its cause."
-    return Section("requirements", "All requirements", lead, [Table("Deadlines, requirements and constraints", titles, cells)])
+    return Section("requirements", "All requirements", lead, [table("Deadlines, requirements and constraints", titles, cells)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.analyze.explanation import ProcessExplanation, explain_process
 from amalthea_uros.analyze.results import ProcessResult
 from amalthea_uros.report.html.badges import verdict_badge
-from amalthea_uros.report.html.blocks import Block, Cell, Folded, Section, Table, columns
+from amalthea_uros.report.html.blocks import Block, Cell, Folded, Section, Table, table
 from amalthea_uros.report.html.times import at_least, at_most, deadline_text
 from amalthea_uros.report.judged import judged_rows, why
 from amalthea_uros.report.process_order import by_core_and_priority
@@ -23,10 +23,9 @@ def section(content: ReportContent) -> Section | None:
         return None
     ordered = sorted(analysis.processes, key=lambda each: by_core_and_priority(each.processor, each.is_isr, each.priority))
     terms = list(dict.fromkeys(term for each in ordered if each.response is not None for term in each.response.terms))
-    titles = columns(
-        "process", "core", ">priority", ">WCET", ">best", ">worst", *(f">{term}" for term in terms), ">deadline", "claim", "verdict", "why"
-    )
-    blocks: list[Block] = [Table("Response times by core and priority", titles, [_row(each, terms) for each in ordered])]
+    times = ("WCET", "best", "worst", *terms, "deadline")
+    titles = ("process", "core", ">priority", *(f">{time}" for time in times), "claim", "verdict", "why")
+    blocks: list[Block] = [table("Response times by core and priority", titles, [_row(each, terms) for each in ordered])]
     blocks += [_explained(each) for each in _tightest(content)]
     if analysis.callbacks:
         blocks.append(_callbacks(content))
@@ -44,7 +43,7 @@ def _row(process: ProcessResult, terms: list[str]) -> tuple[Cell, ...]:
         at_most(process.wcet),
         at_least(response.best if response is not None else None),
         at_most(response.worst if response is not None else None, process.deadline),
-        *(at_most(parts[term]) if term in parts else "–" for term in terms),
+        *(at_most(parts[term]) if parts.get(term) else "-" for term in terms),
         deadline_text(process.deadline, process.is_implicit),
         str(response.claim) if response is not None and response.worst is not None else "",
         verdict_badge(process),
@@ -65,8 +64,8 @@ def _tightest(content: ReportContent) -> list[ProcessExplanation]:
 def _explained(explanation: ProcessExplanation) -> Folded:
     name = explanation.process.name
     rows = [(share.name, f"{share.jobs:,}", time_text(share.time)) for share in explanation.shares]
-    table = Table(f"Interference in the worst case of {name}", columns("by", ">jobs", ">time"), rows)
-    return Folded(f"What delays {name}", [table])
+    shares = table(f"Interference in the worst case of {name}", ("by", ">jobs", ">time"), rows)
+    return Folded(f"What delays {name}", [shares])
 
 
 def _callbacks(content: ReportContent) -> Table:
@@ -84,5 +83,5 @@ def _callbacks(content: ReportContent) -> Table:
                 callback.reason,
             )
         )
-    titles = columns("callback", "process", ">best", ">worst", ">deadline", "claim", "why")
-    return Table("Callbacks, from the activation of the process to the end of the callback", titles, rows)
+    titles = ("callback", "process", ">best", ">worst", ">deadline", "claim", "why")
+    return table("Callbacks, from the activation of the process to the end of the callback", titles, rows)

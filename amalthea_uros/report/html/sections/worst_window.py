@@ -35,6 +35,8 @@ def section(content: ReportContent) -> Section | None:
 def _charts(content: ReportContent) -> Iterator[Callable[[], str]]:
     assert content.simulation is not None
     yield partial(gantt_picture, content.simulation, most_rows=_MOST_ROWS)
-    observed = [chain for chain in worst_chains(content.analysis) if content.simulation.simulation.chains[chain.name].quantities]
+    observed = [
+        chain for chain in worst_chains(content.analysis) if content.simulation.simulation.chains[chain.name].quantities
+    ]
     for chain in observed[:_MOST_CHAINS]:
         yield partial(gantt_picture, content.simulation, chain=chain.name, most_rows=_MOST_ROWS)
