@@ -46,7 +46,8 @@ def judged_rows(analysis: Analysis) -> list[JudgedRow]:
         for each in analysis.processes
         if each.verdict is not None and (each.is_implicit or (each.name, each.deadline) not in stated)
     )
-    return [_row(item, analysis) for item in sorted((*processes, *analysis.requirements), key=_rank)]
+    items: list[Judged] = [*processes, *analysis.requirements]
+    return [_row(item) for item in sorted(items, key=_rank)]
 
 
 def _rank(item: Judged) -> tuple[int, float]:
@@ -54,7 +55,7 @@ def _rank(item: Judged) -> tuple[int, float]:
     return badness, inf if item.margin is None else item.margin
 
 
-def _row(item: Judged, analysis: Analysis) -> JudgedRow:
+def _row(item: Judged) -> JudgedRow:
     if isinstance(item, ProcessResult):
         what = "response time, period" if item.is_implicit else "response time, deadline"
         value = item.response.worst if item.response is not None else None
@@ -70,7 +71,7 @@ def _of(item: Judged, what: str, lower: Time | None, upper: Time | None, limit: 
         item=item,
         what=what,
         value=_value_text(item, lower, upper, limit, is_upper),
-        limit="-" if limit is None else f"{'≤' if is_upper else '≥'} {time_text(limit)}",
+        limit=limit_text(item),
         margin=margin_text(item),
         used=_used(upper, limit) if is_upper else "-",
         claim=claim,
@@ -85,6 +86,13 @@ def _value_text(item: Judged, lower: Time | None, upper: Time | None, limit: Tim
             return "no bound" if item.verdict is Verdict.UNBOUNDED else "unknown"
         return rounded_time_text(safe, Rounding.UP if is_upper else Rounding.DOWN, limit)
     return f"{rounded_time_text(lower, Rounding.DOWN, limit)} to {rounded_time_text(upper, Rounding.UP, limit)}"
+
+
+def limit_text(item: Judged) -> str:
+    """The limit with its direction."""
+    limit = item.deadline if isinstance(item, ProcessResult) else item.limit
+    is_upper = isinstance(item, ProcessResult) or item.is_upper
+    return "-" if limit is None else f"{'≤' if is_upper else '≥'} {time_text(limit)}"
 
 
 def margin_text(item: Judged) -> str:

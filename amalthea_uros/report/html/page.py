@@ -127,8 +127,7 @@ def _verdict(content: ReportContent) -> Verdict:
     tone = tone_of(summary.schedulable)
     overloads = [(core.name, "the core is overloaded") for core in summary.overloaded]
     others = [
-        (item.name, f"{item.verdict}: {why(item)}" if why(item) else str(item.verdict))
-        for item in (*summary.failing, *summary.unknown)
+        (item.name, ": ".join(filter(None, (str(item.verdict), why(item))))) for item in (*summary.failing, *summary.unknown)
     ]
     reasons = list(dict.fromkeys((*overloads, *others)))
     return Verdict(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))

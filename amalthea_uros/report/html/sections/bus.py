@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from amalthea_uros.report.html.blocks import Section, table
 from amalthea_uros.report.html.times import load_text
 from amalthea_uros.services.report import ReportContent
@@ -26,8 +28,6 @@ def section(content: ReportContent) -> Section | None:
         for each in content.assembly.messages
     ]
     titles = ("topic", "direction", ">interval", ">with headers", ">frames", ">identifier", ">transmission", ">bus load")
-    total = load_text(
-        sum((each.bus_load for each in content.assembly.messages), content.assembly.messages[0].bus_load * 0), is_worst=True
-    )
+    total = load_text(sum((each.bus_load for each in content.assembly.messages), Fraction(0)), is_worst=True)
     lead = f"Each message with its headers and maximum bit stuffing; together they need at most {total} of the bus."
     return Section("messages", "Messages on the CAN bus", lead, [table("Messages of the application", titles, rows)])

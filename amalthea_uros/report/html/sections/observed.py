@@ -31,17 +31,17 @@ def section(content: ReportContent) -> Section | None:
     if ordered:
         blocks.append(table("Response times: observed and worst case", titles, [_process(each, content) for each in ordered]))
     if simulation.chains:
-        titles = ("chain", "latency", ">values", ">observed min", ">mean", ">max", ">worst case", "remark")
+        of_chains = ("chain", "latency", ">values", ">observed min", ">mean", ">max", ">worst case", "remark")
         rows = [row for chain in simulation.chains for row in _chain(chain, content)]
-        blocks.append(table("Latencies: observed and worst case", titles, rows))
+        blocks.append(table("Latencies: observed and worst case", of_chains, rows))
     lead = "What one simulated run showed, beside the worst case of the analysis: observed values are typical, never a bound."
     return Section("observed", "Observed in a simulation", lead, blocks)
 
 
 def _run(content: ReportContent, simulation: Simulation) -> str:
-    chosen = ", chosen to limit the work; --duration sets another" if content.is_duration_chosen else ""
-    jobs = sum(each.jobs for each in simulation.processes)
-    return f"Simulated: {duration_text(simulation.duration)}{chosen}; seed {simulation.seed}, mode {simulation.mode}; {counted(jobs, 'job')}."
+    chosen = ", chosen to limit the work (--duration sets another)" if content.is_duration_chosen else ""
+    jobs = counted(sum(each.jobs for each in simulation.processes), "job")
+    return f"Simulated: {duration_text(simulation.duration)}{chosen}, seed {simulation.seed}, mode {simulation.mode}: {jobs}."
 
 
 def _process(process: ProcessObservation, content: ReportContent) -> tuple[Cell, ...]:
@@ -59,7 +59,7 @@ def _process(process: ProcessObservation, content: ReportContent) -> tuple[Cell,
 
 def _chain(chain: ChainObservation, content: ReportContent) -> list[tuple[Cell, ...]]:
     result = content.analysis.chains[chain.name]
-    rows = []
+    rows: list[tuple[Cell, ...]] = []
     for observed, computed in BOUNDED.items():
         found = chain.quantities.get(observed)
         worst = value_text(result.value(computed)).replace("-", "unknown")

@@ -5,10 +5,9 @@ from __future__ import annotations
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
 from amalthea_uros.report.html.badges import badge, verdict_badge
 from amalthea_uros.report.html.blocks import Block, Cell, Section, table
-from amalthea_uros.report.judged import judged_rows, margin_text, requirements_of, why, worst_chains
+from amalthea_uros.report.judged import judged_rows, limit_text, margin_text, requirements_of, why, worst_chains
 from amalthea_uros.report.latencies import value_text
 from amalthea_uros.services.report import ReportContent
-from amalthea_uros.units import time_text
 
 _MOST = 8
 
@@ -37,9 +36,9 @@ def section(content: ReportContent) -> Section | None:
         blocks.append(table(f"Tightest of {len(rows):,} deadlines, requirements and constraints", titles, shown))
     chains = worst_chains(analysis)
     if chains:
-        titles = ("chain", ">reaction time", ">data age", "claim", ">limit", ">margin", "verdict", "why")
+        of_chains = ("chain", ">reaction time", ">data age", "claim", ">limit", ">margin", "verdict", "why")
         shown_chains = [_chain(chain, analysis) for chain in chains[:_MOST]]
-        blocks.append(table(f"Worst of {len(chains):,} event chains", titles, shown_chains))
+        blocks.append(table(f"Worst of {len(chains):,} event chains", of_chains, shown_chains))
     if not blocks:
         return None
     lead = "Missed and unknown limits come first, then those with the least margin; “exact” values occur, “bounds” are never exceeded."
@@ -50,16 +49,11 @@ def _chain(chain: ChainResult, analysis: Analysis) -> tuple[Cell, ...]:
     values = [chain.value(quantity) for quantity in (Quantity.MAX_REDUCED_REACTION_TIME, Quantity.MAX_REDUCED_DATA_AGE)]
     claims = dict.fromkeys(str(value.claim) for value in values if value is not None and value.value is not None)
     worst = next(iter(requirements_of(chain.name, analysis)), None)
-    limit = (
-        "-"
-        if worst is None or worst.limit is None
-        else f"{worst.quantity} {'≤' if worst.is_upper else '≥'} {time_text(worst.limit)}"
-    )
     return (
         chain.name,
         *(value_text(value).replace("-", "unknown") for value in values),
         ", ".join(claims),
-        limit,
+        "-" if worst is None or worst.limit is None else f"{worst.quantity} {limit_text(worst)}",
         "-" if worst is None else margin_text(worst),
         badge(None) if worst is None else verdict_badge(worst),
         chain.reason or ("" if worst is None else why(worst)),
