@@ -50,17 +50,27 @@ _SHEET = f"""
 .amuros-picture .late{{fill:{_ALERT};fill-opacity:.3;stroke:{_ALERT}}}
 .amuros-picture .bound{{stroke:#0072b2;stroke-width:2;fill:none}}
 .amuros-picture .empty{{fill:none}}
+.amuros-picture .good{{stroke:#009e73;stroke-width:2;fill:none}}
+.amuros-picture .unsure{{stroke:currentColor;stroke-opacity:.6;stroke-width:2;fill:none}}
+.amuros-picture .frame{{fill:currentColor;fill-opacity:.03;stroke:currentColor;stroke-opacity:.35}}
+.amuros-picture .box{{fill:#fff;stroke:currentColor;stroke-width:1.2}}
+.amuros-picture .flow{{stroke:currentColor;stroke-opacity:.7;stroke-width:1.2;stroke-linejoin:round;fill:none}}
+.amuros-picture .way{{stroke-width:4;stroke-opacity:.75;stroke-linejoin:round;fill:none}}
 {_TASKS}
 .amuros-picture .bars{{stroke:#fff;stroke-width:.5}}
 .amuros-picture .steps{{fill:none;stroke-width:2}}
 @media screen and (prefers-color-scheme:dark){{
 .amuros-picture{{color:#e6e8eb}}
-.amuros-picture .paper{{fill:#15181d}}
+.amuros-picture .paper,.amuros-picture .box{{fill:#15181d}}
 .amuros-picture .halo,.amuros-picture .gap,.amuros-picture .bars{{stroke:#15181d}}
 .amuros-picture .label{{fill:#15181d}}
 .amuros-picture .bound{{stroke:#56b4e9}}
 }}
 """
+
+_UNKNOWN_ID = "amuros-unknown"
+#: The fill of what is unknown.
+UNKNOWN = f"url(#{_UNKNOWN_ID})"
 
 _ARROW = "amuros-arrow"
 #: The value of `marker_end` for an arrow.
@@ -79,9 +89,16 @@ def style_sheet() -> Markup:
     return element("style", Markup(_SHEET))
 
 
-def hatches() -> Markup:
-    """The patterns of all states but those that have none, in all colours."""
-    return joined(_hatch(state, colour) for state in _HATCHES for colour in range(len(PALETTE)))
+def hatches(body: str) -> Markup:
+    """The patterns that a body uses: of all states but those that have none, in all colours, and of what is unknown."""
+    patterns = {_hatch_id(state, colour): _hatch(state, colour) for state in _HATCHES for colour in range(len(PALETTE))}
+    patterns[_UNKNOWN_ID] = _unknown()
+    return joined(pattern for name, pattern in patterns.items() if f"url(#{name})" in body)
+
+
+def _unknown() -> Markup:
+    lines = element("path", d="M-1 9L9 -1M-1 1L1 -1M7 9L9 7", class_="unsure", stroke_width=1)
+    return element("pattern", lines, id=_UNKNOWN_ID, width=8, height=8, patternUnits="userSpaceOnUse")
 
 
 def arrow_tip() -> Markup:

@@ -58,7 +58,8 @@ class TimeAxis:
     @property
     def origin(self) -> Time:
         """What its labels are relative to: zero, or a round time before a window that is far from zero."""
-        if len(number_text(Fraction(self.end, self.unit[1]))) <= _LONGEST and self.start >= 0:
+        is_near = len(number_text(Fraction(self.end, self.unit[1]))) <= _LONGEST and self.start >= 0
+        if is_near or self.start <= 0 <= self.end:
             return 0
         thousand = 1000 * self.unit[1]
         return self.start // thousand * thousand

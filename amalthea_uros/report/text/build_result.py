@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Single, Stimulus
 from amalthea_uros.perf.system import System
+from amalthea_uros.report.activation_text import activation_text
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.units import time_text
@@ -51,20 +51,6 @@ def _isrs(terminal: Terminal, system: System) -> None:
     if rows:
         terminal.heading(f"Interrupt service routines ({len(rows)})")
         terminal.table(("ISR", "activated", "priority", "core"), rows, right=(2,))
-
-
-def activation_text(stimulus: Stimulus) -> str:
-    """When a stimulus activates, in a few words."""
-    match stimulus:
-        case Periodic(period=period, offset=offset):
-            return f"every {time_text(period)}" + (f" from {time_text(offset)}" if offset else "")
-        case RelativePeriodic():
-            return "sporadic"
-        case Burst(period=period, count=count):
-            return f"{count} times every {time_text(period)}"
-        case Single(time=time):
-            return f"once at {time_text(time)}"
-    return {"InterProcess": "triggered", "Synthetic": "at listed times"}.get(type(stimulus).__name__, type(stimulus).__name__)
 
 
 def _traffic(terminal: Terminal, assembly: Assembly) -> None:

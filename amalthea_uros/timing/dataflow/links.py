@@ -84,6 +84,15 @@ class Firing(NamedTuple):
     is_before: bool = False
 
 
+class DirectLink(NamedTuple):
+    """From one process to another one, by the name of a label, channel, OS event, server runnable or stimulus."""
+
+    kind: LinkKind
+    source: str
+    name: str
+    target: str
+
+
 @dataclass(slots=True)
 class Dataflow:
     """The positions of activities in jobs, and the links between jobs; results are cached."""
@@ -143,24 +152,28 @@ class Dataflow:
         channel = self.system.channels.get(name)
         return channel is not None and channel.external
 
-    def direct(self) -> Iterator[tuple[str, str, str]]:
-        """All links between different processes, as (process, name of the link, process)."""
-        ways = ((writes, reads), *((source, target) for _, source, target in _SYNCHRONISATION))
-        for source, target in ways:
+    def direct(self) -> Iterator[DirectLink]:
+        """All links between different processes."""
+        ways = ((LinkKind.DATA, writes, reads), *_SYNCHRONISATION)
+        for kind, source, target in ways:
             consumers: dict[str, list[str]] = {}
             for process in self.system.processes:
                 for name in self.by_name(process, target):
                     consumers.setdefault(name, []).append(process)
             for process in self.system.processes:
                 for name in self.by_name(process, source):
-                    yield from ((process, name, other) for other in consumers.get(name, ()) if other != process)
+                    found = LinkKind.TOPIC if kind is LinkKind.DATA and self.is_topic(name) else kind
+                    yield from (
+                        DirectLink(found, process, name, other) for other in consumers.get(name, ()) if other != process
+                    )
         activated: dict[str, list[str]] = {}
         for process in self.system.processes:
             for stimulus in self._stimuli(process):
                 activated.setdefault(stimulus, []).append(process)
         for process in self.system.processes:
             for stimulus in (firing.stimulus for firing in self.firings(process)):
-                yield from ((process, stimulus, other) for other in activated.get(stimulus, ()) if other != process)
+                others = (other for other in activated.get(stimulus, ()) if other != process)
+                yield from (DirectLink(LinkKind.TRIGGER, process, stimulus, other) for other in others)
 
     def by_name(self, process: str, names_of: NamesOf) -> _Accesses:
         """The accesses of a process, by the names of the data."""

@@ -189,10 +189,10 @@ def _graph(dataflow: Dataflow) -> nx.DiGraph:
     """The graph of processes and their links."""
     graph: nx.DiGraph = nx.DiGraph()
     graph.add_nodes_from(dataflow.system.processes)
-    for process, name, target in dataflow.direct():
-        if not graph.has_edge(process, target):
-            graph.add_edge(process, target, links=set())
-        graph.edges[process, target]["links"].add(name)
+    for link in dataflow.direct():
+        if not graph.has_edge(link.source, link.target):
+            graph.add_edge(link.source, link.target, links=set())
+        graph.edges[link.source, link.target]["links"].add(link.name)
     return graph
 
 

@@ -1,0 +1,362 @@
+"""A system: its tasks and ISRs on their cores, what activates them, and what flows between them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import pairwise
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.analyze.results import Analysis, ProcessorResult
+from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.perf.software import Isr, Process
+from amalthea_uros.perf.system import System
+from amalthea_uros.report.flows import ChainPath, SystemFlows
+from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
+from amalthea_uros.report.pictures.style import PALETTE, SMALL_SIZE, TEXT_SIZE
+from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
+from amalthea_uros.report.pictures.system_layout import BOX, DrawnWire, Layout, Point, Wire, lay_out
+from amalthea_uros.report.pictures.text_widths import elided
+from amalthea_uros.report.pictures.verdict_marks import MARK, draw_verdict, verdict_entries
+from amalthea_uros.timing.allocation import allocated_cores
+from amalthea_uros.timing.dataflow.links import LinkKind
+from amalthea_uros.timing.load import activation_rates, loads
+
+#: With more processes or flows, the picture shows cores and the flows between them.
+MOST_PROCESSES, MOST_FLOWS = 40, 80
+#: No more cores, flows between cores, and event chains are drawn.
+MOST_CORES, MOST_CORE_FLOWS, MOST_CHAINS = 40, 60, len(PALETTE)
+#: Pixels.
+_GAP, _INSET, _HEAD, _SHIFT, _CHIP = 10, 9, 6.0, 2.5, 4
+_NO_CORE = "no core, or several ones"
+_DASHES = {
+    LinkKind.TRIGGER: "7 3",
+    LinkKind.OS_EVENT: "2 3",
+    LinkKind.SERVER_CALL: "2 3",
+    LinkKind.TOPIC: "9 3 2 3",
+}
+_MEANINGS = {
+    LinkKind.DATA: "data",
+    LinkKind.TRIGGER: "activation by a trigger",
+    LinkKind.OS_EVENT: "OS event",
+    LinkKind.SERVER_CALL: "server call",
+    LinkKind.TOPIC: "messages of a topic",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Node:
+    """The content of a box.
+
+    Attributes
+    ----------
+    lines : below the name
+    chains : the numbers of the chains that pass it
+    """
+
+    name: str
+    lines: tuple[str, ...]
+    verdict: Verdict | None = None
+    chains: tuple[int, ...] = ()
+    is_round: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Band:
+    """A core with its boxes."""
+
+    header: str
+    nodes: tuple[_Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Content:
+    """What a picture shows, before it has a layout; there is a kind for each wire."""
+
+    bands: tuple[_Band, ...]
+    wires: tuple[Wire, ...]
+    kinds: tuple[LinkKind, ...]
+    notes: tuple[str, ...]
+    chains: tuple[ChainPath, ...] = field(default=())
+
+
+def draw_system(system: System, analysis: Analysis | None = None) -> Markup:
+    """The processes of a system in boxes, on their cores and the most urgent first, and the flows between them.
+
+    Large systems are shown by their cores.
+
+    Parameters
+    ----------
+    analysis : shows loads and verdicts, too
+    """
+    shown = SystemFlows(system)
+    is_large = len(system.processes) > MOST_PROCESSES or len(shown.flows) > MOST_FLOWS
+    return _drawn(_of_cores(shown, analysis) if is_large else _of_processes(shown, analysis), _subtitle(shown))
+
+
+# Content
+
+
+def _of_processes(shown: SystemFlows, analysis: Analysis | None) -> _Content:
+    chains = [chain for chain in shown.chains if chain.processes]
+    own_loads = {} if analysis is None else _loads(analysis)
+    bands = tuple(
+        _Band(_core_text(core, analysis), tuple(_node(each, shown, analysis, own_loads, chains) for each in processes))
+        for core, processes in shown.cores.items()
+    )
+    flows = [Wire(flow.source, flow.targets, ", ".join(flow.names)) for flow in shown.flows]
+    outer = [Wire(source.name, source.targets, f"{source.name} ({source.kind})", is_outer=True) for source in shown.sources]
+    kinds = [
+        *(flow.kind for flow in shown.flows),
+        *(LinkKind.TRIGGER if source.is_stimulus else LinkKind.DATA for source in shown.sources),
+    ]
+    return _Content(bands, (*flows, *outer), tuple(kinds), tuple(_notes(shown)), tuple(chains[:MOST_CHAINS]))
+
+
+def _node(
+    process: Process,
+    shown: SystemFlows,
+    analysis: Analysis | None,
+    own_loads: Mapping[str, Fraction],
+    chains: Sequence[ChainPath],
+) -> _Node:
+    priority, load = shown.placement(process.name).priority, own_loads.get(process.name)
+    details = (
+        *(["ISR"] if isinstance(process, Isr) else []),
+        *([] if priority is None else [f"priority {priority}"]),
+        *([] if load is None else [f"load {_percent(load)}"]),
+    )
+    return _Node(
+        process.name,
+        (shown.activation(process.name), ", ".join(details)),
+        None if analysis is None else analysis[process.name].verdict,
+        tuple(index for index, chain in enumerate(chains[:MOST_CHAINS]) if process.name in chain.processes),
+        isinstance(process, Isr),
+    )
+
+
+def _loads(analysis: Analysis) -> dict[str, Fraction]:
+    """The worst-case load by each process, where it is known."""
+    context = analysis.solution.context
+    rates = activation_rates(context.system, context.activations)
+    found = loads(allocated_cores(context.system), rates, context.demand_model)
+    return {process: load for of_core in found.values() for process, load in of_core.items()}
+
+
+def _percent(load: Fraction) -> str:
+    return f"{float(100 * load):.3g} %"
+
+
+def _core_text(core: str | None, analysis: Analysis | None) -> str:
+    load = "" if core is None else _core_load(core, analysis)
+    return f"{core or _NO_CORE}{load and ', '}{load}"
+
+
+def _core_load(core: str, analysis: Analysis | None) -> str:
+    result = next((each for each in _processors(analysis) if each.name == core), None)
+    if result is None:
+        return ""
+    return f"load {_percent(result.worst)}" if result.worst is not None else f"load at least {_percent(result.at_least)}"
+
+
+def _processors(analysis: Analysis | None) -> Iterable[ProcessorResult]:
+    return () if analysis is None else analysis.processors
+
+
+def _of_cores(shown: SystemFlows, analysis: Analysis | None) -> _Content:
+    """One box for each core, and the numbers of flows between them."""
+    cores = sorted(shown.cores.items(), key=lambda item: -len(item[1]))[:MOST_CORES]
+    core_of = {process.name: _name(core) for core, processes in shown.cores.items() for process in processes}
+    between = Counter(
+        (core_of[flow.source], core_of[target]) for flow in shown.flows for target in flow.targets for _ in flow.names
+    )
+    drawn = {_name(core) for core, _ in cores}
+    most = [ends for ends, _ in between.most_common() if ends[0] != ends[1] and drawn.issuperset(ends)]
+    wires = tuple(Wire(*_one_target(ends), f"{between[ends]:,}") for ends in sorted(most[:MOST_CORE_FLOWS]))
+    bands = tuple(
+        _Band(
+            "",
+            (
+                _Node(
+                    _name(core),
+                    (
+                        _counts(own),
+                        _core_load(core or "", analysis),
+                        f"{counted(between[_name(core), _name(core)], 'flow')} within",
+                    ),
+                ),
+            ),
+        )
+        for core, own in cores
+    )
+    notes = [
+        f"Only cores are shown, because there are {counted(len(shown.system.processes), 'process')} with {counted(len(shown.flows), 'flow')};"
+        " the numbers at the arrows count flows.",
+        *(
+            [f"{counted(len(shown.cores) - len(cores), 'core')} with fewer processes not shown."]
+            if len(shown.cores) > len(cores)
+            else []
+        ),
+        *(
+            [f"{counted(len(most) - len(wires), 'connection')} of cores with fewer flows not shown."]
+            if len(most) > len(wires)
+            else []
+        ),
+        *_problems(shown),
+    ]
+    return _Content(bands, wires, (LinkKind.DATA,) * len(wires), tuple(notes))
+
+
+def _name(core: str | None) -> str:
+    return core or _NO_CORE
+
+
+def _one_target(ends: tuple[str, str]) -> tuple[str, tuple[str, ...]]:
+    return ends[0], (ends[1],)
+
+
+def _counts(processes: Sequence[Process]) -> str:
+    isrs = sum(isinstance(process, Isr) for process in processes)
+    parts = ((len(processes) - isrs, "task"), (isrs, "ISR"))
+    return ", ".join(counted(count, noun) for count, noun in parts if count)
+
+
+def _notes(shown: SystemFlows) -> list[str]:
+    empty = [core for core in shown.system.cores if core not in shown.cores]
+    left_out = sum(bool(chain.processes) for chain in shown.chains) - MOST_CHAINS
+    return [
+        *([f"Without processes: {', '.join(empty)}."] if empty else []),
+        *([f"{counted(left_out, 'event chain')} not shown."] if left_out > 0 else []),
+        *(f"Event chain {chain.name} not shown: {chain.reason}." for chain in shown.chains[:MOST_CHAINS] if chain.reason),
+        *_problems(shown),
+    ]
+
+
+def _problems(shown: SystemFlows) -> list[str]:
+    return [f"No flows are shown: {shown.problem}."] if shown.problem else []
+
+
+def _subtitle(shown: SystemFlows) -> str:
+    system = shown.system
+    parts = (
+        (len(system.cores), "core"),
+        (len(system.software.tasks), "task"),
+        (len(system.software.isrs), "ISR"),
+        (len(shown.flows), "flow"),
+        (len(system.chains), "event chain"),
+    )
+    return ", ".join(counted(count, noun) for count, noun in parts if count) or "no processes"
+
+
+# Drawing
+
+
+def _drawn(content: _Content, subtitle: str) -> Markup:
+    bands = [[node.name for node in band.nodes] for band in content.bands]
+    layout = lay_out(bands, content.wires, MARGIN, TOP)
+    width = max(WIDTH, layout.right + MARGIN)
+    legend, height = draw_legend(_legend(content), content.notes, layout.bottom + _GAP, width)
+    nothing = element("text", text("the model has no processes"), class_="muted", x=MARGIN, y=TOP + 20)
+    by_ends = {
+        (wire.wire.source, target): way for wire in layout.wires if not wire.wire.is_outer for target, way in wire.ways.items()
+    }
+    body = (
+        *(_frame(band, top, size, width) for band, (top, size) in zip(content.bands, layout.bands, strict=True)),
+        *(_chain(chain, index, by_ends) for index, chain in enumerate(content.chains)),
+        *(_wire(wire, kind) for wire, kind in zip(layout.wires, content.kinds, strict=True)),
+        *(_box(node, layout) for band in content.bands for node in band.nodes),
+        *(() if content.bands else (nothing,)),
+        legend,
+    )
+    return document("System", subtitle, body, height + MARGIN + (0 if content.bands else 30), width)
+
+
+def _frame(band: _Band, top: float, height: float, width: float) -> Markup:
+    frame = element("rect", class_="frame", x=MARGIN, y=top, width=width - 2 * MARGIN, height=height, rx=6)
+    header = elided(band.header, TEXT_SIZE, width - 4 * MARGIN, is_bold=True)
+    return element(
+        "g", tooltip(band.header), frame, element("text", text(header), class_="header", x=MARGIN + _INSET, y=top + 17)
+    )
+
+
+def _box(node: _Node, layout: Layout) -> Markup:
+    """A box with its lines; ISRs have round ends."""
+    box = layout.boxes[node.name]
+    outline = element("rect", class_="box", x=box.left, y=box.top, width=BOX, height=box.height, rx=16 if node.is_round else 3)
+    room = BOX - 2 * _INSET
+    name = elided(node.name, TEXT_SIZE, room - (MARK + 4 if node.verdict else 0), is_bold=True)
+    parts = [element("text", text(name), class_="header", x=box.left + _INSET, y=box.top + 17)]
+    for line, content in enumerate(filter(None, node.lines)):
+        shown = elided(content, SMALL_SIZE, room)
+        parts.append(element("text", text(shown), class_="small muted", x=box.left + _INSET, y=box.top + 31 + 13 * line))
+    parts += [
+        element("circle", class_=f"c{chain}", cx=box.right - 12 - 11 * place, cy=box.top + box.height, r=_CHIP)
+        for place, chain in enumerate(reversed(node.chains))
+    ]
+    mark = draw_verdict(node.verdict, box.right - MARK, box.top + 13)
+    tip = ", ".join(filter(None, (node.name, *node.lines, str(node.verdict or ""))))
+    return element("g", tooltip(tip), outline, *parts, mark)
+
+
+def _wire(drawn: DrawnWire, kind: LinkKind) -> Markup:
+    """A line to each target with an arrow at its end, and its names above its start."""
+    way = "".join(_path(points) for points in drawn.ways.values())
+    heads = "".join(_head(*points[-2:]) for points in drawn.ways.values())
+    (x, y), wire = drawn.start, drawn.wire
+    label = element("text", text(elided(wire.label, SMALL_SIZE, drawn.room - 6)), class_="small", x=x + 5, y=y - 3)
+    tip = (
+        f"{wire.source} to {', '.join(wire.targets)}: {wire.label}"
+        if not wire.is_outer
+        else f"{wire.label}, to {', '.join(wire.targets)}"
+    )
+    start = [element("circle", class_="head", cx=x, cy=y, r=3)] if wire.is_outer else []
+    line = element("path", class_="flow", stroke_dasharray=_DASHES.get(kind, "none"), d=way)
+    return element("g", tooltip(tip), line, element("path", class_="head", d=heads), *start, label)
+
+
+def _path(points: Sequence[Point]) -> str:
+    (x, y), *others = points
+    return f"M{number(x)} {number(y)}" + "".join(f"L{number(x)} {number(y)}" for x, y in others)
+
+
+def _head(before: Point, end: Point) -> str:
+    """The last part of a line is horizontal."""
+    back = -_HEAD if end[0] > before[0] else _HEAD
+    return f"M{number(end[0])} {number(end[1])}l{back:g} -3.2v6.4z"
+
+
+def _chain(chain: ChainPath, index: int, by_ends: Mapping[tuple[str, str], Sequence[Point]]) -> Markup:
+    """The lines along a chain in its colour, a little beside each other if several chains use them."""
+    path = "".join(_path(by_ends[ends]) for ends in pairwise(chain.processes) if ends in by_ends)
+    if not path:
+        return Markup("")
+    place = f"translate(0 {number(_SHIFT * (index + 1))})"
+    line = element("path", class_=f"t{index} way", d=path, transform=place)
+    return element("g", tooltip(_chain_text(chain)), line)
+
+
+def _chain_text(chain: ChainPath) -> str:
+    return f"event chain {chain.name}: {', '.join(chain.processes)}"
+
+
+def _legend(content: _Content) -> list[LegendEntry]:
+    entries = [LegendEntry(_line_key(kind), _MEANINGS[kind]) for kind in dict.fromkeys(content.kinds)]
+    entries += [
+        LegendEntry(_chain_key(chain, index), f"event chain {chain.name}") for index, chain in enumerate(content.chains)
+    ]
+    nodes = [node for band in content.bands for node in band.nodes]
+    if any(node.is_round for node in nodes):
+        entries.append(LegendEntry(element("rect", class_="box", x=-9, y=-6, width=18, height=12, rx=6), "ISR"))
+    return entries + verdict_entries({node.verdict for node in nodes})
+
+
+def _line_key(kind: LinkKind) -> Markup:
+    line = element("path", class_="flow", stroke_dasharray=_DASHES.get(kind, "none"), d="M-10 0H9")
+    return Markup(line + element("path", class_="head", d="M9 0l-6 -3.2v6.4z"))
+
+
+def _chain_key(chain: ChainPath, index: int) -> Markup:
+    line = element("path", class_=f"t{index} way", d="M-9 0H9")
+    return element("g", tooltip(_chain_text(chain)), line, element("circle", class_=f"c{index}", r=_CHIP))
