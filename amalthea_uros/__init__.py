@@ -9,6 +9,7 @@ This module is the public interface:
 
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
+- reports of files, models and systems: `report`
 - simulations of files, models and systems: `simulate`; their events: `EventTable`; changes of values: `parse_change`,
   `parse_sweep`
 - AMALTHEA models: `Model`, `check`, `extract`; all AMALTHEA classes are in `amuros.am`
@@ -67,6 +68,8 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Reference as Reference
     from amalthea_uros.perf.activities import Communication as Communication
     from amalthea_uros.perf.system import System as System
+    from amalthea_uros.report.library import Report as Report
+    from amalthea_uros.report.library import report as report
     from amalthea_uros.services.analyze import AnalysisResult as AnalysisResult
     from amalthea_uros.services.analyze import analyze_files as analyze_files
     from amalthea_uros.services.build import BuildResult as BuildResult
@@ -135,6 +138,7 @@ _NAMES = {
     "metamodel.model": ("Document", "Model", "Reference"),
     "perf.activities": ("Communication",),
     "perf.system": ("System",),
+    "report.library": ("Report", "report"),
     "services.analyze": ("AnalysisResult", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
     "services.campaign.run": ("Outcome", "Run"),

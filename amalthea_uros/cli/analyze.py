@@ -10,19 +10,13 @@ import click
 
 from amalthea_uros.analyze.results import EXPLAINED, Quantity
 from amalthea_uros.analyze.summary import Schedulable
+from amalthea_uros.cli.failing import FAILING, fail_on_option
 from amalthea_uros.cli.files import INPUT
 from amalthea_uros.cli.output import Output, output_option, show_findings, show_line, shows_text, verbose_option, write_outputs
 from amalthea_uros.cli.settings_options import Assignment, settings_options
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail, explain
 from amalthea_uros.timing.settings import Settings
-
-#: The closing verdicts that make the exit code 1.
-_FAILING = {
-    "missed": (Schedulable.NO,),
-    "unknown": (Schedulable.NO, Schedulable.UNKNOWN),
-    "never": (),
-}
 
 
 @click.command("analyze")
@@ -63,13 +57,7 @@ _FAILING = {
     is_flag=True,
     help="Show by how much execution times can increase before a limit is missed.",
 )
-@click.option(
-    "--fail-on",
-    type=click.Choice(list(_FAILING)),
-    default="missed",
-    show_default=True,
-    help="What makes the exit code 1: something is missed, lost or overloaded; or also unknown; or nothing.",
-)
+@fail_on_option
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
 @click.option("--metrics", "with_metrics", is_flag=True, help="Show minimum, mean and maximum of all metrics of each process.")
 @output_option(AnalysisResult)
@@ -112,4 +100,4 @@ def command(
     schedulable = result.analysis.summary.schedulable
     if schedulable is not Schedulable.YES and (as_text is not None or not shows_text(outputs)):
         show_line(closing_line(result.analysis.summary))
-    sys.exit(1 if schedulable in _FAILING[fail_on] else 0)
+    sys.exit(1 if schedulable in FAILING[fail_on] else 0)

@@ -25,6 +25,7 @@ COMMANDS = {
     "fmt": "Rewrite models in canonical form.",
     "info": "Show the content of a model.",
     "migrate": "Convert models to another AMALTHEA version.",
+    "report": "Write a report: one HTML page, or a summary in Markdown.",
     "rules": "List the rules of check.",
     "schema": "Print the JSON Schema of app.yaml.",
     "simulate": "Simulate the system, once or for many variants and seeds.",

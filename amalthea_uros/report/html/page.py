@@ -28,6 +28,7 @@ from amalthea_uros.report.html.sections import (
     pools,
     requirements,
     response_times,
+    system,
     tightest,
     worst_window,
 )
@@ -39,6 +40,7 @@ from amalthea_uros.services.report import ReportContent
 _SECTIONS: Sequence[Callable[[ReportContent], Section | None]] = (
     changes.section,
     tightest.section,
+    system.section,
     load.section,
     response_times.section,
     observed.section,

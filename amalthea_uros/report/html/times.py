@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
-from math import ceil, floor
 
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
@@ -30,6 +30,6 @@ def deadline_text(deadline: Time | None, is_implicit: bool) -> str:
     return "-" if deadline is None else f"{time_text(deadline)}{' (period)' if is_implicit else ''}"
 
 
-def load_text(load: Fraction | None, *, is_worst: bool = False) -> str:
-    """A load in percent; the worst is rounded up."""
-    return UNKNOWN if load is None else f"{(ceil if is_worst else floor)(load * 100_000) / 1000:.3f} %"
+def load_text(load: Fraction | None, rounding: Callable[[Fraction], int] = round) -> str:
+    """A load in percent; bounds are rounded so that they remain bounds."""
+    return UNKNOWN if load is None else f"{rounding(load * 100_000) / 1000:.3f} %"

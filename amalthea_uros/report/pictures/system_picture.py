@@ -16,7 +16,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.report.flows import ChainPath, SystemFlows
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import PALETTE, SMALL_SIZE, TEXT_SIZE
-from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
+from amalthea_uros.report.pictures.svg import Markup, element, number, text, tooltip
 from amalthea_uros.report.pictures.system_layout import BOX, DrawnWire, Layout, Point, Wire, lay_out
 from amalthea_uros.report.pictures.text_widths import elided
 from amalthea_uros.report.pictures.verdict_marks import MARK, draw_verdict, verdict_entries

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from amalthea_uros.analyze.chains.explanation import ChainExplanation, Hop, explain_chain
-from amalthea_uros.analyze.results import Claim
+from amalthea_uros.analyze.results import Claim, Quantity
 from amalthea_uros.report.html.blocks import Block, Heading, Section, Sentences, table
-from amalthea_uros.report.judged import decisive_quantity, worst_chains
+from amalthea_uros.report.judged import LIMITED, decisive_quantity, requirements_of, worst_chains
 from amalthea_uros.report.latencies import value_text
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.units import Time, time_text
@@ -20,8 +20,10 @@ def section(content: ReportContent) -> Section | None:
     if not chains:
         return None
     blocks: list[Block] = []
-    for chain in chains[:MOST_CHAINS]:
-        blocks += _blocks(explain_chain(content.analysis, chain.name, decisive_quantity(chain.name, content.analysis)))
+    for number, chain in enumerate(chains[:MOST_CHAINS]):
+        quantity = decisive_quantity(chain.name, content.analysis)
+        limit = _limit(chain.name, quantity, content)
+        blocks += _blocks(explain_chain(content.analysis, chain.name, quantity), limit, f"hops-{number}")
     if len(chains) > MOST_CHAINS:
         sentence = f"The {MOST_CHAINS} worst of {len(chains):,} chains are shown; amuros analyze --explain NAME explains any."
         blocks.append(Sentences([sentence]))
@@ -29,7 +31,7 @@ def section(content: ReportContent) -> Section | None:
     return Section("chains", "Worst cases of the event chains", lead, blocks)
 
 
-def _blocks(explanation: ChainExplanation) -> list[Block]:
+def _blocks(explanation: ChainExplanation, limit: Time | None, name: str) -> list[Block]:
     value = explanation.value
     quantity = explanation.quantity.removeprefix("max_reduced_").replace("_", " ")
     found: list[Block] = [Heading(f"{explanation.chain.name}: {quantity} {value_text(value).replace('-', 'unknown')}")]
@@ -47,6 +49,12 @@ def _blocks(explanation: ChainExplanation) -> list[Block]:
         table(f"Hops of {explanation.chain.name}; times are relative to the first read", titles, rows),
         Sentences(notes),
     ]
+
+
+def _limit(chain: str, quantity: Quantity, content: ReportContent) -> Time | None:
+    """The tightest limit of a latency."""
+    limits = (each for each in requirements_of(chain, content.analysis) if each.is_upper and LIMITED[each.quantity] is quantity)
+    return min((each.limit for each in limits if each.limit is not None), default=None)
 
 
 def _row(hop: Hop) -> tuple[str, ...]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from amalthea_uros.analyze.explanation import ProcessExplanation, explain_process
 from amalthea_uros.analyze.results import ProcessResult
 from amalthea_uros.report.html.badges import verdict_badge
-from amalthea_uros.report.html.blocks import Block, Cell, Folded, Section, Table, table
+from amalthea_uros.report.html.blocks import Block, Cell, Figure, Folded, Section, Table, table
 from amalthea_uros.report.html.times import at_least, at_most, deadline_text
 from amalthea_uros.report.judged import judged_rows, why
+from amalthea_uros.report.pictures.response_bars import draw_responses
 from amalthea_uros.report.process_order import by_core_and_priority
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.units import time_text
@@ -25,7 +26,9 @@ def section(content: ReportContent) -> Section | None:
     terms = list(dict.fromkeys(term for each in ordered if each.response is not None for term in each.response.terms))
     times = ("WCET", "best", "worst", *terms, "deadline")
     titles = ("process", "core", ">priority", *(f">{time}" for time in times), "claim", "verdict", "why")
-    blocks: list[Block] = [table("Response times by core and priority", titles, [_row(each, terms) for each in ordered])]
+    simulation = content.simulation.simulation if content.simulation is not None else None
+    blocks: list[Block] = [Figure("responses", draw_responses(analysis, simulation))]
+    blocks += [table("Response times by core and priority", titles, [_row(each, terms) for each in ordered])]
     blocks += [_explained(each) for each in _tightest(content)]
     if analysis.callbacks:
         blocks.append(_callbacks(content))
