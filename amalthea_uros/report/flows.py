@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
-from amalthea_uros.perf.software import Channel, Isr, Process
+from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.activation_text import activation_text
@@ -35,10 +35,14 @@ class Flow:
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A stimulus that is not periodic, or a channel that no process of the system fills, and the processes that it activates or feeds."""
+    """What comes from outside: a stimulus that is not periodic, or a channel that no process fills.
+
+    Attributes
+    ----------
+    targets : the processes that it activates or feeds
+    """
 
     name: str
-    kind: str
     targets: tuple[str, ...]
     is_stimulus: bool
 
@@ -109,7 +113,7 @@ class SystemFlows:
         for stimulus in self.system.stimuli.stimuli:
             targets = tuple(each.name for each in self.system.processes.values() if stimulus.name in each.stimuli)
             if targets and not isinstance(stimulus, Periodic | InterProcess | EventTriggered):
-                yield Source(stimulus.name, activation_text(stimulus), targets, is_stimulus=True)
+                yield Source(stimulus.name, targets, is_stimulus=True)
 
     def _messages(self) -> Iterable[Source]:
         dataflow, processes = self.context.dataflow, self.system.processes
@@ -117,7 +121,7 @@ class SystemFlows:
             if not any(channel.name in dataflow.by_name(name, writes) for name in processes):
                 targets = tuple(name for name in processes if channel.name in dataflow.by_name(name, reads))
                 if targets:
-                    yield Source(channel.name, _kind(channel), targets, is_stimulus=False)
+                    yield Source(channel.name, targets, is_stimulus=False)
 
     @cached_property
     def chains(self) -> tuple[ChainPath, ...]:
@@ -141,7 +145,3 @@ class SystemFlows:
         stimuli = self.system.stimuli_by_name
         found = [activation_text(stimuli[name]) for name in self.system.processes[process].stimuli if name in stimuli]
         return ", ".join(found) or "not activated"
-
-
-def _kind(channel: Channel) -> str:
-    return "topic" if channel.external else "channel"

@@ -210,7 +210,7 @@ def test_a_window_shows_what_the_whole_trace_shows_there(lengths, start, width):
 
 
 def test_a_chart_is_drawn_from_events():
-    assert "Interrupt, job 4: running on Core_0 for 10 ps from 20 ps on" in gantt(
+    assert "Interrupt, job 4: running on Core_0 for 10 ps from 20 ps to 30 ps" in gantt(
         GanttChart("x", 0, 60, jobs_of(table(*PREEMPTION)))
     )
 

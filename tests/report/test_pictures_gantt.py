@@ -63,7 +63,7 @@ def test_boxes_are_where_their_times_are():
 
 
 def test_a_box_tells_what_it_is():
-    assert "High, job 7: running on Core_0 for 10 us from 20 us on" in chart(HIGH)
+    assert "High, job 7: running on Core_0 for 10 us from 20 us to 30 us" in chart(HIGH)
 
 
 def test_boxes_end_with_the_window():

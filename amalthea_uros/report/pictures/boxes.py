@@ -109,4 +109,5 @@ def _description(box: Box, process: str) -> str:
         return f"{process}: {box.span.state} {box.count} times from {time_text(box.span.start)} on"
     length = time_text(box.span.end - box.span.start)
     core = f" on {box.span.core}" if box.span.core else ""
-    return f"{process}, job {box.job.instance}: {box.span.state}{core} for {length} from {time_text(box.span.start)} on"
+    ends = f"from {time_text(box.span.start)} to {time_text(box.span.end)}"
+    return f"{process}, job {box.job.instance}: {box.span.state}{core} for {length} {ends}"

@@ -14,8 +14,9 @@ from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, document, dra
 from amalthea_uros.report.pictures.style import TEXT_SIZE
 from amalthea_uros.report.pictures.svg import Markup, element, text, tooltip
 from amalthea_uros.report.pictures.text_widths import elided, text_width
-from amalthea_uros.report.pictures.time_axis import HEIGHT, TimeAxis, draw_grid, draw_time_axis
+from amalthea_uros.report.pictures.time_axis import HEIGHT, TimeAxis, draw_grid
 from amalthea_uros.report.pictures.windows import check_window
+from amalthea_uros.report.pictures.zoom import drawn_times, zoom_attributes
 from amalthea_uros.units import Time, time_text
 
 #: Pixels.
@@ -60,15 +61,20 @@ def gantt(chart: GanttChart) -> str:
     )
     body = (
         *(_band(row, axis) for row in rows[::2]),
-        draw_grid(axis, top, bottom),
         *headers,
         *(_label(row, axis) for row in rows),
-        *(draw_row(row, axis, has_tooltips=has_tooltips) for row in rows),
-        *(draw_way(way, index, axis, lanes + LANE * index, middles) for index, way in enumerate(chart.chains)),
-        draw_time_axis(axis, bottom, "time"),
+        *drawn_times(
+            axis,
+            bottom,
+            (
+                draw_grid(axis, top, bottom),
+                *(draw_row(row, axis, has_tooltips=has_tooltips) for row in rows),
+                *(draw_way(way, index, axis, lanes + LANE * index, middles) for index, way in enumerate(chart.chains)),
+            ),
+        ),
         legend,
     )
-    return document(chart.title, _subtitle(chart, axis), body, height + MARGIN)
+    return document(chart.title, _subtitle(chart, axis), body, height + MARGIN, **zoom_attributes(axis, bottom))
 
 
 def _axis(chart: GanttChart) -> TimeAxis:

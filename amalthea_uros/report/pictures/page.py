@@ -24,8 +24,10 @@ class LegendEntry:
     meaning: str
 
 
-def document(title: str, subtitle: str, body: Iterable[Markup], height: float, width: float = WIDTH) -> Markup:
-    """A picture; the subtitle also describes it to those who do not see it."""
+def document(
+    title: str, subtitle: str, body: Iterable[Markup], height: float, width: float = WIDTH, **attributes: str
+) -> Markup:
+    """A picture with attributes; the subtitle also describes it to those who do not see it."""
     paper = element("rect", class_="paper", width=width, height=height)
     shown = elided(title, TITLE_SIZE, width - 2 * MARGIN, is_bold=True)
     content = joined(body)
@@ -48,6 +50,7 @@ def document(title: str, subtitle: str, body: Iterable[Markup], height: float, w
         width=width,
         height=height,
         viewBox=f"0 0 {number(width)} {number(height)}",
+        **attributes,
     )
 
 

@@ -13,7 +13,7 @@ from amalthea_uros.analyze.results import Analysis, ProcessorResult
 from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.system import System
-from amalthea_uros.report.flows import ChainPath, SystemFlows
+from amalthea_uros.report.flows import ChainPath, Flow, SystemFlows
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import PALETTE, SMALL_SIZE, TEXT_SIZE
 from amalthea_uros.report.pictures.svg import Markup, element, number, text, tooltip
@@ -24,8 +24,8 @@ from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.load import activation_rates, loads
 
-#: With more processes or flows, the picture shows cores and the flows between them.
-MOST_PROCESSES, MOST_FLOWS = 40, 80
+#: With more processes, the picture shows cores and the flows between them; with more flows, one line for all data of a process.
+MOST_PROCESSES, MOST_FLOWS = 40, 40
 #: No more cores, flows between cores, and event chains are drawn.
 MOST_CORES, MOST_CORE_FLOWS, MOST_CHAINS = 40, 60, len(PALETTE)
 #: Pixels.
@@ -39,7 +39,7 @@ _DASHES = {
 }
 _MEANINGS = {
     LinkKind.DATA: "data",
-    LinkKind.TRIGGER: "activation by a trigger",
+    LinkKind.TRIGGER: "activation",
     LinkKind.OS_EVENT: "OS event",
     LinkKind.SERVER_CALL: "server call",
     LinkKind.TOPIC: "messages of a topic",
@@ -92,7 +92,7 @@ def draw_system(system: System, analysis: Analysis | None = None) -> Markup:
     analysis : shows loads and verdicts, too
     """
     shown = SystemFlows(system)
-    is_large = len(system.processes) > MOST_PROCESSES or len(shown.flows) > MOST_FLOWS
+    is_large = len(system.processes) > MOST_PROCESSES
     return _drawn(_of_cores(shown, analysis) if is_large else _of_processes(shown, analysis), _subtitle(shown))
 
 
@@ -106,13 +106,15 @@ def _of_processes(shown: SystemFlows, analysis: Analysis | None) -> _Content:
         _Band(_core_text(core, analysis), tuple(_node(each, shown, analysis, own_loads, chains) for each in processes))
         for core, processes in shown.cores.items()
     )
-    flows = [Wire(flow.source, flow.targets, ", ".join(flow.names)) for flow in shown.flows]
-    outer = [Wire(source.name, source.targets, f"{source.name} ({source.kind})", is_outer=True) for source in shown.sources]
+    is_dense = len(shown.flows) > MOST_FLOWS
+    flows = _united(shown.flows) if is_dense else shown.flows
+    wires = [Wire(flow.source, flow.targets, _names(flow, is_dense)) for flow in flows]
+    outer = [Wire(source.name, source.targets, source.name, is_outer=True) for source in shown.sources]
     kinds = [
-        *(flow.kind for flow in shown.flows),
+        *(flow.kind for flow in flows),
         *(LinkKind.TRIGGER if source.is_stimulus else LinkKind.DATA for source in shown.sources),
     ]
-    return _Content(bands, (*flows, *outer), tuple(kinds), tuple(_notes(shown)), tuple(chains[:MOST_CHAINS]))
+    return _Content(bands, (*wires, *outer), tuple(kinds), tuple(_notes(shown, is_dense)), tuple(chains[:MOST_CHAINS]))
 
 
 def _node(
@@ -124,7 +126,6 @@ def _node(
 ) -> _Node:
     priority, load = shown.placement(process.name).priority, own_loads.get(process.name)
     details = (
-        *(["ISR"] if isinstance(process, Isr) else []),
         *([] if priority is None else [f"priority {priority}"]),
         *([] if load is None else [f"load {_percent(load)}"]),
     )
@@ -146,7 +147,7 @@ def _loads(analysis: Analysis) -> dict[str, Fraction]:
 
 
 def _percent(load: Fraction) -> str:
-    return f"{float(100 * load):.3g} %"
+    return "< 0.01 %" if 0 < load < Fraction(1, 10_000) else f"{float(100 * load):.3g} %"
 
 
 def _core_text(core: str | None, analysis: Analysis | None) -> str:
@@ -175,25 +176,9 @@ def _of_cores(shown: SystemFlows, analysis: Analysis | None) -> _Content:
     drawn = {_name(core) for core, _ in cores}
     most = [ends for ends, _ in between.most_common() if ends[0] != ends[1] and drawn.issuperset(ends)]
     wires = tuple(Wire(*_one_target(ends), f"{between[ends]:,}") for ends in sorted(most[:MOST_CORE_FLOWS]))
-    bands = tuple(
-        _Band(
-            "",
-            (
-                _Node(
-                    _name(core),
-                    (
-                        _counts(own),
-                        _core_load(core or "", analysis),
-                        f"{counted(between[_name(core), _name(core)], 'flow')} within",
-                    ),
-                ),
-            ),
-        )
-        for core, own in cores
-    )
+    bands = tuple(_Band("", (_core_node(_name(core), own, between, analysis),)) for core, own in cores)
     notes = [
-        f"Only cores are shown, because there are {counted(len(shown.system.processes), 'process')} with {counted(len(shown.flows), 'flow')};"
-        " the numbers at the arrows count flows.",
+        f"Only cores are shown: there are {counted(len(shown.system.processes), 'process')}. Numbers at arrows count flows.",
         *(
             [f"{counted(len(shown.cores) - len(cores), 'core')} with fewer processes not shown."]
             if len(shown.cores) > len(cores)
@@ -207,6 +192,11 @@ def _of_cores(shown: SystemFlows, analysis: Analysis | None) -> _Content:
         *_problems(shown),
     ]
     return _Content(bands, wires, (LinkKind.DATA,) * len(wires), tuple(notes))
+
+
+def _core_node(core: str, processes: Sequence[Process], between: Counter[tuple[str, str]], analysis: Analysis | None) -> _Node:
+    contents = (_counts(processes), _core_load(core, analysis))
+    return _Node(core, (", ".join(filter(None, contents)), f"{counted(between[core, core], 'flow')} within"))
 
 
 def _name(core: str | None) -> str:
@@ -223,10 +213,35 @@ def _counts(processes: Sequence[Process]) -> str:
     return ", ".join(counted(count, noun) for count, noun in parts if count)
 
 
-def _notes(shown: SystemFlows) -> list[str]:
+def _united(flows: Iterable[Flow]) -> list[Flow]:
+    """One flow for all of a kind that come from the same process."""
+    found: dict[tuple[LinkKind, str], list[Flow]] = {}
+    for flow in flows:
+        found.setdefault((flow.kind, flow.source), []).append(flow)
+    return [
+        Flow(
+            kind,
+            source,
+            tuple(name for flow in own for name in flow.names),
+            tuple({to: None for flow in own for to in flow.targets}),
+        )
+        for (kind, source), own in found.items()
+    ]
+
+
+def _names(flow: Flow, is_dense: bool) -> str:
+    return f"{len(flow.names):,}" if is_dense and len(flow.names) > 1 else ", ".join(flow.names)
+
+
+def _notes(shown: SystemFlows, is_dense: bool) -> list[str]:
     empty = [core for core in shown.system.cores if core not in shown.cores]
     left_out = sum(bool(chain.processes) for chain in shown.chains) - MOST_CHAINS
     return [
+        *(
+            ["Data of a process are drawn as one line, with their number: not each target reads all of them."]
+            if is_dense
+            else []
+        ),
         *([f"Without processes: {', '.join(empty)}."] if empty else []),
         *([f"{counted(left_out, 'event chain')} not shown."] if left_out > 0 else []),
         *(f"Event chain {chain.name} not shown: {chain.reason}." for chain in shown.chains[:MOST_CHAINS] if chain.reason),
@@ -264,7 +279,7 @@ def _drawn(content: _Content, subtitle: str) -> Markup:
     }
     body = (
         *(_frame(band, top, size, width) for band, (top, size) in zip(content.bands, layout.bands, strict=True)),
-        *(_chain(chain, index, by_ends) for index, chain in enumerate(content.chains)),
+        *(_chain(chain, index, content.chains[:index], by_ends) for index, chain in enumerate(content.chains)),
         *(_wire(wire, kind) for wire, kind in zip(layout.wires, content.kinds, strict=True)),
         *(_box(node, layout) for band in content.bands for node in band.nodes),
         *(() if content.bands else (nothing,)),
@@ -327,14 +342,21 @@ def _head(before: Point, end: Point) -> str:
     return f"M{number(end[0])} {number(end[1])}l{back:g} -3.2v6.4z"
 
 
-def _chain(chain: ChainPath, index: int, by_ends: Mapping[tuple[str, str], Sequence[Point]]) -> Markup:
-    """The lines along a chain in its colour, a little beside each other if several chains use them."""
-    path = "".join(_path(by_ends[ends]) for ends in pairwise(chain.processes) if ends in by_ends)
-    if not path:
-        return Markup("")
-    place = f"translate(0 {number(_SHIFT * (index + 1))})"
-    line = element("path", class_=f"t{index} way", d=path, transform=place)
-    return element("g", tooltip(_chain_text(chain)), line)
+def _chain(
+    chain: ChainPath, index: int, before: Sequence[ChainPath], by_ends: Mapping[tuple[str, str], Sequence[Point]]
+) -> Markup:
+    """The lines along a chain in its colour, beside those of the chains before that use them, too."""
+    used = Counter(ends for other in before for ends in set(pairwise(other.processes)))
+    ways = (_beside(by_ends[ends], _SHIFT * used[ends]) for ends in pairwise(chain.processes) if ends in by_ends)
+    path = "".join(map(_path, ways))
+    line = element("path", class_=f"t{index} way", d=path)
+    return element("g", tooltip(_chain_text(chain)), line) if path else Markup("")
+
+
+def _beside(way: Sequence[Point], shift: float) -> list[Point]:
+    """A way a little lower, and its track a little farther to the right."""
+    (first_x, first_y), *inner, (last_x, last_y) = way
+    return [(first_x, first_y + shift), *((x + shift, y + shift) for x, y in inner), (last_x, last_y + shift)]
 
 
 def _chain_text(chain: ChainPath) -> str:
