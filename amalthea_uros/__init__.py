@@ -95,6 +95,8 @@ if TYPE_CHECKING:
     from amalthea_uros.services.simulate import simulate as simulate
     from amalthea_uros.services.simulate import simulate_campaign as simulate_campaign
     from amalthea_uros.services.simulate import simulate_files as simulate_files
+    from amalthea_uros.services.what_if import WhatIf as WhatIf
+    from amalthea_uros.services.what_if import what_if as what_if
     from amalthea_uros.simulate.options import Mode as Mode
     from amalthea_uros.simulate.options import Options as Options
     from amalthea_uros.simulate.results import Simulation as Simulation
@@ -150,6 +152,7 @@ _NAMES = {
     "services.migrate": ("MigrationResult", "migrate"),
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
+    "services.what_if": ("WhatIf", "what_if"),
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),
     "timing.dataflow.paths": ("paths",),

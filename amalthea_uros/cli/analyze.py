@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,16 +12,38 @@ import click
 from amalthea_uros.analyze.results import EXPLAINED, Quantity
 from amalthea_uros.analyze.summary import Schedulable
 from amalthea_uros.cli.failing import FAILING, fail_on_option
-from amalthea_uros.cli.files import INPUT
-from amalthea_uros.cli.output import Output, output_option, show_findings, show_line, shows_text, verbose_option, write_outputs
-from amalthea_uros.cli.settings_options import Assignment, settings_options
+from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
+from amalthea_uros.cli.output import (
+    Output,
+    beside_files,
+    output_option,
+    refuse_input,
+    show_differences,
+    show_findings,
+    show_line,
+    shows_text,
+    verbose_option,
+    write_outputs,
+)
+from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail, explain
+from amalthea_uros.services.changed_model import write_changed
+from amalthea_uros.services.changes.change import EXAMPLE, Change
 from amalthea_uros.timing.settings import Settings
 
 
 @click.command("analyze")
 @click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
+@set_option
+@click.option(
+    "-o",
+    "--out",
+    "target",
+    type=OUTPUT_FILE,
+    metavar="FILE.amxmi",
+    help="With --set: write the changed model; only the changed values differ from the given one.",
+)
 @settings_options
 @click.option(
     "--mode",
@@ -64,6 +87,8 @@ from amalthea_uros.timing.settings import Settings
 @verbose_option
 def command(
     paths: tuple[Path, ...],
+    changes: tuple[Change, ...],
+    target: Path | None,
     settings: Settings,
     modes: tuple[tuple[str, str], ...],
     with_bus: bool,
@@ -81,11 +106,15 @@ def command(
 
     MODEL_OR_YAML is an app.yaml, one or more .amxmi files, or a folder of .amxmi files. Each number has a method and a claim
     (exact, or a safe bound), and the assumptions are listed. The last line says whether all deadlines, requirements and constraints
-    are met; the exit code is 1 if one of them is missed, an activation is lost, or a core is overloaded.
+    are met; the exit code is 1 if one of them is missed, an activation is lost, or a core is overloaded. With --set the system is
+    changed first, and a table compares the results before and after.
     """
+    settings = replace(settings, modes=dict(modes))
+    outputs = _with_target(outputs, target, changes)
     result = analyze_files(
         paths,
-        replace(settings, modes=dict(modes)),
+        settings,
+        changes=changes,
         with_sensitivity=with_sensitivity,
         with_priorities=with_priorities,
         all_methods=method == "all",
@@ -95,9 +124,22 @@ def command(
     if explained is not None:
         result = replace(result, explanation=explain(result, explained, Quantity(quantity)))
     as_text = result.explanation or (chain_detail(result, chain) if chain is not None else None)
+    if target is not None:
+        write_changed(paths, changes, settings, target)
     show_findings(result.findings)
+    show_differences(result.differences)
     write_outputs(outputs, result, as_text)
     schedulable = result.analysis.summary.schedulable
     if schedulable is not Schedulable.YES and (as_text is not None or not shows_text(outputs)):
         show_line(closing_line(result.analysis.summary))
     sys.exit(1 if schedulable in FAILING[fail_on] else 0)
+
+
+def _with_target(outputs: tuple[Output, ...], target: Path | None, changes: Sequence[Change]) -> tuple[Output, ...]:
+    """The outputs beside the file of the changed model, which is checked before the analysis."""
+    if target is None:
+        return outputs
+    if not changes:
+        raise click.UsageError(f"-o writes a changed model; add a change, e.g. --set {EXAMPLE}")
+    refuse_input(target, "-o")
+    return beside_files(outputs, [("-o", target)])

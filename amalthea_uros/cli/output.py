@@ -220,7 +220,7 @@ def show_findings(findings: Iterable[Finding]) -> None:
 def show_differences(differences: Iterable[Difference]) -> None:
     """Show on standard error what changes did."""
     for difference in differences:
-        show_line(f"{difference.target}: {difference.before} -> {difference.after}")
+        show_line(str(difference))
 
 
 def show_summaries(model: Model, targets: Sequence[str]) -> None:

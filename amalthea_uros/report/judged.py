@@ -8,7 +8,7 @@ from fractions import Fraction
 from math import inf
 
 from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessResult, Quantity, RequirementResult
-from amalthea_uros.analyze.summary import Judged
+from amalthea_uros.analyze.summary import FAILURES, Judged
 from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
 
@@ -83,7 +83,7 @@ def _value_text(item: Judged, lower: Time | None, upper: Time | None, limit: Tim
     safe = upper if is_upper else lower
     if item.verdict is Verdict.MET or lower == upper or lower is None or upper is None:
         if safe is None:
-            return "no bound" if item.verdict is Verdict.UNBOUNDED else "unknown"
+            return "no bound" if item.verdict in FAILURES else "unknown"
         return rounded_time_text(safe, Rounding.UP if is_upper else Rounding.DOWN, limit)
     return f"{rounded_time_text(lower, Rounding.DOWN, limit)} to {rounded_time_text(upper, Rounding.UP, limit)}"
 

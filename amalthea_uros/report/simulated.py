@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Protocol
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.analyze.impact import Impact
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.services.changes.apply import Difference
 from amalthea_uros.simulate.results import Judged, ProcessObservation, RequirementObservation, Simulation
 from amalthea_uros.units import SECOND, Rounding, Time, number_text, rounded_time_text, time_text
 
@@ -33,6 +35,14 @@ class SimulationShown(Protocol):
     @property
     def with_metrics(self) -> bool:
         """Whether the metrics of all processes are shown."""
+
+    @property
+    def differences(self) -> tuple[Difference, ...]:
+        """What changes did before the run."""
+
+    @property
+    def impact(self) -> Impact | None:
+        """What the changes do to what is observed; None without changes."""
 
 
 def duration_text(duration: Time) -> str:

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.response_times.kernel import report_machine_code
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.changes.apply import Difference, apply
+from amalthea_uros.services.changes.change import Change
+from amalthea_uros.services.changes.key import Configuration
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.services.timing_changes import described
 from amalthea_uros.timing.settings import Settings
 
 if TYPE_CHECKING:
@@ -44,6 +49,8 @@ class AnalysisResult:
     sensitivity, proposals, explanation : None if they were not requested
     all_methods : whether the values of all methods are shown, or the tightest ones
     with_metrics : whether the metrics of all processes are shown
+    differences : what changes did before the analysis
+    impact : what they do to the results; None without changes
     """
 
     paths: tuple[Path, ...]
@@ -56,6 +63,8 @@ class AnalysisResult:
     explanation: Explanation | None = None
     all_methods: bool = False
     with_metrics: bool = False
+    differences: tuple[Difference, ...] = ()
+    impact: Impact | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +79,7 @@ def analyze_files(
     paths: StrPath | Iterable[StrPath],
     settings: Settings | None = None,
     *,
+    changes: Sequence[Change] = (),
     with_sensitivity: bool = False,
     with_priorities: bool = False,
     all_methods: bool = False,
@@ -80,6 +90,7 @@ def analyze_files(
 
     Parameters
     ----------
+    changes : of the system and the settings, made before the analysis; the result has what they do to it
     with_sensitivity : also find out by how much execution times may grow
     with_priorities : also propose priorities that meet all deadlines
     all_methods : show the values of all methods for chains
@@ -89,13 +100,16 @@ def analyze_files(
     Raises
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
-    InvalidArgumentError : the settings name a core, process, callback or mode label that does not exist, or a phase in which no job is
-        released; there is no bus.
+    InvalidArgumentError : the changes or settings name what does not exist, or a phase in which no job is released; a value is wrong;
+        there is no bus.
     """
     files, settings = as_paths(paths), settings or Settings()
     opened = open_system(files, with_bus=with_bus)
-    system = opened.system
-    require_settings(settings, system)
+    require_settings(settings, opened.system)
+    given = Configuration(opened.system, settings)
+    before = analyze_system(*given) if changes else None
+    differences = described(given, changes)
+    system, settings = apply(*given, changes)
     analysis = analyze_system(system, settings)
     report_machine_code()
     return AnalysisResult(
@@ -108,6 +122,8 @@ def analyze_files(
         proposals=_proposals(analysis) if with_priorities else None,
         all_methods=all_methods,
         with_metrics=with_metrics,
+        differences=differences,
+        impact=None if before is None else impact(before, analysis),
     )
 
 

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from amalthea_uros.analyze.impact import Impact, impact
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.bridge.extract import extract
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.difference.comparison import Change, difference
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import known_versions, newest_version
-from amalthea_uros.services.inputs import open_model
+from amalthea_uros.perf.system import System
+from amalthea_uros.services.inputs import ModelInput, open_model
 from amalthea_uros.services.migrate import migrate
 from amalthea_uros.services.paths import StrPath
+from amalthea_uros.services.timing_changes import TimingChange, timing_changes
 from amalthea_uros.xmi.migrate.load import announcements
 
 #: What is said about a model that was migrated.
@@ -26,24 +32,33 @@ class DiffResult:
     ----------
     old, new : the paths that were compared, or those of the documents of a model
     findings : which models were migrated in memory, so that models of different versions can be compared
+    timing : the differences that matter for times, by object
+    impact : what all differences do to the results of an analysis; None if it was not requested
     """
 
     old: str
     new: str
     changes: tuple[Change, ...]
     findings: tuple[Finding, ...] = ()
+    timing: tuple[TimingChange, ...] = ()
+    impact: Impact | None = None
 
 
-def diff(old: Model | StrPath, new: Model | StrPath) -> DiffResult:
+def diff(old: Model | StrPath, new: Model | StrPath, *, with_impact: bool = False) -> DiffResult:
     """Compare two models, or the files, folders or descriptions that hold them.
 
     If their versions differ, both are compared as models of the newest one.
+
+    Parameters
+    ----------
+    with_impact : also analyze both, and compare the results
 
     Raises
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
     """
-    models = [one if isinstance(one, Model) else open_model([one]).model for one in (old, new)]
+    opened = [ModelInput(model=one, findings=()) if isinstance(one, Model) else open_model([one]) for one in (old, new)]
+    models = [one.model for one in opened]
     findings = [finding for model in models for finding in model.findings if finding.rule in _MIGRATION]
     if len({document.facts_version for model in models for document in model.documents}) > 1:
         for place, model in enumerate(models):
@@ -51,9 +66,24 @@ def diff(old: Model | StrPath, new: Model | StrPath) -> DiffResult:
                 result = migrate(model)
                 models[place] = result.model
                 findings += announcements(result.sets[0])
+    changes = tuple(difference(*models))
+    # Models without differences in meaning are the same system.
+    systems = [one.system or extract(model).system for one, model in zip(opened, models, strict=True)] if changes else []
     return DiffResult(
-        old=_name(old), new=_name(new), changes=tuple(difference(*models)), findings=tuple(dict.fromkeys(findings))
+        old=_name(old),
+        new=_name(new),
+        changes=changes,
+        findings=tuple(dict.fromkeys(findings)),
+        timing=timing_changes(*systems) if changes else (),
+        impact=_impact(systems) if with_impact else None,
     )
+
+
+def _impact(systems: Sequence[System]) -> Impact:
+    """What the differences of two systems do to the results; nothing if there are none."""
+    if not systems:
+        return Impact(rows=(), unchanged=0)
+    return impact(*map(analyze_system, systems))
 
 
 def _can_be_migrated(model: Model) -> bool:

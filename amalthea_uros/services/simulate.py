@@ -16,18 +16,21 @@ from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.campaign.run import Outcome, Record, Run, plan_runs
 from amalthea_uros.services.campaign.sending import system_bytes, system_from
-from amalthea_uros.services.changes.apply import Difference, apply, describe
+from amalthea_uros.services.changes.apply import Difference, apply
 from amalthea_uros.services.changes.change import Change, parse_change
+from amalthea_uros.services.changes.key import Configuration
 from amalthea_uros.services.changes.sweep import Sweep
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require_labels, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.services.subject import Subject, system_of
+from amalthea_uros.services.timing_changes import described
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time, parse_time
 
 if TYPE_CHECKING:
+    from amalthea_uros.analyze.impact import Impact
     from amalthea_uros.services.campaign.executors import Executor
     from amalthea_uros.simulate.results import Simulation
     from amalthea_uros.trace.sinks import TraceSink
@@ -52,6 +55,7 @@ class SimulationPlan:
     options : with the changes of settings
     differences : what the changes did
     findings : problems found while reading the files
+    given : the system and the settings without the changes
     """
 
     paths: tuple[Path, ...]
@@ -59,6 +63,7 @@ class SimulationPlan:
     options: Options
     differences: tuple[Difference, ...]
     findings: tuple[Finding, ...]
+    given: Configuration
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,6 +77,7 @@ class SimulationResult:
     differences : what the changes did
     findings : problems found while reading the files, and what the simulation does not take into account
     with_metrics : whether the metrics of all processes are shown
+    impact : what the changes do to what is observed with the same seed; None without changes
     """
 
     paths: tuple[Path, ...]
@@ -81,6 +87,7 @@ class SimulationResult:
     findings: tuple[Finding, ...]
     differences: tuple[Difference, ...] = ()
     with_metrics: bool = False
+    impact: Impact | None = None
 
     @property
     def is_failed(self) -> bool:
@@ -181,8 +188,9 @@ def plan_simulation(
     """
     files = as_paths(paths)
     opened = open_system(files, with_bus=with_bus)
-    differences = describe(opened.system, options.settings, changes)
-    system, settings = apply(opened.system, options.settings, changes)
+    given = Configuration(opened.system, options.settings)
+    differences = described(given, changes)
+    system, settings = apply(*given, changes)
     require_settings(settings, system)
     require_labels(options.labels, system)
     return SimulationPlan(
@@ -191,6 +199,7 @@ def plan_simulation(
         options=replace(options, settings=settings),
         differences=differences,
         findings=opened.findings,
+        given=given,
     )
 
 
@@ -205,7 +214,16 @@ def simulate_plan(plan: SimulationPlan, trace_paths: Iterable[StrPath] = (), *, 
         findings=unsuppressed((*plan.findings, *simulation.findings)),
         differences=plan.differences,
         with_metrics=with_metrics,
+        impact=_impact(plan, simulation) if plan.differences else None,
     )
+
+
+def _impact(plan: SimulationPlan, simulation: Simulation) -> Impact:
+    """What the changes do: compared with a run without them and with the same seed, of which nothing is written."""
+    from amalthea_uros.services.observed_figures import observed_impact
+
+    before = _simulated(plan.given.system, replace(plan.options, settings=plan.given.settings, traced=None))
+    return observed_impact(before, simulation)
 
 
 def simulate_files(
@@ -317,7 +335,7 @@ def simulate_campaign(
     files = as_paths(paths)
     runs = plan_runs(sweeps, repetitions, options.seed)
     opened = open_system(files, with_bus=with_bus)
-    differences = describe(opened.system, options.settings, changes)
+    differences = described(Configuration(opened.system, options.settings), changes)
     _check_changes(opened.system, options, changes, sweeps)
     job, executor = SimulationJob(opened.system, options, tuple(changes)), _executor(len(runs), workers, cluster)
     outcomes: list[Outcome] = []

@@ -146,9 +146,15 @@ def phase_assumptions(system: System, are_all_evaluated: bool) -> Iterator[str]:
             how = "all phases are evaluated" if are_all_evaluated else "any job can be that one"
             yield f"{due}, and its phase is unknown: {how}"
             continue
-        first, releases = first_effect(counter), known_releases(system.processes[process], system)
-        at = "" if releases is None else f", at {time_text(releases.offset + (first - 1) * releases.period)}"
-        yield f"{due}, first in job {first}{at}, as stated"
+        time = first_time(process, counter, system)
+        at = "" if time is None else f", at {time_text(time)}"
+        yield f"{due}, first in job {first_effect(counter)}{at}, as stated"
+
+
+def first_time(process: str, counter: Counter, system: System) -> Time | None:
+    """When the first job of a process is released that takes what a counter with a known phase represents; None if it is unknown."""
+    releases = known_releases(system.processes[process], system)
+    return None if releases is None else releases.offset + (first_effect(counter) - 1) * releases.period
 
 
 def counters(system: System) -> Iterator[tuple[str, Counter]]:

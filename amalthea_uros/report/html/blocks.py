@@ -88,6 +88,11 @@ class Figure:
     kind: str = "figure"
 
     @property
+    def is_zoomable(self) -> bool:
+        """Whether the script of the page can zoom into its times; then the picture itself takes the keys."""
+        return " data-zoom=" in self.picture
+
+    @property
     def markup(self) -> Markup:
         """The picture as a part of a page; its text is escaped already."""
         return Markup(embedded(self.picture, self.name))

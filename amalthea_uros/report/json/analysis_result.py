@@ -9,7 +9,7 @@ from typing import Any
 from amalthea_uros.analyze.results import Analysis, CallbackResult, ChainResult, JobMetric, Metric, ProcessResult
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.findings import finding_json, joined
-from amalthea_uros.report.json import explanation
+from amalthea_uros.report.json import changes, explanation, impact
 from amalthea_uros.services.analyze import AnalysisResult
 
 
@@ -52,6 +52,9 @@ def content(result: AnalysisResult) -> dict[str, Any]:
         ],
         "summary": _summary_json(analysis),
     }
+    if result.impact is not None:
+        found["changes"] = changes.content(result.differences)
+        found["impact"] = impact.content(result.impact)
     if result.explanation is not None:
         found["explanation"] = explanation.content(result.explanation)
     if result.sensitivity is not None:

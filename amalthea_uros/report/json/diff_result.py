@@ -7,16 +7,31 @@ from typing import Any
 from amalthea_uros.difference.comparison import Change
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.report.findings import finding_json
+from amalthea_uros.report.json import impact
 from amalthea_uros.services.diff import DiffResult
+from amalthea_uros.services.timing_changes import TimingChange
 
 
 def content(result: DiffResult) -> dict[str, Any]:
     """The changes with their places in the files."""
-    return {
+    found: dict[str, Any] = {
         "old": result.old,
         "new": result.new,
+        "timing": [_timing_json(change) for change in result.timing],
         "changes": [_as_json(change) for change in result.changes],
         "findings": [finding_json(finding) for finding in result.findings],
+    }
+    if result.impact is not None:
+        found["impact"] = impact.content(result.impact)
+    return found
+
+
+def _timing_json(change: TimingChange) -> dict[str, Any]:
+    return {
+        "kind": change.happening,
+        "class": change.kind,
+        "object": change.object,
+        "values": [{"key": each.key, "before": each.before, "after": each.after} for each in change.differences],
     }
 
 

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from amalthea_uros.report.findings import finding_json, joined
+from amalthea_uros.report.json import changes, impact
 from amalthea_uros.report.simulated import SimulationShown, closing_line
 from amalthea_uros.simulate.results import (
     ChainObservation,
@@ -25,7 +26,7 @@ from amalthea_uros.simulate.results import (
 def content(result: SimulationShown) -> dict[str, Any]:
     """Everything that was observed."""
     simulation = result.simulation
-    return {
+    found = {
         "model": joined(result.paths),
         "assumptions": list(simulation.assumptions),
         "findings": [finding_json(finding) for finding in result.findings],
@@ -41,6 +42,10 @@ def content(result: SimulationShown) -> dict[str, Any]:
         "requirements": [_requirement(requirement) for requirement in simulation.requirements],
         "summary": _summary(simulation),
     }
+    if result.impact is not None:
+        found["changes"] = changes.content(result.differences)
+        found["impact"] = impact.content(result.impact)
+    return found
 
 
 def _process(process: ProcessObservation) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import islice
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.analyze.impact import impact
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.analyze.summary import Schedulable
 from amalthea_uros.report.closing_line import closing_line
@@ -14,11 +15,12 @@ from amalthea_uros.report.latencies import value_text
 from amalthea_uros.report.markdown_text import escaped, table
 from amalthea_uros.report.simulated import REMINDER
 from amalthea_uros.report.simulated import closing_line as observed_line
+from amalthea_uros.services.impact_text import HEADINGS, RIGHT, cells, unchanged_text
 from amalthea_uros.services.report import ReportContent
 
 #: GitHub accepts 65,536 characters in a comment; names may be long.
 _MOST_CHARACTERS = 60_000
-_MOST_ROWS = 10
+_MOST_ROWS, _MOST_CHANGES = 10, 40
 _MOST_NAME = 80
 _ICONS = {
     Schedulable.YES: "\N{WHITE HEAVY CHECK MARK}",
@@ -57,6 +59,16 @@ def _changes(content: ReportContent) -> Iterator[str]:
         return
     rows = [(each.target, each.before, each.after) for each in content.differences]
     yield from ("", "### Changes", "", *_table(("value", "before", "after"), rows))
+    found = impact(content.before, content.analysis)
+    if found.rows:
+        left_out = max(0, len(found.rows) - _MOST_CHANGES)
+        shown = cells(found)[:_MOST_CHANGES]
+        yield from ("", "### Before and after", "", *_table(HEADINGS, shown, right=RIGHT))
+        yield from (
+            "",
+            *([f"{counted(left_out, 'more row')} not shown."] if left_out else []),
+            escaped(f"{unchanged_text(found)}."),
+        )
     yield from ("", escaped(f"Before the changes: {closing_line(content.before.summary)}"))
 
 

@@ -12,6 +12,7 @@ from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.latencies import write_chains
 from amalthea_uros.report.process_order import by_core_and_priority
 from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.text import impact
 from amalthea_uros.report.text.metrics import write_callbacks, write_metrics
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.units import Rounding, Time, frequency_text, rounded_time_text, time_text
@@ -30,6 +31,8 @@ def write(result: AnalysisResult, terminal: Terminal) -> None:
         write_metrics(terminal, analysis.processes)
     write_chains(terminal, analysis.chains)
     _requirements(terminal, analysis)
+    if result.impact is not None:
+        impact.write(result.impact, terminal)
     if result.sensitivity is not None:
         from amalthea_uros.report.text.sensitivity import write_sensitivity
 

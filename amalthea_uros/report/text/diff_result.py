@@ -10,6 +10,7 @@ from amalthea_uros.difference.comparison import Change, ChangeKind
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.text import impact, timing_changes
 from amalthea_uros.services.diff import DiffResult
 
 _MARKS = {
@@ -21,12 +22,15 @@ _MARKS = {
 
 
 def write(result: DiffResult, terminal: Terminal) -> None:
-    """Write changes grouped by object, and how many there are."""
+    """Write what changes the timing, all changes grouped by object, and how many there are."""
+    timing_changes.write(result.timing, terminal)
     for group in _by_object(result.changes):
         _write_object(group, terminal)
     if result.changes:
         terminal.line()
     terminal.line(_summary(result.changes))
+    if result.impact is not None:
+        impact.write(result.impact, terminal)
 
 
 def _by_object(changes: Iterable[Change]) -> Iterable[list[Change]]:

@@ -10,6 +10,7 @@ from amalthea_uros.report.latencies import HEADING
 from amalthea_uros.report.process_order import by_core_and_priority
 from amalthea_uros.report.simulated import SimulationShown, closing_line, duration_text, limit_text, value_text
 from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.text import impact
 from amalthea_uros.simulate.results import (
     ChainObservation,
     ChainQuantity,
@@ -38,6 +39,8 @@ def write(result: SimulationShown, terminal: Terminal) -> None:
     _runnables(terminal, simulation)
     _labels(terminal, simulation)
     _requirements(terminal, simulation)
+    if result.impact is not None:
+        impact.write(result.impact, terminal, f"observed with seed {simulation.seed}")
     if simulation.assumptions:
         terminal.heading("Assumptions")
         for sentence in simulation.assumptions:

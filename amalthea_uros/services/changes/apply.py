@@ -19,17 +19,26 @@ from amalthea_uros.timing.settings import Settings
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """What a change does: the values before and after, as text."""
+    """What a change does: the values before and after, as text.
+
+    Attributes
+    ----------
+    is_consequence : whether the value is not the one that was set
+    """
 
     object: str
     key: str
     before: str
     after: str
+    is_consequence: bool = False
 
     @property
     def target(self) -> str:
         """The object and the key, such as "Executor_Task.period"."""
         return f"{self.object}.{self.key}"
+
+    def __str__(self) -> str:
+        return f"{self.target}: {self.before} -> {self.after}" + (" (consequence)" if self.is_consequence else "")
 
 
 def apply(system: System, settings: Settings, changes: Iterable[Change]) -> Configuration:

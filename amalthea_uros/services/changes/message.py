@@ -12,12 +12,15 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.services.changes.key import UNSET, Configuration, Key
 from amalthea_uros.services.changes.values import duration, positive_duration
 from amalthea_uros.timing.arrivals import nominal_period
-from amalthea_uros.timing.phases import counters, with_counters
+from amalthea_uros.timing.phases import counters, first_time, with_counters
 from amalthea_uros.units import Time, time_text
 
 
 def _show_phase(configuration: Configuration, source: str) -> str:
+    process, counter = _first(configuration.system, source)
     phase = configuration.settings.phases.get(source)
+    if phase is None and counter.is_phase_known and counter.arrivals is None:
+        phase = first_time(process, counter, configuration.system)
     return UNSET if phase is None else time_text(phase)
 
 

@@ -1,0 +1,359 @@
+"""What a change of a system does to the results: the figures before and after it.
+
+The figures that are compared are what is guaranteed: a bound that gets lower is better, although the exact value, which is unknown,
+may be the same. Where nothing is guaranteed before or after, nothing is concluded in favour of the change.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from typing import TypeAlias
+
+from amalthea_uros.analyze.results import (
+    Analysis,
+    CallbackResult,
+    ChainResult,
+    Claim,
+    ProcessorResult,
+    ProcessResult,
+    Quantity,
+    RequirementResult,
+    Response,
+)
+from amalthea_uros.analyze.verdicts import Failure, Verdict
+
+#: The value of a figure.
+Amount: TypeAlias = int | Fraction | StrEnum
+
+
+class Part(StrEnum):
+    """The part of the results that a figure belongs to."""
+
+    SYSTEM = "system"
+    CORE = "core"
+    PROCESS = "process"
+    CALLBACK = "callback"
+    CHAIN = "chain"
+    REQUIREMENT = "requirement"
+
+
+class Unit(StrEnum):
+    """What the value of a figure is: picoseconds, a share of a core (1 is full), a number, or a word."""
+
+    TIME = "time"
+    SHARE = "share"
+    NUMBER = "number"
+    VERDICT = "verdict"
+
+
+class Goal(StrEnum):
+    """Which figures are better."""
+
+    LOW = "low"
+    HIGH = "high"
+    NONE = "none"
+
+
+class Effect(StrEnum):
+    """What a change does to a figure.
+
+    Attributes
+    ----------
+    UNKNOWN : the figure was unknown before, so nobody can say; or a failure is no longer certain
+    CHANGED : neither is better
+    ADDED, REMOVED : there is no such figure before, or after
+    """
+
+    BETTER = "better"
+    WORSE = "worse"
+    UNKNOWN = "unknown"
+    CHANGED = "changed"
+    ADDED = "added"
+    REMOVED = "removed"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Figure:
+    """A figure of an object.
+
+    Attributes
+    ----------
+    object : name of the core, process, chain or requirement; "" for the whole system
+    quantity : such as "worst_case_response_time"
+    value : None if it is unknown; a verdict also if nothing is judged
+    claim : None for verdicts, stated limits and what is unknown
+    at_least : of an unknown value, the part that is known; None if there is none
+    is_overload : whether the value is None because, in the long run, more work is activated than can be executed
+    reason : why it is unknown
+    """
+
+    part: Part
+    object: str
+    quantity: str
+    value: Amount | None
+    unit: Unit = Unit.TIME
+    goal: Goal = Goal.NONE
+    claim: Claim | None = None
+    at_least: Fraction | None = None
+    is_overload: bool = False
+    reason: str = ""
+
+    @property
+    def key(self) -> tuple[Part, str, str]:
+        """What says that two figures are about the same."""
+        return self.part, self.object, self.quantity
+
+    @property
+    def compared(self) -> tuple[Amount | None, Fraction | None, bool]:
+        """What must differ for a change of the figure."""
+        return self.value, self.at_least, self.is_overload
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImpactRow:
+    """A figure that is not the same before and after.
+
+    Attributes
+    ----------
+    before, after : None if there is no such figure
+    """
+
+    before: Figure | None
+    after: Figure | None
+    effect: Effect
+
+    @property
+    def figure(self) -> Figure:
+        """The figure after the change, or the one before it if there is none."""
+        found = self.after or self.before
+        assert found is not None
+        return found
+
+    @property
+    def part(self) -> Part:
+        """The part of the results."""
+        return self.figure.part
+
+    @property
+    def object(self) -> str:
+        """The name of the core, process, chain or requirement; "" for the whole system."""
+        return self.figure.object
+
+    @property
+    def quantity(self) -> str:
+        """What of the object, such as "worst_case_response_time"."""
+        return self.figure.quantity
+
+    @property
+    def claim(self) -> Claim | None:
+        """The weaker claim of both values; None if neither has one."""
+        claims = [figure.claim for figure in (self.before, self.after) if figure is not None and figure.claim is not None]
+        return max(claims, key=tuple(Claim).index, default=None)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Impact:
+    """What a change of a system does to the results.
+
+    Attributes
+    ----------
+    rows : the figures that changed
+    unchanged : number of the other figures
+    """
+
+    rows: tuple[ImpactRow, ...]
+    unchanged: int
+
+    def __bool__(self) -> bool:
+        """Whether anything changed."""
+        return bool(self.rows)
+
+    @property
+    def counts(self) -> Mapping[Effect, int]:
+        """The number of rows with each effect that occurs."""
+        found = Counter(row.effect for row in self.rows)
+        return {effect: found[effect] for effect in Effect if found[effect]}
+
+
+def impact(before: Analysis, after: Analysis) -> Impact:
+    """Compare the results of two systems, object by object."""
+    return compare(figures(before), figures(after))
+
+
+def compare(before: Iterable[Figure], after: Iterable[Figure]) -> Impact:
+    """Compare figures; those that only one side has are also part of the result."""
+    old, new = _numbered(before), _numbered(after)
+    pairs = [(old.get(key), new.get(key)) for key in (*new, *(key for key in old if key not in new))]
+    rows = tuple(
+        ImpactRow(before=one, after=other, effect=_effect(one, other))
+        for one, other in sorted(pairs, key=lambda pair: _place(*pair))
+        if one is None or other is None or one.compared != other.compared
+    )
+    return Impact(rows=rows, unchanged=len(pairs) - len(rows))
+
+
+def _numbered(given: Iterable[Figure]) -> dict[tuple[object, ...], Figure]:
+    """The figures by what they are about; several requirements may have one name."""
+    counts: Counter[object] = Counter()
+    found: dict[tuple[object, ...], Figure] = {}
+    for figure in given:
+        found[*figure.key, counts[figure.key]] = figure
+        counts[figure.key] += 1
+    return found
+
+
+def _place(before: Figure | None, after: Figure | None) -> int:
+    figure = after or before
+    assert figure is not None
+    return tuple(Part).index(figure.part)
+
+
+def _effect(before: Figure | None, after: Figure | None) -> Effect:
+    if before is None:
+        return Effect.ADDED
+    if after is None:
+        return Effect.REMOVED
+    old, new = before.value, after.value
+    if isinstance(old, StrEnum) or isinstance(new, StrEnum):
+        return _effect_of_verdicts(old, new)
+    if new is None:
+        return _effect_of_losing(before, after)
+    if old is None:
+        return Effect.BETTER if before.is_overload else Effect.UNKNOWN
+    if after.goal is Goal.NONE:
+        return Effect.CHANGED
+    return Effect.BETTER if (new < old) == (after.goal is Goal.LOW) else Effect.WORSE
+
+
+def _effect_of_losing(before: Figure, after: Figure) -> Effect:
+    """The effect if the value is unknown afterwards."""
+    if before.value is not None or (after.is_overload and not before.is_overload):
+        return Effect.WORSE
+    return Effect.UNKNOWN
+
+
+#: Verdicts from good to bad: of a process or requirement, and of a system; what was observed is ordered alike.
+_GOOD = ("met", "yes", "observed_ok")
+_OPEN = ("unknown", "not_observed")
+_ENDLESS = (Verdict.UNBOUNDED, Failure.OVERLOAD)
+
+
+def _effect_of_verdicts(before: Amount | None, after: Amount | None) -> Effect:
+    old, new = _rank(before), _rank(after)
+    if new < old:
+        # That a failure is not certain any more is no improvement.
+        return Effect.BETTER if new == 0 else Effect.UNKNOWN
+    return Effect.WORSE if new > old else Effect.CHANGED
+
+
+def _rank(verdict: Amount | None) -> int:
+    """0 for what is certainly good, 1 for what is unknown or not judged, 2 and more for failures."""
+    if verdict in _GOOD:
+        return 0
+    if verdict is None or verdict in _OPEN:
+        return 1
+    return 3 if verdict in _ENDLESS else 2
+
+
+def figures(analysis: Analysis) -> Iterator[Figure]:
+    """Everything that is compared."""
+    yield verdict_figure(Part.SYSTEM, "", analysis.summary.schedulable, quantity="schedulable")
+    sources: tuple[tuple[Iterable[object], Callable[..., Iterator[Figure]]], ...] = (
+        (analysis.processors, _of_core),
+        (analysis.processes, _of_process),
+        (analysis.callbacks, _of_callback),
+        (analysis.chains, _of_chain),
+        (analysis.requirements, _of_requirement),
+    )
+    for results, figures_of in sources:
+        for result in results:
+            yield from figures_of(result)
+
+
+def verdict_figure(part: Part, name: str, verdict: StrEnum | None, reason: str = "", quantity: str = "verdict") -> Figure:
+    """A verdict as a figure."""
+    return Figure(part=part, object=name, quantity=quantity, value=verdict, unit=Unit.VERDICT, reason=reason)
+
+
+def _of_core(core: ProcessorResult) -> Iterator[Figure]:
+    yield Figure(
+        part=Part.CORE,
+        object=core.name,
+        quantity="worst_case_load",
+        value=core.worst,
+        unit=Unit.SHARE,
+        goal=Goal.LOW,
+        claim=None if core.worst is None else Claim.BOUND,
+        at_least=core.at_least if core.worst is None else None,
+        is_overload=core.worst is None and core.is_overloaded,
+    )
+
+
+def _of_process(process: ProcessResult) -> Iterator[Figure]:
+    yield _response(Part.PROCESS, process.name, process.response, process.reason)
+    if process.deadline is not None:
+        yield Figure(part=Part.PROCESS, object=process.name, quantity="deadline", value=process.deadline)
+    yield verdict_figure(Part.PROCESS, process.name, process.failure or process.verdict, process.reason)
+
+
+def _of_callback(callback: CallbackResult) -> Iterator[Figure]:
+    name = f"{callback.name} in {callback.process}"
+    yield _response(Part.CALLBACK, name, callback.response, callback.reason)
+
+
+def _response(part: Part, name: str, response: Response | None, reason: str) -> Figure:
+    worst = response.worst if response else None
+    return Figure(
+        part=part,
+        object=name,
+        quantity="worst_case_response_time",
+        value=worst,
+        goal=Goal.LOW,
+        claim=response.claim if response and worst is not None else None,
+        is_overload=response is not None and response.is_overload,
+        reason=reason if worst is None else "",
+    )
+
+
+#: The headline latencies of a chain; the shortest one is neither good nor bad.
+_LATENCIES = {
+    Quantity.MIN_FIRST_TO_FIRST: Goal.NONE,
+    Quantity.MAX_REDUCED_REACTION_TIME: Goal.LOW,
+    Quantity.MAX_REDUCED_DATA_AGE: Goal.LOW,
+}
+
+
+def _of_chain(chain: ChainResult) -> Iterator[Figure]:
+    for quantity, goal in _LATENCIES.items():
+        found = chain.value(quantity)
+        value = found.value if found else None
+        yield Figure(
+            part=Part.CHAIN,
+            object=chain.name,
+            quantity=quantity,
+            value=value,
+            goal=goal,
+            claim=found.claim if found and value is not None else None,
+            reason="" if value is not None else (found.reason if found else "") or chain.reason,
+        )
+
+
+def _of_requirement(requirement: RequirementResult) -> Iterator[Figure]:
+    name = requirement.name
+    if requirement.limit is not None:
+        margin = None if requirement.verdict is Verdict.UNKNOWN else requirement.margin
+        yield Figure(
+            part=Part.REQUIREMENT,
+            object=name,
+            quantity="margin",
+            value=margin,
+            goal=Goal.HIGH,
+            claim=None if margin is None else Claim.EXACT if requirement.lower == requirement.upper else Claim.BOUND,
+            is_overload=requirement.verdict is Verdict.UNBOUNDED,
+            reason=requirement.reason,
+        )
+    yield verdict_figure(Part.REQUIREMENT, name, requirement.verdict, requirement.reason)

@@ -1,0 +1,99 @@
+"""An impact in words: the cells of its table, for reports and for the text of a result."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import StrEnum
+from fractions import Fraction
+from math import ceil, floor
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.analyze.impact import Effect, Figure, Goal, Impact, ImpactRow, Unit
+from amalthea_uros.units import Rounding, number_text, rounded_time_text
+
+HEADINGS = ("object", "quantity", "before", "after", "effect", "claim")
+#: The columns with numbers.
+RIGHT = (2, 3)
+
+#: The names of quantities that tables have other words for.
+_SHORT = {
+    "schedulable": "schedulable",
+    "worst_case_load": "worst load",
+    "worst_case_response_time": "worst response",
+    "max_response_time": "max response",
+    "min_first_to_first": "min",
+    "max_reduced_reaction_time": "reaction",
+    "max_reduced_data_age": "data age",
+}
+
+
+def cells(impact: Impact) -> list[tuple[str, ...]]:
+    """A row of text for each figure that changed."""
+    return [_cells(row) for row in impact.rows]
+
+
+def unchanged_text(impact: Impact) -> str:
+    """How many figures are not in the table."""
+    if not impact.rows:
+        return f"nothing changed: {counted(impact.unchanged, 'figure')} compared"
+    verb = "is" if impact.unchanged == 1 else "are"
+    return f"{counted(impact.unchanged, 'other figure')} {verb} unchanged"
+
+
+def plain_table(rows: Sequence[Sequence[str]]) -> str:
+    """Rows in columns that are as wide as needed, for texts outside of a terminal."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join("  ".join(map(_padded, row, widths, range(len(row)))).rstrip() for row in rows)
+
+
+def _padded(cell: str, width: int, place: int) -> str:
+    return cell.rjust(width) if place in RIGHT else cell.ljust(width)
+
+
+def _cells(row: ImpactRow) -> tuple[str, ...]:
+    others = row.after, row.before
+    texts = (_text(figure, other) for figure, other in zip((row.before, row.after), others, strict=True))
+    quantity = _SHORT.get(row.quantity, row.quantity.replace("_", " "))
+    return (row.object or "system", quantity, *texts, str(row.effect), _claim(row))
+
+
+def _claim(row: ImpactRow) -> str:
+    """The claims of both values, once if they are equal; why the value is unknown if it is afterwards."""
+    claims = dict.fromkeys(str(figure.claim) for figure in (row.before, row.after) if figure is not None and figure.claim)
+    is_lost = row.after is not None and row.after.value is None and row.effect is not Effect.REMOVED
+    return row.after.reason if row.after is not None and is_lost and row.after.reason else " -> ".join(claims)
+
+
+def _text(figure: Figure | None, other: Figure | None) -> str:
+    """The value of a figure, with as many digits as it takes to differ from the other one."""
+    if figure is None:
+        return "-"
+    match figure.value:
+        case None:
+            return _open_text(figure)
+        case StrEnum():
+            return str(figure.value).replace("_", " ")
+    against = other.value if other is not None and not isinstance(other.value, StrEnum) else None
+    return _number(figure, Fraction(figure.value), against)
+
+
+def _open_text(figure: Figure) -> str:
+    if figure.unit is Unit.VERDICT:
+        return "not judged"
+    if figure.at_least:
+        return f"at least {_percent(figure.at_least, Goal.HIGH)}"
+    return "unbounded" if figure.is_overload else "unknown"
+
+
+def _number(figure: Figure, value: Fraction, other: int | Fraction | None) -> str:
+    match figure.unit:
+        case Unit.SHARE:
+            return _percent(value, figure.goal)
+        case Unit.NUMBER:
+            return number_text(value)
+    return rounded_time_text(value, Rounding.UP if figure.goal is Goal.LOW else Rounding.DOWN, other)
+
+
+def _percent(load: Fraction, goal: Goal) -> str:
+    """A load in percent with three decimals, rounded to the safe side."""
+    return f"{(ceil if goal is Goal.LOW else floor)(load * 100_000) / 1000:.3f}%"
