@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.analyze.impact import Effect, impact
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.report.closing_line import closing_line
-from amalthea_uros.report.html.blocks import Badge, Block, Section, Sentences, Tone, table
+from amalthea_uros.report.html.blocks import Badge, Block, Cell, Section, Sentences, Tone, table
 from amalthea_uros.services.impact_text import cells, unchanged_text
 from amalthea_uros.services.report import ReportContent
 
@@ -32,10 +32,10 @@ def section(content: ReportContent) -> Section | None:
 def _impact(before: Analysis, after: Analysis) -> list[Block]:
     """The results that changed."""
     found = impact(before, after)
-    rows = [
+    rows: list[tuple[Cell, ...]] = [
         (*cell[:-2], Badge(cell[-2], _TONES.get(row.effect, Tone.NEUTRAL)), cell[-1])
         for row, cell in zip(found.rows, cells(found), strict=True)
     ]
-    titles = ("object", "quantity", ">before", ">after", "effect", "claim")
+    titles = ("object", "quantity", ">before", ">after", "effect", "claim or reason")
     unchanged = Sentences([f"{unchanged_text(found)}."])
     return [table("Results before and after the changes", titles, rows), unchanged] if rows else [unchanged]

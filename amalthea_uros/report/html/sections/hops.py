@@ -44,6 +44,7 @@ def _blocks(explanation: ChainExplanation, limit: Time | None, name: str) -> lis
     notes = [f"{explanation.route}.", f"{value.claim}: {value.method} ({value.source})."]
     if value.claim is Claim.BOUND:
         notes.append("Each read is as early and each write as late as possible, which need not occur in one run.")
+    found.append(Figure(name, draw_hops(explanation, limit)))
     return [
         *found,
         table(f"Hops of {explanation.chain.name}; times are relative to the first read", titles, rows),

@@ -17,7 +17,7 @@ _MOST_CHAINS, _MOST_ROWS = 3, 40
 
 def section(content: ReportContent) -> Section | None:
     """Around the job that came closest to its deadline, and around the longest latency of the worst chains."""
-    if content.simulation is None:
+    if content.simulation is None or not any(each.response_time for each in content.simulation.simulation.processes):
         return None
     blocks: list[Block] = []
     missing: list[str] = []
