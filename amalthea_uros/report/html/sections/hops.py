@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from amalthea_uros.analyze.chains.explanation import ChainExplanation, Hop, explain_chain
 from amalthea_uros.analyze.results import Claim, Quantity
-from amalthea_uros.report.html.blocks import Block, Heading, Section, Sentences, table
+from amalthea_uros.report.html.blocks import Block, Figure, Heading, Section, Sentences, table
 from amalthea_uros.report.judged import LIMITED, decisive_quantity, requirements_of, worst_chains
 from amalthea_uros.report.latencies import value_text
+from amalthea_uros.report.pictures.chain_hops import draw_hops
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.units import Time, time_text
 
