@@ -1,6 +1,6 @@
 /* Zoom and hover for pictures with an axis of time: <svg data-zoom="left right start end">, in pixels and picoseconds.
-   Only times move: in g[data-plot] all x are computed anew, so that text, lines and arrows keep their shapes; g[data-axis] gets new
-   ticks. Wheel with Ctrl, or on a picture that has the focus; pinch; drag; double click. Keys: + - arrows 0, n and p for the boxes. */
+   In g[data-plot] all x are computed anew, so that text and arrows keep their shapes; g[data-axis] gets new ticks.
+   Wheel with Ctrl or with the focus, pinch, drag, double click; keys + - 0 and arrows, n and p for the boxes. */
 (function () {
   "use strict";
   const NS = "http://www.w3.org/2000/svg";
@@ -22,7 +22,6 @@
     tip.style.top = (content ? y + 16 + window.scrollY : 0) + "px";
   }
 
-  /* The text of the nearest element with a tooltip within a picture. */
   function described(node, svg) {
     for (; node && node !== svg; node = node.parentNode) {
       const title = node.querySelector(":scope > title");
@@ -31,7 +30,6 @@
     return "";
   }
 
-  /* What an element is like without zoom. */
   function remembered(node) {
     const numbers = {};
     for (const name of COORDINATES) if (node.hasAttribute(name)) numbers[name] = +node.getAttribute(name);
@@ -52,7 +50,7 @@
     const original = Array.from(axis.childNodes);
     const boxes = Array.from(plot.querySelectorAll("rect > title"), (title) => title.parentNode);
     const pointers = new Map();
-    let scale = 1, shift = 0, chosen = -1, isMoved = false;
+    let scale = 1, shift = 0, chosen = null, isMoved = false;
 
     const mapped = (x) => left + (x - left) * scale - shift;
     const time = (x) => start + (end - start) * (x - left + shift) / (right - left) / scale;
@@ -97,7 +95,6 @@
       return [...found, added("text", caption, "time in " + name)];
     }
 
-    /* Zoom so that the time at x stays there, and move by some pixels. */
     function change(factor, x, by) {
       const before = (x - left + shift) / scale;
       scale = Math.min(Math.max(scale * factor, 1), DEEPEST);
@@ -105,7 +102,11 @@
       requestAnimationFrame(draw);
     }
 
-    function reset() { scale = 1; shift = 0; requestAnimationFrame(draw); }
+    function reset() {
+      scale = 1;
+      shift = 0;
+      requestAnimationFrame(draw);
+    }
 
     function place(event) {
       const frame = svg.getBoundingClientRect();
@@ -113,10 +114,12 @@
     }
 
     function step(by) {
-      if (!boxes.length) return;
-      chosen = (Math.max(chosen, by < 0 ? 0 : -1) + by + boxes.length) % boxes.length;
-      const frame = boxes[chosen].getBoundingClientRect();
-      show(described(boxes[chosen], svg), frame.left, frame.bottom);
+      const seen = boxes.filter((box) => +box.getAttribute("x") < right && +box.getAttribute("x") + +box.getAttribute("width") > left);
+      if (!seen.length) return;
+      const at = seen.indexOf(chosen);
+      chosen = seen[(at < 0 && by < 0 ? seen.length - 1 : at + by + seen.length) % seen.length];
+      const frame = chosen.getBoundingClientRect();
+      show(described(chosen, svg), frame.left, frame.bottom);
     }
 
     const middle = (left + right) / 2, far = (right - left) / 8;

@@ -74,7 +74,7 @@ def gantt(chart: GanttChart) -> str:
         ),
         legend,
     )
-    return document(chart.title, _subtitle(chart, axis), body, height + MARGIN, **zoom_attributes(axis, bottom))
+    return document(chart.title, _subtitle(chart, axis), body, height + MARGIN, WIDTH, **zoom_attributes(axis, bottom))
 
 
 def _axis(chart: GanttChart) -> TimeAxis:

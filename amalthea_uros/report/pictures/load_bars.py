@@ -39,12 +39,14 @@ class _Scale:
 def draw_loads(analysis: Analysis) -> Markup:
     """The loads of all cores; if there are more than can be drawn, those with the highest ones."""
     cores = _shown(analysis.processors)
+    if not cores:
+        nothing = element("text", text("the model has no core"), class_="muted", x=MARGIN, y=TOP + 20)
+        return document("Load of the cores", "no cores", (nothing,), TOP + 40)
     scale = _scale(cores)
-    bottom = TOP + _ROW * max(len(cores), 1)
+    bottom = TOP + _ROW * len(cores)
     rows = [_row(core, TOP + _ROW * index, scale) for index, core in enumerate(cores)]
     legend, height = draw_legend(_legend(cores), _notes(analysis.processors), bottom + _AXIS + _GAP)
-    nothing = element("text", text("the model has no core"), class_="muted", x=MARGIN, y=TOP + 20)
-    body = (*(_grid(scale, bottom), *rows, _full(scale, bottom)), *(() if cores else (nothing,)), legend)
+    body = (_grid(scale, bottom), *rows, _full(scale, bottom), legend)
     return document("Load of the cores", _subtitle(analysis.processors), body, height + MARGIN)
 
 
@@ -136,7 +138,5 @@ def _notes(cores: Sequence[ProcessorResult]) -> list[str]:
 
 
 def _subtitle(cores: Sequence[ProcessorResult]) -> str:
-    if not cores:
-        return "no cores"
     highest = max(cores, key=lambda core: core.at_least)
     return f"{counted(len(cores), 'core')}, the highest load is that of {highest.name}: {_values(highest)}"

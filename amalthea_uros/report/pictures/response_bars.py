@@ -69,7 +69,8 @@ def draw_responses(analysis: Analysis, simulation: Simulation | None = None) -> 
     nothing = element("text", text("the model has no processes"), class_="muted", x=MARGIN, y=TOP + _HEADER + 20)
     legend, height = draw_legend(_legend(rows), _notes(len(processes), rows), bottom + _GAP)
     body = (
-        *((_headers(), _deadline_line(bottom)) if rows else (nothing,)),
+        _headers() if rows else nothing,
+        _deadline_line(bottom) if any(row.process.deadline for row in rows) else Markup(""),
         *(_drawn(row) for row in rows),
         legend,
     )

@@ -176,7 +176,7 @@ def _of_cores(shown: SystemFlows, analysis: Analysis | None) -> _Content:
     drawn = {_name(core) for core, _ in cores}
     most = [ends for ends, _ in between.most_common() if ends[0] != ends[1] and drawn.issuperset(ends)]
     wires = tuple(Wire(*_one_target(ends), f"{between[ends]:,}") for ends in sorted(most[:MOST_CORE_FLOWS]))
-    bands = tuple(_Band("", (_core_node(_name(core), own, between, analysis),)) for core, own in cores)
+    bands = tuple(_Band(_core_text(core, analysis), (_core_node(_name(core), own, between),)) for core, own in cores)
     notes = [
         f"Only cores are shown: there are {counted(len(shown.system.processes), 'process')}. Numbers at arrows count flows.",
         *(
@@ -194,9 +194,8 @@ def _of_cores(shown: SystemFlows, analysis: Analysis | None) -> _Content:
     return _Content(bands, wires, (LinkKind.DATA,) * len(wires), tuple(notes))
 
 
-def _core_node(core: str, processes: Sequence[Process], between: Counter[tuple[str, str]], analysis: Analysis | None) -> _Node:
-    contents = (_counts(processes), _core_load(core, analysis))
-    return _Node(core, (", ".join(filter(None, contents)), f"{counted(between[core, core], 'flow')} within"))
+def _core_node(core: str, processes: Sequence[Process], between: Counter[tuple[str, str]]) -> _Node:
+    return _Node(core, (_counts(processes), f"{counted(between[core, core], 'flow')} within"))
 
 
 def _name(core: str | None) -> str:

@@ -1,0 +1,177 @@
+"""System pictures: every process and flow is drawn, no line runs through a box, and large systems stay small."""
+
+import re
+from itertools import combinations, pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support import ROOT
+from svg_reading import SVG, assert_readable, parsed, texts
+
+from amalthea_uros import analyze_files
+from amalthea_uros.perf.activities import AccessKind, LabelAccess
+from amalthea_uros.perf.hardware import Core, Hardware, Structure
+from amalthea_uros.perf.mapping import Mapping, TaskAllocation
+from amalthea_uros.perf.os import OperatingSystem, Os, Scheduler
+from amalthea_uros.perf.software import Label, Software, Task
+from amalthea_uros.perf.system import System
+from amalthea_uros.report.pictures.system_layout import BOX, Wire, lay_out
+from amalthea_uros.report.pictures.system_picture import MOST_PROCESSES, draw_system
+
+NASTY = """<Task & "friends'>"""
+SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
+
+
+def contents(picture):
+    return [text.content for text in texts(picture)]
+
+
+def titles(picture):
+    return [node.text for node in parsed(picture).iter(f"{SVG}title")]
+
+
+def writing(name, *labels, reading=()):
+    accesses = [LabelAccess(label=label, kind=AccessKind.WRITE) for label in labels]
+    return Task(name=name, activities=(*accesses, *(LabelAccess(label=label, kind=AccessKind.READ) for label in reading)))
+
+
+def system_of(*tasks, cores=1):
+    names = [f"Core_{number}" for number in range(cores)]
+    labels = {access.label for task in tasks for access in task.activities}
+    return System(
+        hardware=Hardware(structures=(Structure(name="ECU", cores=tuple(Core(name=name) for name in names)),)),
+        os=Os(systems=(OperatingSystem(name="OS", schedulers=tuple(Scheduler(name=f"S_{n}", cores=(n,)) for n in names)),)),
+        software=Software(tasks=tasks, labels=tuple(Label(name=name) for name in sorted(labels))),
+        mapping=Mapping(
+            tasks=tuple(
+                TaskAllocation(task=task.name, scheduler=f"S_{names[i % cores]}", priority=i) for i, task in enumerate(tasks)
+            )
+        ),
+    )
+
+
+def test_processes_are_ordered_by_priority_on_their_cores():
+    names = contents(draw_system(analyze_files(ROOT / "samples" / "bodas-test-advanced.yaml").system))
+    assert [name for name in names if name in {"Executor_Task", "Message_Factor", "Control_Function"}] == [
+        "Executor_Task",
+        "Control_Function",
+        "Message_Factor",
+    ]
+    assert {"Core_0", "every 20 ms", "priority 1", "memory_1", "memory_2", "event chain factor-to-output"} <= set(names)
+
+
+def test_loads_and_verdicts_are_those_of_the_analysis():
+    result = analyze_files(ROOT / "samples" / "bodas-test-advanced.yaml")
+    picture = draw_system(result.system, result.analysis)
+    # 12 us in each millisecond, 13 us more in each twentieth one, 4 us in each, and 2 us in each twentieth one.
+    assert {"Core_0, load 1.68 %", "priority 2, load 0.4 %", "priority 1, load 0.01 %"} <= set(contents(picture))
+    assert titles(picture).count("met") == 4
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda path: path.stem)
+def test_every_process_flow_and_source_of_a_sample_is_drawn_and_readable(sample):
+    result = analyze_files(sample)
+    picture = draw_system(result.system, result.analysis)
+    assert set(result.system.processes) <= {title.split(",")[0] for title in titles(picture)}
+    assert_readable(picture)
+
+
+def test_flows_of_a_sample():
+    found = titles(draw_system(analyze_files(ROOT / "samples" / "drive-and-lift.yaml").system))
+    assert {
+        "Task_5ms to Control_Speed, Report_Odometry: wheel_speed",
+        "Task_Hydraulics to Control_Lift: height",
+        "Task_Hydraulics to Task_Log: trigger_of_Task_Log",
+        "event chain height-to-valve: Task_Hydraulics, Control_Lift",
+    } <= set(found)
+
+
+def test_names_are_escaped():
+    picture = draw_system(system_of(writing(NASTY, NASTY), writing("B", reading=[NASTY])))
+    # The task and what it writes have the same name.
+    assert contents(picture).count(NASTY) == 2
+    assert f"{NASTY} to B: {NASTY}" in titles(picture)
+
+
+def test_a_system_without_processes_says_so():
+    picture = draw_system(System())
+    assert "the model has no processes" in contents(picture)
+    assert_readable(picture)
+
+
+def test_a_process_without_a_core_is_drawn():
+    assert {"A", "no core, or several ones"} <= set(contents(draw_system(System(software=Software(tasks=(Task(name="A"),))))))
+
+
+def test_large_systems_are_shown_by_cores():
+    tasks = [writing(f"T{n}", f"L{n}", reading=[f"L{n - 1}"]) for n in range(1000)]
+    picture = draw_system(system_of(*tasks, cores=4))
+    assert any(text.startswith("Only cores are shown: there are 1,000 processes.") for text in contents(picture))
+    assert contents(picture).count("250 tasks") == 4
+    # Task n passes data on to task n + 1 on the next core: 250 times from each core, but from the last one to the first one 249 times.
+    assert [contents(picture).count(number) for number in ("250", "249")] == [3, 1]
+    assert len(picture) < 30_000
+
+
+def test_many_flows_become_one_line_for_each_process():
+    tasks = [writing(f"T{n}", *(f"L{n}_{m}" for m in range(20)), reading=[f"L{m}_{n}" for m in range(20)]) for n in range(20)]
+    picture = draw_system(system_of(*tasks))
+    assert any(text.startswith("Data of a process are drawn as one line") for text in contents(picture))
+    assert contents(picture).count("19") == 20
+    assert len(picture) < 100_000
+
+
+def test_the_size_is_bounded():
+    tasks = [
+        writing(f"T{n}", *(f"L{n}_{m}" for m in range(MOST_PROCESSES)), reading=[f"L{m}_{n}" for m in range(MOST_PROCESSES)])
+        for n in range(MOST_PROCESSES)
+    ]
+    assert len(draw_system(system_of(*tasks, cores=8))) < 400_000
+
+
+NAMES = [f"B{number}" for number in range(9)]
+WIRES = st.lists(
+    st.tuples(st.sampled_from(NAMES), st.lists(st.sampled_from(NAMES), min_size=1, max_size=4, unique=True), st.booleans()),
+    max_size=12,
+)
+
+
+@settings(deadline=None)
+@given(WIRES, st.integers(0, 9))
+def test_no_line_runs_through_a_box_or_along_another_one(ends, size):
+    wires = [
+        Wire(source, tuple(target for target in targets if is_outer or target != source), "label", is_outer)
+        for source, targets, is_outer in ends
+    ]
+    wires = [wire for wire in wires if wire.targets]
+    layout = lay_out([NAMES[:size], NAMES[size:]], wires, 0, 0)
+    for one, other in combinations(layout.boxes.values(), 2):
+        assert one.top + one.height < other.top or other.top + other.height < one.top
+    lines = []
+    for number, wire in enumerate(layout.wires):
+        assert set(wire.ways) == set(wire.wire.targets)
+        for target, way in wire.ways.items():
+            assert way[-1][0] in (layout.boxes[target].left, layout.boxes[target].right)
+            lines += ((number, *sorted(segment)) for segment in pairwise(way))
+    for _number, (left, top), (right, bottom) in lines:
+        for box in layout.boxes.values():
+            assert right <= box.left or left >= box.right or bottom <= box.top or top >= box.top + box.height
+    for (one, *first), (other, *second) in combinations(lines, 2):
+        for axis in (0, 1):
+            along = 1 - axis
+            if one != other and first[0][axis] == first[1][axis] == second[0][axis] == second[1][axis]:
+                assert first[1][along] <= second[0][along] or second[1][along] <= first[0][along]
+
+
+def test_columns_follow_the_longest_path_and_circles_go_back():
+    wires = [Wire("B0", ("B1", "B2"), ""), Wire("B1", ("B2",), ""), Wire("B2", ("B0",), "")]
+    layout = lay_out([NAMES[:3]], wires, 0, 0)
+    lefts = [layout.boxes[name].left for name in NAMES[:3]]
+    assert lefts == sorted(set(lefts))
+    back = layout.wires[2].ways["B0"]
+    assert back[-1][0] == layout.boxes["B0"].left + BOX
+
+
+def test_colours_follow_the_colour_scheme():
+    assert re.search(r"prefers-color-scheme:dark\)\{.*\.box\{fill", draw_system(System()), re.DOTALL)
