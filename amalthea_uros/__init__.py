@@ -34,6 +34,9 @@ if TYPE_CHECKING:
     from amalthea_uros import units as units
     from amalthea_uros.analyze.assignment import Proposal as Proposal
     from amalthea_uros.analyze.assignment import propose_priorities as propose_priorities
+    from amalthea_uros.analyze.impact import Effect as Effect
+    from amalthea_uros.analyze.impact import Impact as Impact
+    from amalthea_uros.analyze.impact import ImpactRow as ImpactRow
     from amalthea_uros.analyze.results import Analysis as Analysis
     from amalthea_uros.analyze.results import CallbackResult as CallbackResult
     from amalthea_uros.analyze.results import ChainResult as ChainResult
@@ -114,6 +117,7 @@ if TYPE_CHECKING:
 
 _NAMES = {
     "analyze.assignment": ("Proposal", "propose_priorities"),
+    "analyze.impact": ("Effect", "Impact", "ImpactRow"),
     "analyze.results": (
         "Analysis",
         "CallbackResult",

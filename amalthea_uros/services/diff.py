@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from amalthea_uros.analyze.impact import Impact, impact
-from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.difference.comparison import Change, difference
@@ -19,6 +18,9 @@ from amalthea_uros.services.migrate import migrate
 from amalthea_uros.services.paths import StrPath
 from amalthea_uros.services.timing_changes import TimingChange, timing_changes
 from amalthea_uros.xmi.migrate.load import announcements
+
+if TYPE_CHECKING:
+    from amalthea_uros.analyze.impact import Impact
 
 #: What is said about a model that was migrated.
 _MIGRATION = ("XMI008", "XMI009")
@@ -81,6 +83,9 @@ def diff(old: Model | StrPath, new: Model | StrPath, *, with_impact: bool = Fals
 
 def _impact(systems: Sequence[System]) -> Impact:
     """What the differences of two systems do to the results; nothing if there are none."""
+    from amalthea_uros.analyze.impact import Impact, impact
+    from amalthea_uros.analyze.system import analyze_system
+
     if not systems:
         return Impact(rows=(), unchanged=0)
     return impact(*map(analyze_system, systems))

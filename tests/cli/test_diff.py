@@ -30,6 +30,11 @@ NEW = """<swModel>
 </swModel>
 """
 EXPECTED = """\
+Timing
+  Executor_Task: preemption preemptive -> cooperative
+  + runnable X
+
+Objects
 - Label Y
 ~ Task Executor_Task
     stimuli: removed S
@@ -56,6 +61,7 @@ def test_text_is_grouped_by_object(files) -> None:
     result = run(*files)
     assert (sorted(result.output.splitlines()), result.exit_code) == (sorted(EXPECTED.splitlines()), 1)
     lines = result.output.splitlines()
+    assert lines[:5] == EXPECTED.splitlines()[:5]
     assert lines[lines.index("~ Task Executor_Task") + 1].startswith("    ")
     assert lines[-1] == EXPECTED.splitlines()[-1]
 

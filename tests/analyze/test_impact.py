@@ -1,0 +1,121 @@
+"""What a change does to the results: only what is guaranteed counts, and unknown is never better."""
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from amalthea_uros.analyze.impact import Effect, Figure, Goal, Impact, Part, Unit, compare, verdict_figure
+from amalthea_uros.analyze.results import Claim
+from amalthea_uros.analyze.summary import Schedulable
+from amalthea_uros.analyze.verdicts import Failure, Verdict
+
+GOOD = (Verdict.MET, Schedulable.YES)
+OPEN = (Verdict.UNKNOWN, Schedulable.UNKNOWN, None)
+BAD = (Verdict.MISSED, Verdict.UNBOUNDED, Failure.LOST, Failure.OVERLOAD, Schedulable.NO)
+
+
+def figure(value, goal=Goal.LOW, **others):
+    return Figure(part=Part.PROCESS, object="A", quantity="q", value=value, goal=goal, **others)
+
+
+def effect(before, after):
+    """The effect of a figure that changes."""
+    (row,) = compare([before], [after]).rows
+    return row.effect
+
+
+@pytest.mark.parametrize(
+    ("goal", "expected"), [(Goal.LOW, Effect.WORSE), (Goal.HIGH, Effect.BETTER), (Goal.NONE, Effect.CHANGED)]
+)
+def test_the_goal_says_which_values_are_better(goal, expected):
+    assert effect(figure(1, goal), figure(2, goal)) is expected
+
+
+@pytest.mark.parametrize("goal", Goal)
+def test_a_value_that_becomes_unknown_is_worse(goal):
+    assert effect(figure(1, goal), figure(None, goal)) is Effect.WORSE
+
+
+def test_nobody_can_say_whether_a_value_is_better_than_an_unknown_one():
+    assert effect(figure(None), figure(1)) is Effect.UNKNOWN
+
+
+def test_any_value_is_better_than_an_overload_and_an_overload_is_worse_than_unknown():
+    overload = figure(None, is_overload=True)
+    assert effect(overload, figure(10**15)) is Effect.BETTER
+    assert effect(figure(None), overload) is Effect.WORSE
+    assert effect(overload, figure(None)) is Effect.UNKNOWN
+
+
+@pytest.mark.parametrize("before", GOOD + OPEN + BAD)
+@pytest.mark.parametrize("after", GOOD + OPEN + BAD)
+def test_only_what_is_met_for_certain_is_better(before, after):
+    rows = compare([verdict_figure(Part.PROCESS, "A", before)], [verdict_figure(Part.PROCESS, "A", after)]).rows
+    if before == after:
+        assert rows == ()
+        return
+    found = rows[0].effect
+    assert (found is Effect.BETTER) == (after in GOOD and before not in GOOD)
+    if before in GOOD and after not in GOOD:
+        assert found is Effect.WORSE
+    if before in OPEN and after in BAD:
+        assert found is Effect.WORSE
+    if before in BAD and after in OPEN:
+        assert found is Effect.UNKNOWN
+
+
+def test_what_only_one_side_has_is_neither_better_nor_worse():
+    one = figure(1)
+    assert [row.effect for row in compare([], [one]).rows] == [Effect.ADDED]
+    assert [row.effect for row in compare([one], []).rows] == [Effect.REMOVED]
+
+
+def test_a_known_part_of_an_unknown_load_is_compared_too():
+    less, more = (figure(None, unit=Unit.SHARE, at_least=Fraction(part, 4)) for part in (1, 2))
+    assert effect(less, more) is Effect.UNKNOWN
+
+
+def test_the_claim_of_a_row_is_the_weaker_one():
+    (row,) = compare([figure(2, claim=Claim.EXACT)], [figure(3, claim=Claim.BOUND)]).rows
+    assert row.claim is Claim.BOUND
+
+
+def test_requirements_of_one_name_are_compared_in_their_order():
+    found = compare([figure(1), figure(5)], [figure(1), figure(4)])
+    assert [(row.before.value, row.after.value) for row in found.rows] == [(5, 4)]
+    assert found.unchanged == 1
+
+
+VALUES = st.one_of(st.none(), st.integers(0, 9))
+SIDES = st.dictionaries(st.sampled_from("ABCDE"), st.builds(figure, VALUES, st.just(Goal.LOW), is_overload=st.just(False)))
+OPPOSITE = {
+    Effect.BETTER: {Effect.WORSE},
+    Effect.WORSE: {Effect.BETTER, Effect.UNKNOWN},
+    Effect.UNKNOWN: {Effect.WORSE, Effect.UNKNOWN},
+    Effect.ADDED: {Effect.REMOVED},
+    Effect.REMOVED: {Effect.ADDED},
+    Effect.CHANGED: {Effect.CHANGED},
+}
+
+
+def named(side):
+    return [
+        Figure(part=each.part, object=name, quantity=each.quantity, value=each.value, goal=each.goal)
+        for name, each in side.items()
+    ]
+
+
+@given(SIDES, SIDES)
+def test_the_way_back_has_the_same_rows_with_opposite_effects(one, other):
+    there, back = compare(named(one), named(other)), compare(named(other), named(one))
+    assert there.unchanged == back.unchanged
+    effects = {row.figure.key: row.effect for row in back.rows}
+    assert {row.figure.key for row in there.rows} == effects.keys()
+    assert all(effects[row.figure.key] in OPPOSITE[row.effect] for row in there.rows)
+
+
+@given(SIDES)
+def test_no_change_has_no_impact(side):
+    assert compare(named(side), named(side)) == Impact(rows=(), unchanged=len(side))
