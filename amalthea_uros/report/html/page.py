@@ -12,9 +12,10 @@ from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros._version import __version__
+from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.escape import visible
-from amalthea_uros.report.html.badges import tone_of
+from amalthea_uros.report.html.badges import tone_of, verdict_badge
 from amalthea_uros.report.html.blocks import Section, Tone
 from amalthea_uros.report.html.sections import (
     bus,
@@ -32,7 +33,7 @@ from amalthea_uros.report.html.sections import (
     tightest,
     worst_window,
 )
-from amalthea_uros.report.judged import why
+from amalthea_uros.report.judged import judged_rows, why
 from amalthea_uros.report.pictures.style import style_sheet
 from amalthea_uros.services.report import ReportContent
 
@@ -60,7 +61,7 @@ _WORDS = {Tone.GOOD: "Schedulable", Tone.BAD: "Not schedulable", Tone.UNKNOWN: "
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class Opening:
     """What the page says first.
 
     Attributes
@@ -124,12 +125,11 @@ def _facts(content: ReportContent) -> str:
     return ", ".join(counted(number, noun) for noun, number in {**numbers, "limit": judged}.items() if number)
 
 
-def _verdict(content: ReportContent) -> Verdict:
+def _verdict(content: ReportContent) -> Opening:
     summary = content.analysis.summary
     tone = tone_of(summary.schedulable)
     overloads = [(core.name, "the core is overloaded") for core in summary.overloaded]
-    others = [
-        (item.name, ": ".join(filter(None, (str(item.verdict), why(item))))) for item in (*summary.failing, *summary.unknown)
-    ]
+    rows = (row.item for row in judged_rows(content.analysis) if row.item.verdict is not Verdict.MET)
+    others = [(item.name, ": ".join(filter(None, (verdict_badge(item).word, why(item))))) for item in rows]
     reasons = list(dict.fromkeys((*overloads, *others)))
-    return Verdict(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))
+    return Opening(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))
