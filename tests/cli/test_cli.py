@@ -100,7 +100,8 @@ def test_diff(brake):
     brake.write_text(brake.read_text().replace('value="10" unit="ms"', 'value="20" unit="ms"'))
     run = amuros("diff", BRAKE, brake, "--output", "text")
     assert run.returncode == 1
-    assert run.stdout == "~ PeriodicStimulus T_10ms\n    recurrence: 10 ms -> 20 ms\n\n1 difference: 1 changed\n"
+    timing = "Timing\n  Brake (left): period 10 ms -> 20 ms\n\nObjects\n"
+    assert run.stdout == f"{timing}~ PeriodicStimulus T_10ms\n    recurrence: 10 ms -> 20 ms\n\n1 difference: 1 changed\n"
 
 
 def test_diff_as_json(brake):

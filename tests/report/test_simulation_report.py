@@ -33,6 +33,8 @@ class SimulationResult:
     paths: tuple[Path, ...] = (Path("app.yaml"),)
     findings: tuple[Finding, ...] = ()
     with_metrics: bool = False
+    differences: tuple = ()
+    impact: object = None
 
 
 def text(simulation, **others):
