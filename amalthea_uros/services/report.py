@@ -42,7 +42,7 @@ _DURATIONS = (
     *(part * MILLISECOND for part in (500, 200, 100, 50, 20, 10, 5, 2, 1)),
 )
 #: About so many jobs and calls of runnables are executed in such a run: a second on a usual computer.
-_MOST_WORK = 30_000
+_MOST_WORK = 20_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,7 +95,7 @@ def compile_report(
     ----------
     changes : such as "Executor_Task.period=2ms"; made before everything but the check of the files
     with_bus : with the messages on the CAN bus of an `app.yaml`
-    duration : of the simulation; None: so long that about thirty thousand jobs and calls are executed, but at most 10 s
+    duration : of the simulation; None: so long that about twenty thousand jobs and calls are executed, but at most 10 s
     title : None: the names of the files
     date : shown below the title
 

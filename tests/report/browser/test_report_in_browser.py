@@ -101,20 +101,25 @@ def test_colours_follow_the_reader_and_the_button(opened):
 
 def test_the_gantt_chart_is_zoomed_by_keyboard_and_mouse(opened):
     picture = element(opened, "svg[data-zoom]")
-    width = "return document.querySelector('svg[data-zoom] [data-plot] rect').getBoundingClientRect().width"
-    before = opened.execute_script(width)
+    boxes = (
+        "return Array.from(document.querySelector('svg[data-zoom]').querySelectorAll('[data-plot] rect'),"
+        " (box) => +box.getAttribute('width'))"
+    )
+    before = pytest.approx(opened.execute_script(boxes))
+    # The picture is drawn anew with the next frame.
+    soon = wait.WebDriverWait(opened, 5, poll_frequency=0.05)
     opened.execute_script("arguments[0].focus()", picture)
     opened.switch_to.active_element.send_keys("+")
-    assert opened.execute_script(width) > before
+    soon.until(lambda _: opened.execute_script(boxes) != before)
     opened.switch_to.active_element.send_keys("0")
-    assert opened.execute_script(width) == pytest.approx(before)
+    soon.until(lambda _: opened.execute_script(boxes) == before)
     opened.execute_script(
         "const box = arguments[0].getBoundingClientRect();"
         "arguments[0].dispatchEvent(new WheelEvent('wheel', {deltaY: -120, ctrlKey: true, cancelable: true,"
         " clientX: box.x + box.width / 2, clientY: box.y + box.height / 2}))",
         picture,
     )
-    assert opened.execute_script(width) > before
+    soon.until(lambda _: opened.execute_script(boxes) != before)
 
 
 def test_the_skip_link_is_first_and_everything_has_a_visible_focus(opened):
