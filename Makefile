@@ -18,6 +18,7 @@ demo: $(READY)
 	sed 's/rate: 50 Hz/rate: 100 Hz/' samples/bodas-test-advanced.yaml > build/faster.yaml
 	$(BIN)/amuros build build/faster.yaml -o build/faster.amxmi
 	$(BIN)/amuros diff build/app.amxmi build/faster.amxmi || true
+	$(BIN)/amuros report samples/bodas-test-advanced.yaml -o build/report.html
 
 test: $(READY)
 	$(BIN)/python -m pytest -n auto

@@ -13,6 +13,7 @@ This module is the public interface:
 - synthetic tasks and chains without any file: `taskset`, `task`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
+- reports of all of these as one HTML page: `report`
 - events of simulations: `EventTable`; changes of values: `parse_change`, `parse_sweep`
 - AMALTHEA models: `Model` (`Model.new()` is an empty one), `check`, `extract`; all AMALTHEA classes are in `amuros.am`
 - systems of the generic performance model: `analyze_system`, `sensitivity`, `propose_priorities`, `paths`, `build_model`; their classes
@@ -74,6 +75,8 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Reference as Reference
     from amalthea_uros.perf.activities import Communication as Communication
     from amalthea_uros.perf.system import System as System
+    from amalthea_uros.report.library import Report as Report
+    from amalthea_uros.report.library import report as report
     from amalthea_uros.services.analyze import AnalysisResult as AnalysisResult
     from amalthea_uros.services.analyze import analyze as analyze
     from amalthea_uros.services.analyze import analyze_files as analyze_files
@@ -149,6 +152,7 @@ _NAMES = {
     "metamodel.model": ("Document", "Model", "Reference"),
     "perf.activities": ("Communication",),
     "perf.system": ("System",),
+    "report.library": ("Report", "report"),
     "services.analyze": ("AnalysisResult", "analyze", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
     "services.campaign.run": ("Outcome", "Run"),

@@ -133,6 +133,14 @@ def parse_time(text: str) -> Time:
     return int(parse(text, TIME))
 
 
+def parse_duration(text: str) -> Time:
+    """Picoseconds of a time that is greater than zero; ValueError as for `parse`, or if it is not."""
+    duration = parse_time(text)
+    if duration <= 0:
+        raise ValueError("a duration must be greater than zero")
+    return duration
+
+
 def parse_frequency(text: str) -> Frequency:
     """Hertz of a text such as "300 MHz"; ValueError as for `parse`."""
     return parse(text, FREQUENCY)

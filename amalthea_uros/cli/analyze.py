@@ -11,6 +11,7 @@ import click
 
 from amalthea_uros.analyze.results import EXPLAINED, Quantity
 from amalthea_uros.analyze.summary import Schedulable
+from amalthea_uros.cli.failing import FAILING, fail_on_option
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
 from amalthea_uros.cli.output import (
     Output,
@@ -29,13 +30,6 @@ from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_
 from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.services.changes.change import EXAMPLE, Change
 from amalthea_uros.timing.settings import Settings
-
-#: The closing verdicts that make the exit code 1.
-_FAILING = {
-    "missed": (Schedulable.NO,),
-    "unknown": (Schedulable.NO, Schedulable.UNKNOWN),
-    "never": (),
-}
 
 
 @click.command("analyze")
@@ -85,13 +79,7 @@ _FAILING = {
     is_flag=True,
     help="Show by how much execution times can increase before a limit is missed.",
 )
-@click.option(
-    "--fail-on",
-    type=click.Choice(list(_FAILING)),
-    default="missed",
-    show_default=True,
-    help="What makes the exit code 1: something is missed, lost or overloaded; or also unknown; or nothing.",
-)
+@fail_on_option
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
 @click.option("--metrics", "with_metrics", is_flag=True, help="Show minimum, mean and maximum of all metrics of each process.")
 @output_option(AnalysisResult)
@@ -142,7 +130,7 @@ def command(
     schedulable = result.analysis.summary.schedulable
     if schedulable is not Schedulable.YES and (as_text is not None or not shows_text(outputs)):
         show_line(closing_line(result.analysis.summary))
-    sys.exit(1 if schedulable in _FAILING[fail_on] else 0)
+    sys.exit(1 if schedulable in FAILING[fail_on] else 0)
 
 
 def _with_target(outputs: tuple[Output, ...], target: Path | None, changes: Sequence[Change]) -> tuple[Output, ...]:

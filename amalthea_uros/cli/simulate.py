@@ -34,14 +34,7 @@ from amalthea_uros.services.changes.change import Change
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult, plan_simulation, simulate_campaign, simulate_plan
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
-from amalthea_uros.units import Time, parse_time, time_text
-
-
-def _duration(text: str) -> Time:
-    duration = parse_time(text)
-    if duration <= 0:
-        raise ValueError("a duration must be greater than zero")
-    return duration
+from amalthea_uros.units import Time, parse_duration, parse_time, time_text
 
 
 def _window(text: str) -> tuple[Time, Time]:
@@ -62,7 +55,7 @@ def _labels(text: str) -> tuple[str, ...]:
 @click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
 @click.option(
     "--duration",
-    type=Parsed("TIME", _duration),
+    type=Parsed("TIME", parse_duration),
     default="1 s",
     show_default=True,
     help="Model time of a run, e.g. 5min.",

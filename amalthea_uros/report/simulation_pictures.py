@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor
@@ -17,7 +17,7 @@ from amalthea_uros.report.pictures.from_events import chain_way, jobs_of
 from amalthea_uros.report.pictures.gantt import GanttChart, gantt
 from amalthea_uros.report.pictures.histogram import Histogram, Series, histogram
 from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind
-from amalthea_uros.report.pictures.jobs import ProcessRow
+from amalthea_uros.report.pictures.jobs import CoreRows, ProcessRow
 from amalthea_uros.report.pictures.state_timeline import StateTimeline, state_timeline
 from amalthea_uros.report.pictures.windows import default_window
 from amalthea_uros.services.names import require
@@ -44,15 +44,27 @@ Window: TypeAlias = tuple[Time, Time]
 
 @dataclass(frozen=True, slots=True)
 class _View:
-    """A part of a run; `way` is what it shows beside the jobs: a chain, its stimulus, and from when to when the latency is."""
+    """A part of a run.
+
+    Attributes
+    ----------
+    process : the one that it is about; "" for a chain or a window of the user
+    way : what it shows beside the jobs: a chain, its stimulus, and from when to when the latency is
+    """
 
     title: str
     window: Window
+    process: str = ""
     way: tuple[str, Occurrence, Time, Time] | None = None
 
 
 def gantt_picture(
-    result: SimulationResult, *, window: Window | None = None, process: str | None = None, chain: str | None = None
+    result: SimulationResult,
+    *,
+    window: Window | None = None,
+    process: str | None = None,
+    chain: str | None = None,
+    most_rows: int | None = None,
 ) -> str:
     """All processes in a part of the run.
 
@@ -61,6 +73,7 @@ def gantt_picture(
     window : the part; None: around the job that comes closest to its deadline, or responds last
     process : the part around its longest response time
     chain : the part around its longest reduced reaction time, with the way of the effect through the jobs
+    most_rows : of more processes, only so many are shown: those of the way first, then those with most of the executed jobs
 
     Raises
     ------
@@ -71,7 +84,20 @@ def gantt_picture(
     events = record_events(result, start, end)
     ways = () if view.way is None else (_way(events, *view.way),)
     rows = jobs_of(events, start, end, _deadlines(result), _cores(result))
-    return gantt(GanttChart(f"{_model(result)}: {view.title}", start, end, rows, ways))
+    number = sum(len(core.rows) for core in rows)
+    title = view.title
+    if most_rows is not None and number > most_rows:
+        title = f"{title} ({most_rows} of {number:,} processes)"
+        rows = _most_important(rows, [view.process, *(step.process for way in ways for step in way.steps)], most_rows)
+    return gantt(GanttChart(_titled(result, title), start, end, rows, ways))
+
+
+def _most_important(cores: Sequence[CoreRows], names: Sequence[str], most: int) -> tuple[CoreRows, ...]:
+    """The rows of some processes, and of those with most of the jobs."""
+    rows = sorted((row for core in cores for row in core.rows), key=lambda row: (row.name not in names, -len(row.jobs)))
+    kept = {row.name for row in rows[:most]}
+    found = (replace(core, rows=tuple(row for row in core.rows if row.name in kept)) for core in cores)
+    return tuple(core for core in found if core.rows)
 
 
 def timeline_picture(result: SimulationResult, process: str, window: Window | None) -> str:
@@ -79,12 +105,14 @@ def timeline_picture(result: SimulationResult, process: str, window: Window | No
     start, end = window or _longest_response(result.simulation.processes[process]).window
     cores = jobs_of(record_events(result, start, end), start, end, _deadlines(result))
     rows = {row.name: row for core in cores for row in core.rows}
-    title = f"{_model(result)}: states of {process}"
+    title = _titled(result, f"states of {process}")
     return state_timeline(StateTimeline(title, start, end, rows.get(process, ProcessRow(process, ()))))
 
 
-def _model(result: SimulationResult) -> str:
-    return ", ".join(path.name for path in result.paths)
+def _titled(result: SimulationResult, title: str) -> str:
+    """A title with the names of the files; a system of the library has none."""
+    files = ", ".join(path.name for path in result.paths)
+    return f"{files}: {title}" if files else title
 
 
 def _view(result: SimulationResult, window: Window | None, process: str | None, chain: str | None) -> _View:
@@ -102,7 +130,7 @@ def _longest_response(process: ProcessObservation) -> _View:
     if response is None:
         raise InvalidArgumentError(f"no job of {process.name!r} ended in the run; say with --window FROM..TO what to show")
     start, end = _whole(response)
-    return _View(f"longest response time of {process.name}", default_window(start, end))
+    return _View(f"longest response time of {process.name}", default_window(start, end), process.name)
 
 
 def _longest_latency(chain: ChainObservation) -> _View:
@@ -112,7 +140,7 @@ def _longest_latency(chain: ChainObservation) -> _View:
         raise InvalidArgumentError(f"no response of the chain {chain.name!r} was observed in the run: {reason}")
     start, end = _whole(latency)
     title = f"longest reduced reaction time of {chain.name}"
-    return _View(title, default_window(start, end), (chain.name, latency.at_max, start, end))
+    return _View(title, default_window(start, end), way=(chain.name, latency.at_max, start, end))
 
 
 def _whole(observed: MetricObservation) -> Window:
@@ -159,8 +187,12 @@ def quantity_of(name: str, system: System) -> tuple[str, str]:
     return of, quantity
 
 
-def histogram_picture(result: SimulationResult, name: str) -> str:
+def histogram_picture(result: SimulationResult, name: str, more: Iterable[Mark] = ()) -> str:
     """The values of a metric or of a latency; `name` as for `quantity_of`.
+
+    Parameters
+    ----------
+    more : marks besides those of what was observed, and of the deadline
 
     Raises
     ------
@@ -176,10 +208,10 @@ def histogram_picture(result: SimulationResult, name: str) -> str:
     if quantity not in kept:
         advice = f"there are those of {', '.join(kept)}" if kept else "nothing of it was observed"
         raise InvalidArgumentError(f"there is no histogram of {quantity} of {of!r}; {advice}")
-    return _histogram_of(result, of, quantity, observed[quantity])
+    return _histogram_of(result, of, quantity, observed[quantity], more)
 
 
-def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: MetricObservation) -> str:
+def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: MetricObservation, more: Iterable[Mark]) -> str:
     assert observed.histogram is not None
     # Bins are a whole number of picoseconds wide.
     edges = tuple(map(int, observed.histogram.edges))
@@ -188,8 +220,9 @@ def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: 
     deadline = _deadlines(result).get(name) if quantity == JobMetric.RESPONSE_TIME else None
     if deadline is not None:
         marks.append(Mark("deadline", deadline, MarkKind.LIMIT))
+    marks += more
     things = "jobs" if quantity in tuple(JobMetric) else "observations"
-    title = f"{_model(result)}: {words} of {name}"
+    title = _titled(result, f"{words} of {name}")
     chart = Histogram(title, edges, (Series("simulated", observed.histogram.counts),), tuple(marks), words, things)
     return histogram(chart)
 

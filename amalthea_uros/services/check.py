@@ -20,7 +20,7 @@ from amalthea_uros.findings.targets import TARGETS, Target
 from amalthea_uros.findings.unreadable import is_unreadable
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import open_model
+from amalthea_uros.services.inputs import ModelInput, open_model
 from amalthea_uros.services.paths import StrPath, as_paths, by_model, without_other_yaml
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
@@ -125,9 +125,7 @@ def check_files(
         except ReadError as error:
             found += error.findings
             is_readable &= not is_unreadable(error.findings)
-    findings = tuple(finding for finding in found if _is_shown(finding, selection, accepted))
-    if len(findings) < len(found):
-        findings = _without_repeated(findings, found)
+    findings = _shown_findings(found, selection, accepted)
     return CheckResult(
         paths=files,
         findings=findings,
@@ -136,6 +134,27 @@ def check_files(
         is_readable=is_readable,
         rules=tuple(rules) if is_checked else (),
     )
+
+
+def check_input(opened: ModelInput, folder: Path) -> Presentation:
+    """The findings about a model that was read, as they are shown with the settings of the project in a folder.
+
+    Raises
+    ------
+    ReadError : the settings of the project are wrong.
+    InvalidArgumentError : they name a rule that does not exist, or a baseline that cannot be read.
+    """
+    settings = CheckSettings().over(project_settings(folder))
+    selection = selection_of(settings)
+    found = _check_input(opened, selection.rules())
+    findings = _shown_findings(found, selection, _accepted(settings.baseline))
+    return present(findings, _asked(selection, settings.targets))
+
+
+def _shown_findings(found: Sequence[Finding], selection: Selection, accepted: Collection[str]) -> tuple[Finding, ...]:
+    """Those that are not suppressed in any way."""
+    findings = tuple(finding for finding in found if _is_shown(finding, selection, accepted))
+    return findings if len(findings) == len(found) else _without_repeated(findings, found)
 
 
 def write_baseline(result: CheckResult, path: StrPath) -> None:
@@ -226,7 +245,11 @@ def _asked(selection: Selection, targets: Iterable[str]) -> set[str]:
 
 def _check_group(paths: Sequence[Path], rules: Collection[str]) -> list[Finding]:
     """The findings about one model, those of reading and building it included."""
-    opened = open_model(paths)
+    return _check_input(open_model(paths), rules)
+
+
+def _check_input(opened: ModelInput, rules: Collection[str]) -> list[Finding]:
+    """The findings about a model that was read, those of reading and building it included."""
     general = [finding for finding in opened.findings if _is_selected(finding, rules)]
     return sorted([*general, *_run(opened.model, rules, opened.system)], key=by_place)
 

@@ -14,18 +14,24 @@ if TYPE_CHECKING:
 
 
 def record_events(result: SimulationResult, start: Time, end: Time) -> EventTable:
-    """The events of a part of a simulation, which is repeated up to there: runs with the same options are equal.
+    """The events of a part of a simulation. If they were not kept, it is repeated up to there: runs with the same options are equal.
 
     Raises
     ------
     InvalidArgumentError : nothing happens in the window.
     """
+    end = min(end, result.options.duration)
+    kept = result.simulation.trace
+    events = _repeated(result, start, end) if kept is None else kept.between(start, end)
+    if not len(events):
+        raise InvalidArgumentError(f"nothing happens from {time_text(start)} to {time_text(end)}; choose another window")
+    return events
+
+
+def _repeated(result: SimulationResult, start: Time, end: Time) -> EventTable:
     from amalthea_uros.simulate.system import simulate_system
     from amalthea_uros.trace.recorder import Recorder
 
-    end = min(end, result.options.duration)
     recorder = Recorder()
     simulate_system(result.system, replace(result.options, duration=end, traced=(start, end)), [recorder])
-    if not len(recorder.table):
-        raise InvalidArgumentError(f"nothing happens from {time_text(start)} to {time_text(end)}; choose another window")
     return recorder.table

@@ -294,7 +294,7 @@ def simulate(
 
     observed = tuple(labels)
     require_labels(observed, system)
-    time, recorder = _duration(duration), Recorder()
+    time, recorder = time_of(duration), Recorder()
     sinks: list[OpenSink] = [*map(_trace_opener, trace_paths), *([recorder] if trace else [])]
     traced = (0, time) if sinks else None
     options = Options(duration=time, seed=seed, mode=_mode(mode), settings=settings, traced=traced, labels=observed)
@@ -397,7 +397,8 @@ def _available_cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _duration(duration: str | Time) -> Time:
+def time_of(duration: str | Time) -> Time:
+    """A duration in picoseconds; InvalidArgumentError if it is no time."""
     if isinstance(duration, int):
         return duration
     try:

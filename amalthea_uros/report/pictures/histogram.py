@@ -127,14 +127,14 @@ def _coarsened(histogram: Histogram) -> Histogram:
     before = edges[0] // (edges[1] - edges[0]) % size
     after = -(before + len(edges) - 1) % size
     start, end = edges[0] - before * (edges[1] - edges[0]), edges[-1] + after * (edges[-1] - edges[-2])
-    padded = (replace(series, counts=(0,) * before + series.counts) for series in histogram.series)
-    merged = tuple(_grouped(series, size) for series in padded)
+    merged = tuple(_grouped(series, size, before) for series in histogram.series)
     return replace(histogram, edges=(start, *edges[size - before : -1 : size], end), series=merged)
 
 
-def _grouped(series: Series, size: int) -> Series:
-    counts = tuple(sum(series.counts[first : first + size]) for first in range(0, len(series.counts), size))
-    return Series(series.name, counts)
+def _grouped(series: Series, size: int, before: int) -> Series:
+    """Groups of so many bins; the first one begins with some that are not there."""
+    firsts = range(-before, len(series.counts), size)
+    return Series(series.name, tuple(sum(series.counts[max(first, 0) : first + size]) for first in firsts))
 
 
 def _window(histogram: Histogram) -> tuple[Time, Time]:

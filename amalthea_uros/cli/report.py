@@ -1,0 +1,124 @@
+"""`amuros report`: one page, or a summary, about the timing of a system."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import click
+
+from amalthea_uros._internal.files import STANDARD_OUTPUT, is_standard_output
+from amalthea_uros.cli.failing import FAILING, fail_on_option
+from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
+from amalthea_uros.cli.output import (
+    Output,
+    refuse_input,
+    refuse_unwritable,
+    show_differences,
+    show_line,
+    verbose_option,
+    write_outputs,
+)
+from amalthea_uros.cli.parsed import Parsed
+from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
+from amalthea_uros.report.closing_line import closing_line
+from amalthea_uros.report.suffixes import FORMATS, format_of
+from amalthea_uros.services.changes.change import Change
+from amalthea_uros.services.report import compile_report
+from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import Time, parse_duration
+
+_SUFFIXES = ", ".join(FORMATS)
+
+
+@click.command("report")
+@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
+@click.option(
+    "-o",
+    "files",
+    multiple=True,
+    required=True,
+    type=OUTPUT_FILE,
+    metavar="FILE",
+    help=f"File to write; its suffix says the format: {_SUFFIXES}. May be repeated; '-' is standard output.",
+)
+@click.option("--format", "standard_format", type=click.Choice(list(FORMATS.values())), help="Format of standard output.")
+@click.option("--title", help="Title of the report; default: the names of the files.")
+@click.option(
+    "--date", default="", help="Date, or any other text, shown below the title; without it the output is reproducible."
+)
+@set_option
+@settings_options
+@click.option(
+    "--mode",
+    "modes",
+    multiple=True,
+    type=Assignment("LABEL=VALUE", str),
+    help="Constant value of a mode label; may be repeated.",
+)
+@click.option("--bus", "with_bus", is_flag=True, help="Also analyze the messages on the CAN bus of an app.yaml.")
+@click.option(
+    "--duration",
+    type=Parsed("TIME", parse_duration),
+    help="Model time of the simulation; default: up to 10 s.",
+)
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the simulation.")
+@click.option("--no-simulation", is_flag=True, help="Show the analysis only.")
+@fail_on_option
+@verbose_option
+def command(
+    paths: tuple[Path, ...],
+    files: tuple[Path, ...],
+    standard_format: str | None,
+    title: str | None,
+    date: str,
+    changes: tuple[Change, ...],
+    settings: Settings,
+    modes: tuple[tuple[str, str], ...],
+    with_bus: bool,
+    duration: Time | None,
+    seed: int,
+    no_simulation: bool,
+    fail_on: str,
+) -> None:
+    """Report on the timing of a system: one page with verdict, tightest requirements, pictures, findings and sources.
+
+    MODEL_OR_YAML is an app.yaml, one or more .amxmi files, or a folder of .amxmi files. A page (.html) needs nothing outside of
+    itself and can be printed; a summary (.md) fits in a comment of a CI system; .mmd and .dot have the data flow. The exit code is 1
+    if a deadline, requirement or constraint is missed, an activation is lost, or a core is overloaded.
+    """
+    outputs = _outputs(files, standard_format)
+    content = compile_report(
+        paths,
+        replace(settings, modes=dict(modes)),
+        changes=changes,
+        with_bus=with_bus,
+        with_simulation=not no_simulation,
+        duration=duration,
+        seed=seed,
+        title=title,
+        date=date,
+    )
+    show_differences(content.differences)
+    write_outputs(outputs, content)
+    show_line(closing_line(content.analysis.summary))
+    sys.exit(1 if content.analysis.summary.schedulable in FAILING[fail_on] else 0)
+
+
+def _outputs(files: tuple[Path, ...], standard_format: str | None) -> list[Output]:
+    """The formats and files, of which each can be written; refused before work that may take long."""
+    if len(set(files)) < len(files):
+        raise click.UsageError("two options -o name the same file; give each its own")
+    if standard_format is not None and not any(map(is_standard_output, files)):
+        raise click.UsageError(
+            "--format is the format of standard output; add -o -, or choose the format by the suffix of the file"
+        )
+    for path in files:
+        refuse_input(path, f"-o {path}")
+        refuse_unwritable(path)
+    return [Output(standard_format or "html" if is_standard_output(path) else format_of(path), _stream(path)) for path in files]
+
+
+def _stream(path: Path) -> Path:
+    return STANDARD_OUTPUT if is_standard_output(path) else path

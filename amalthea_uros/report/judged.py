@@ -1,0 +1,154 @@
+"""What a report puts first: the tightest requirements and the worst chains."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf
+
+from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessResult, Quantity, RequirementResult
+from amalthea_uros.analyze.summary import FAILURES, Judged
+from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
+
+_BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET)
+#: The quantities of chains that limits of these names limit.
+LIMITED = {"reaction": Quantity.MAX_REDUCED_REACTION_TIME, "data age": Quantity.MAX_REDUCED_DATA_AGE}
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedRow:
+    """A deadline, requirement or constraint, as it is shown.
+
+    Attributes
+    ----------
+    used : the value as part of the limit, such as "3.2 %"
+    """
+
+    item: Judged
+    what: str
+    value: str
+    limit: str
+    margin: str
+    used: str
+    claim: str
+
+
+def judged_rows(analysis: Analysis) -> list[JudgedRow]:
+    """All deadlines, requirements and constraints, the worst first: what fails, what is unknown, then the least margin.
+
+    A deadline that is also stated as a requirement is shown once.
+    """
+    stated = {(each.object, each.limit) for each in analysis.requirements if each.quantity == "response time"}
+    processes = (
+        each
+        for each in analysis.processes
+        if each.verdict is not None and (each.is_implicit or (each.name, each.deadline) not in stated)
+    )
+    items: list[Judged] = [*processes, *analysis.requirements]
+    return [_row(item) for item in sorted(items, key=_rank)]
+
+
+def _rank(item: Judged) -> tuple[int, float]:
+    badness = len(_BADNESS) if item.verdict is None else _BADNESS.index(item.verdict)
+    return badness, inf if item.margin is None else item.margin
+
+
+def _row(item: Judged) -> JudgedRow:
+    if isinstance(item, ProcessResult):
+        what = "response time, period" if item.is_implicit else "response time, deadline"
+        value = item.response.worst if item.response is not None else None
+        return _of(item, what, value, value, item.deadline, _claim(item))
+    what = f"{item.quantity} of {item.object}" if item.object else item.quantity
+    lower, upper = item.lower, item.upper
+    return _of(item, what, lower, upper, item.limit, _requirement_claim(item))
+
+
+def _of(item: Judged, what: str, lower: Time | None, upper: Time | None, limit: Time | None, claim: str) -> JudgedRow:
+    is_upper = isinstance(item, ProcessResult) or item.is_upper
+    return JudgedRow(
+        item=item,
+        what=what,
+        value=_value_text(item, lower, upper, limit, is_upper),
+        limit=limit_text(item),
+        margin=margin_text(item),
+        used=_used(upper, limit) if is_upper else "-",
+        claim=claim,
+    )
+
+
+def _value_text(item: Judged, lower: Time | None, upper: Time | None, limit: Time | None, is_upper: bool) -> str:
+    """The safe end; both ends where the verdict depends on where between them the value is."""
+    safe = upper if is_upper else lower
+    if item.verdict is Verdict.MET or lower == upper or lower is None or upper is None:
+        if safe is None:
+            return "no bound" if item.verdict in FAILURES else "unknown"
+        return rounded_time_text(safe, Rounding.UP if is_upper else Rounding.DOWN, limit)
+    return f"{rounded_time_text(lower, Rounding.DOWN, limit)} to {rounded_time_text(upper, Rounding.UP, limit)}"
+
+
+def limit_text(item: Judged) -> str:
+    """The limit with its direction."""
+    limit = item.deadline if isinstance(item, ProcessResult) else item.limit
+    is_upper = isinstance(item, ProcessResult) or item.is_upper
+    return "-" if limit is None else f"{'≤' if is_upper else '≥'} {time_text(limit)}"
+
+
+def margin_text(item: Judged) -> str:
+    """The distance from the limit, where it is certain."""
+    if item.margin is None or item.verdict is Verdict.UNKNOWN:
+        return "-"
+    return rounded_time_text(item.margin, Rounding.DOWN)
+
+
+def _used(value: Time | None, limit: Time | None) -> str:
+    if value is None or not limit:
+        return "-"
+    return f"{number_text(rounded(Fraction(value * 100, limit), Rounding.UP, 100))} %"
+
+
+def _claim(process: ProcessResult) -> str:
+    return str(process.response.claim) if process.response is not None and process.response.worst is not None else ""
+
+
+def _requirement_claim(requirement: RequirementResult) -> str:
+    if requirement.value is None:
+        return ""
+    return str(Claim.EXACT if requirement.lower == requirement.upper else Claim.BOUND)
+
+
+def why(item: Judged) -> str:
+    """Why a verdict is not met."""
+    if item.reason or item.verdict is Verdict.MET or item.margin is None or item.verdict is Verdict.UNKNOWN:
+        return item.reason
+    return f"exceeds its limit by {rounded_time_text(-item.margin, Rounding.UP)}" if item.margin < 0 else ""
+
+
+def worst_chains(analysis: Analysis) -> list[ChainResult]:
+    """The chains, those with the worst requirements first, then by reaction time."""
+    ranks = _ranks(analysis.requirements)
+    return sorted(analysis.chains, key=lambda chain: (ranks.get(chain.name, (len(_BADNESS), inf)), -_reaction(chain)))
+
+
+def _ranks(requirements: Iterable[RequirementResult]) -> dict[str, tuple[int, float]]:
+    found: dict[str, tuple[int, float]] = {}
+    for requirement in sorted(requirements, key=_rank):
+        found.setdefault(requirement.object, _rank(requirement))
+    return found
+
+
+def _reaction(chain: ChainResult) -> float:
+    value = chain.value(Quantity.MAX_REDUCED_REACTION_TIME)
+    return inf if value is None or value.value is None else value.value
+
+
+def requirements_of(chain: str, analysis: Analysis) -> Sequence[RequirementResult]:
+    """The requirements on the latencies of a chain, the worst first."""
+    return sorted((each for each in analysis.requirements if each.object == chain and each.quantity in LIMITED), key=_rank)
+
+
+def decisive_quantity(chain: str, analysis: Analysis) -> Quantity:
+    """The latency of a chain with the worst requirement; without one, its reaction time."""
+    requirements = requirements_of(chain, analysis)
+    return LIMITED[requirements[0].quantity] if requirements else Quantity.MAX_REDUCED_REACTION_TIME

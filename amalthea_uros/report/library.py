@@ -1,0 +1,101 @@
+"""Reports for callers of the library."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from io import StringIO
+from pathlib import Path
+
+from amalthea_uros.report import formats
+from amalthea_uros.report.suffixes import format_of
+from amalthea_uros.services.changes.change import Change
+from amalthea_uros.services.paths import StrPath
+from amalthea_uros.services.report import ReportContent, compile_report, save_text
+from amalthea_uros.services.simulate import time_of
+from amalthea_uros.services.subject import Subject
+from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import Time
+
+
+@dataclass(frozen=True)
+class Report:
+    """A report of a system.
+
+    Attributes
+    ----------
+    content : what it shows
+    """
+
+    content: ReportContent
+
+    @cached_property
+    def html(self) -> str:
+        """One page that needs nothing outside of itself."""
+        return self._text("html")
+
+    @cached_property
+    def markdown(self) -> str:
+        """A summary, short enough for a comment on GitHub."""
+        return self._text("markdown")
+
+    def save(self, path: StrPath) -> None:
+        """Write it; the suffix says the format: .html, .md, .mmd (Mermaid) or .dot (Graphviz) of the data flow.
+
+        Raises
+        ------
+        InvalidArgumentError : another suffix.
+        WriteError : the file cannot be written.
+        """
+        save_text(path, self._text(format_of(Path(path))))
+
+    def _text(self, name: str) -> str:
+        stream = StringIO()
+        formats.write(name, self.content, stream)
+        return stream.getvalue()
+
+    def __repr__(self) -> str:
+        return f"<Report of {self.content.title}: schedulable {self.content.analysis.summary.schedulable}>"
+
+
+def report(
+    subject: Subject,
+    settings: Settings | None = None,
+    *,
+    changes: Iterable[Change | str] = (),
+    duration: str | Time | None = None,
+    seed: int = 1,
+    with_simulation: bool = True,
+    with_bus: bool = False,
+    title: str | None = None,
+    date: str = "",
+) -> Report:
+    """Analyze, simulate and check files, an AMALTHEA model or a system, and report on it.
+
+    >>> report("app.yaml").save("report.html")  # doctest: +SKIP
+
+    Parameters
+    ----------
+    changes : such as "Executor_Task.period=2ms"
+    duration : of the simulation, such as "1 s", or picoseconds; None: so long that the work is limited
+    with_bus : with the messages on the CAN bus of an `app.yaml`
+    title : None: the names of the files
+    date : shown below the title; without one, the same input gives the same report
+
+    Raises
+    ------
+    ReadError, InvalidArgumentError : as for `compile_report`.
+    """
+    content = compile_report(
+        subject,
+        settings,
+        changes=changes,
+        with_bus=with_bus,
+        with_simulation=with_simulation,
+        duration=None if duration is None else time_of(duration),
+        seed=seed,
+        title=title,
+        date=date,
+    )
+    return Report(content)

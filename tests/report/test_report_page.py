@@ -1,0 +1,198 @@
+"""The page of a report: the verdict first, every result of the analysis in it, and nothing from elsewhere."""
+
+import re
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from lxml import html
+from support import ROOT, analysis_of
+
+from amalthea_uros import am, load, report, save
+from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.report.closing_line import closing_line
+from amalthea_uros.report.html.blocks import table
+from amalthea_uros.report.latencies import value_text
+from amalthea_uros.units import Rounding, rounded_time_text
+
+SAMPLES = ROOT / "samples"
+ADVANCED = SAMPLES / "bodas-test-advanced.yaml"
+ALL = sorted([*SAMPLES.glob("*.yaml"), SAMPLES / "executor.amxmi"])
+#: Elements of HTML that have no end tag.
+VOID = {"meta", "link", "br", "hr", "img", "input"}
+NAMES = {
+    "Executor_Task": "<script>alert(1)</script>",
+    "Control_Function": "\N{GRINNING FACE}" + "x" * 200,
+    "Message_Factor": "a\"b'&]]>",
+}
+
+
+@cache
+def page_of(path, **options):
+    return report(path, duration="100 ms", **options).html
+
+
+def parsed(page):
+    return html.document_fromstring(page)
+
+
+def text(node):
+    return " ".join(node.text_content().split())
+
+
+def section(page, anchor):
+    (found,) = parsed(page).xpath(f"//section[@id='{anchor}']")
+    return found
+
+
+def rows(page, anchor, caption):
+    (found,) = section(page, anchor).xpath(f".//table[starts-with(normalize-space(caption), '{caption}')]")
+    heads = [text(cell) for cell in found.xpath("./thead/tr/*")]
+    return {text(row[0]): dict(zip(heads, map(text, row), strict=True)) for row in found.xpath("./tbody/tr")}
+
+
+@pytest.mark.parametrize("path", ALL, ids=lambda path: path.name)
+def test_the_verdict_is_the_first_section(path):
+    first = parsed(page_of(path)).xpath("//main/section")[0]
+    assert first.get("id") == "verdict"
+    assert text(first.xpath("./p")[0]) == closing_line(analysis_of(path).summary)
+
+
+@pytest.mark.parametrize("path", ALL, ids=lambda path: path.name)
+def test_every_requirement_and_response_time_is_there_as_analysed(path):
+    analysis = analysis_of(path)
+    judged = rows(page_of(path), "requirements", "Deadlines")
+    for requirement in analysis.requirements:
+        row = judged[requirement.name]
+        assert row["verdict"].endswith(requirement.verdict)
+        rounding = Rounding.UP if requirement.is_upper else Rounding.DOWN
+        assert row["value"] == rounded_time_text(requirement.value, rounding, requirement.limit)
+        assert row["margin"] == rounded_time_text(requirement.margin, Rounding.DOWN)
+    shown = rows(page_of(path), "response-times", "Response times by core")
+    for process in analysis.processes:
+        assert shown[process.name]["worst"] == rounded_time_text(process.response.worst, Rounding.UP, process.deadline)
+
+
+@pytest.mark.parametrize("path", ALL, ids=lambda path: path.name)
+def test_every_chain_is_there_as_analysed(path):
+    chains = analysis_of(path).chains
+    if chains:
+        shown = rows(page_of(path), "tightest", "Worst of")
+        for chain in chains:
+            assert shown[chain.name]["reaction time"] == value_text(chain.value(Quantity.MAX_REDUCED_REACTION_TIME))
+
+
+def test_the_reaction_time_of_the_thesis_is_explained_hop_by_hop():
+    # The thesis has at most 19.978 ms for what was measured; by hand: 20 ms until the next message, and 25 us and 4 us to execute.
+    hops = rows(page_of(ADVANCED), "chains", "Hops of factor-to-output")
+    assert [float(hop["wait"].split()[0]) for hop in hops.values()] == [0, 18.991, 1.007]
+    assert rows(page_of(ADVANCED), "tightest", "Worst of")["factor-to-output"]["limit"] == "reaction ≤ 25 ms"
+
+
+@pytest.mark.parametrize("path", ALL, ids=lambda path: path.name)
+def test_nothing_is_loaded_from_elsewhere(path):
+    page = page_of(path)
+    tree = parsed(page)
+    assert tree.xpath("//link | //img | //iframe | //script[@src] | //object | //embed | //base") == []
+    assert re.findall(r"url\((?!#)|@import", page) == []
+    addresses = re.findall(r"https?://[^\s\"'<)]+", page)
+    assert {address for address in addresses if "www.w3.org" not in address} <= set(tree.xpath("//a/@href"))
+
+
+@pytest.mark.parametrize("path", ALL, ids=lambda path: path.name)
+def test_elements_are_nested_and_references_lead_somewhere(path):
+    page = page_of(path)
+    body = re.sub(r"<(script|style)>.*?</\1>", "", page, flags=re.DOTALL)
+    opened = []
+    for end, name, empty in re.findall(r"<(/?)([a-zA-Z][\w]*)\b[^>]*?(/?)>", body):
+        if end:
+            assert opened.pop() == name
+        elif not empty and name.lower() not in VOID:
+            opened.append(name)
+    assert opened == []
+    tree = parsed(page)
+    ids = tree.xpath("//@id")
+    assert len(ids) == len(set(ids))
+    assert {link[1:] for link in tree.xpath("//a/@href") if link.startswith("#")} <= set(ids)
+    assert set(re.findall(r"url\(#([^)]*)\)", page)) <= set(ids)
+    levels = [int(heading.tag[1]) for heading in tree.xpath("//h1 | //h2 | //h3")]
+    assert levels[0] == 1
+    assert all(after <= before + 1 for before, after in pairwise(levels))
+    assert all(picture.get("role") == "img" for picture in tree.xpath("//*[local-name()='svg']"))
+
+
+def test_names_are_text(tmp_path):
+    model = load(SAMPLES / "executor.amxmi")
+    for old, new in NAMES.items():
+        model[am.Task, old].name = new
+    save(model, tmp_path / "names.amxmi")
+    tree = parsed(report(tmp_path / "names.amxmi", duration="100 ms").html)
+    assert not [script for script in tree.xpath("//script") if script.text.startswith("alert")]
+    shown = {text(cell) for cell in tree.xpath("//section[@id='response-times']//tbody/tr/th")}
+    assert set(NAMES.values()) <= shown
+
+
+def test_hidden_characters_are_shown(tmp_path):
+    content = report(ADVANCED, with_simulation=False, title="a\u202eb")
+    assert "a\\u202eb" in content.html
+    assert "\u202e" not in content.html
+
+
+def test_a_model_without_anything_is_unknown(tmp_path):
+    path = tmp_path / "empty.amxmi"
+    path.write_text(
+        '<am:Amalthea xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0"/>'
+    )
+    page = report(path).html
+    assert "Unknown whether schedulable" in text(section(page, "verdict"))
+
+
+def test_what_fails_and_what_is_unknown_comes_first():
+    page = page_of(ADVANCED, changes=("Control_Function.execution_time=2ms",))
+    verdict = text(section(page, "verdict"))
+    assert "Not schedulable" in verdict
+    # 2 ms in each ms, and 12 us, and now and then 13 us more.
+    assert "need 201.3 %" in verdict
+    shown = [row["verdict"].split()[-1] for row in rows(page, "requirements", "Deadlines").values()]
+    assert shown == ["overload", "missed", "unknown", "met"]
+    assert rows(page, "changes", "Changed values")["Control_Function.execution_time"]["after"] == "2000 ticks"
+    assert rows(page, "changes", "Results before")["system"]["after"] == "no"
+
+
+def test_the_same_input_gives_the_same_page():
+    assert report(ADVANCED, duration="100 ms").html == page_of(ADVANCED)
+    assert "2026-01-31" in report(ADVANCED, duration="100 ms", date="2026-01-31").html
+
+
+def test_the_pools_of_an_app_are_ready_to_copy():
+    (listing,) = section(page_of(ADVANCED), "pools").xpath(".//pre")
+    # One node with one subscription: the session, the node, its topic and its subscription.
+    assert re.findall(r"-D(\w+)=(\d+)", listing.text_content()) == [
+        ("RMW_UXRCE_MAX_SESSIONS", "1"),
+        ("RMW_UXRCE_MAX_NODES", "1"),
+        ("RMW_UXRCE_MAX_TOPICS", "1"),
+        ("RMW_UXRCE_MAX_SUBSCRIPTIONS", "1"),
+    ]
+
+
+def test_long_tables_are_folded():
+    long = table("Things", ("name", ">number", "nothing"), [(f"thing {number}", str(number), "") for number in range(180)])
+    assert [column.title for column in long.columns] == ["name", "number"]
+    assert (len(long.shown), len(long.folded)) == (15, 165)
+    assert len(table("Things", ("name",), [("x",)] * 30).folded) == 0
+
+
+def test_a_system_and_a_model_are_reported_like_a_file():
+    model = load(SAMPLES / "executor.amxmi")
+    assert Path(model.documents[0].path).name in report(model, with_simulation=False).html
+    assert "not systems of the library" in report(analysis_of(ADVANCED).solution.context.system, with_simulation=False).html
+
+
+def test_pictures_from_kept_events_are_those_of_repeated_runs():
+    # Without a duration, the run keeps its events.
+    chosen = report(ADVANCED)
+    duration = chosen.content.simulation.options.duration
+    stated = report(ADVANCED, duration=duration)
+    first, second = (section(each.html, "worst-observed") for each in (chosen, stated))
+    assert html.tostring(first) == html.tostring(second)
