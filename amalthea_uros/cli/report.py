@@ -17,7 +17,6 @@ from amalthea_uros.cli.output import (
     refuse_unwritable,
     show_differences,
     show_line,
-    verbose_option,
     write_outputs,
 )
 from amalthea_uros.cli.parsed import Parsed
@@ -66,7 +65,6 @@ _SUFFIXES = ", ".join(FORMATS)
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the simulation.")
 @click.option("--no-simulation", is_flag=True, help="Show the analysis only.")
 @fail_on_option
-@verbose_option
 def command(
     paths: tuple[Path, ...],
     files: tuple[Path, ...],
