@@ -23,11 +23,16 @@ RUNS = {
         ("analyze", ADVANCED, "--explain", "factor-to-output", "--method", "all"),
         ("analyze", ADVANCED, "--explain", "Control_Function"),
         ("analyze", ADVANCED, "--scale", "80", "--explain", "Control_Function"),
-        ("analyze", "rclc-in-executor.yaml"),
+        ("analyze", "rclc-in-executor.yaml", "--explain", "On_Command_Callback"),
+        ("analyze", "unknown.amxmi", "--explain", "Empty"),
+        ("analyze", "rclc-in-executor.yaml", "--explain", "rclc_executor"),
+        ("analyze", "drive-and-lift.yaml", "--explain", "wheel-to-torque"),
+        ("analyze", ADVANCED, "--set", "Control_Function.execution_time=2ms", "--set", "Executor_Task.period=2ms"),
     ),
     "amuros simulate": (
         ("simulate", ADVANCED, "--duration", "100ms", "--labels", "all"),
         ("simulate", "unknown.amxmi", "--duration", "20ms"),
+        ("simulate", ADVANCED, "--duration", "20ms", "--set", "Control_Function.execution_time=40us"),
         (
             "simulate",
             ADVANCED,
@@ -44,14 +49,20 @@ RUNS = {
         ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),
         ("build", "drive-and-lift.yaml", "-o", "too.amxmi"),
     ),
-    "amuros diff": (("diff", "bodas-test-advanced.amxmi", "bodas-test-simple.amxmi"),),
+    "amuros diff": (("diff", "bodas-test-advanced.amxmi", "bodas-test-simple.amxmi", "--impact"),),
     "amuros migrate": (("migrate", "pump-1.2.0.amxmi", "-o", "migrated.amxmi"),),
     "amuros info": (("info", "bodas-test-hardware.amxmi"), ("info", "pump-1.2.0.amxmi")),
     "amuros rules": (("rules", "TIM"),),
 }
 
 #: Sections of types -> the section whose runs have each of their fields.
-SHARED = {"finding": "amuros check", "metric": "amuros analyze", "observation": "amuros simulate"}
+SHARED = {
+    "finding": "amuros check",
+    "metric": "amuros analyze",
+    "observation": "amuros simulate",
+    "change": "amuros analyze",
+    "impact": "amuros analyze",
+}
 
 Place = tuple[str, ...]
 
