@@ -26,8 +26,9 @@ RUNS = {
         ("analyze", "rclc-in-executor.yaml", "--explain", "On_Command_Callback"),
         ("analyze", "unknown.amxmi", "--explain", "Empty"),
         ("analyze", "rclc-in-executor.yaml", "--explain", "rclc_executor"),
-        ("analyze", "drive-and-lift.yaml", "--explain", "wheel-to-torque"),
-        ("analyze", ADVANCED, "--set", "Control_Function.execution_time=2ms", "--set", "Executor_Task.period=2ms"),
+        ("analyze", "drive-and-lift.yaml", "--explain", "valve-to-log"),
+        ("analyze", "unknown.amxmi", "--set", "Control_Function.execution_time=500us"),
+        ("analyze", "no-times.amxmi", "--set", "Control_Function.execution_time=500us"),
     ),
     "amuros simulate": (
         ("simulate", ADVANCED, "--duration", "100ms", "--labels", "all"),
@@ -119,6 +120,8 @@ def folder(tmp_path):
     model.root.constraints_model.requirements.append(am.RunnableRequirement(name="callback", runnable=runnable, limit=limit))
     model.root.sw_model.tasks.append(am.Task(name="Empty", stimuli=[model[am.Task, "Control_Function"].stimuli[0]]))
     save(model, tmp_path / "unknown.amxmi")
+    model[am.Runnable, "Message_Factor_Callback"].activity_graph = None
+    save(model, tmp_path / "no-times.amxmi")
     return tmp_path
 
 
