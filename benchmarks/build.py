@@ -1,4 +1,4 @@
-"""How long `amuros build` takes for an application of many callbacks, as a whole process.
+"""How much CPU time `amuros build` takes for an application of many callbacks, as a whole process.
 
 python benchmarks/build.py --callbacks 2000 --repeat 5
 """
@@ -6,10 +6,10 @@ python benchmarks/build.py --callbacks 2000 --repeat 5
 from __future__ import annotations
 
 import argparse
+import os
 import statistics
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -61,6 +61,12 @@ def chains(nodes: range) -> Iterator[str]:
             yield f"  - {{name: chain_{node}_{index}, path: {path}, reaction: 2 s}}\n"
 
 
+def cpu_time_of_children() -> float:
+    """Of all that have ended; other programs on the computer disturb it less than the time on the wall."""
+    times = os.times()
+    return times.children_user + times.children_system
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--callbacks", type=int, default=2000)
@@ -71,9 +77,9 @@ def main() -> None:
         path.write_text(description(options.callbacks))
         times = []
         for _ in range(options.repeat):
-            start = time.perf_counter()
+            start = cpu_time_of_children()
             subprocess.run([sys.executable, "-m", "amalthea_uros", "build", path], check=True, capture_output=True)
-            times.append(time.perf_counter() - start)
+            times.append(cpu_time_of_children() - start)
         size = path.with_suffix(".amxmi").stat().st_size / 1e6
     verdict = "met" if min(times) < TARGET else "missed"
     print(f"{options.callbacks} callbacks, {size:.1f} MB: min {min(times):.2f} s, median {statistics.median(times):.2f} s")

@@ -23,11 +23,17 @@ RUNS = {
         ("analyze", ADVANCED, "--explain", "factor-to-output", "--method", "all"),
         ("analyze", ADVANCED, "--explain", "Control_Function"),
         ("analyze", ADVANCED, "--scale", "80", "--explain", "Control_Function"),
-        ("analyze", "rclc-in-executor.yaml"),
+        ("analyze", "rclc-in-executor.yaml", "--explain", "On_Command_Callback"),
+        ("analyze", "unknown.amxmi", "--explain", "Empty"),
+        ("analyze", "rclc-in-executor.yaml", "--explain", "rclc_executor"),
+        ("analyze", "drive-and-lift.yaml", "--explain", "valve-to-log"),
+        ("analyze", "unknown.amxmi", "--set", "Control_Function.execution_time=500us"),
+        ("analyze", "no-times.amxmi", "--set", "Control_Function.execution_time=500us"),
     ),
     "amuros simulate": (
         ("simulate", ADVANCED, "--duration", "100ms", "--labels", "all"),
         ("simulate", "unknown.amxmi", "--duration", "20ms"),
+        ("simulate", ADVANCED, "--duration", "20ms", "--set", "Control_Function.execution_time=40us"),
         (
             "simulate",
             ADVANCED,
@@ -44,14 +50,20 @@ RUNS = {
         ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),
         ("build", "drive-and-lift.yaml", "-o", "too.amxmi"),
     ),
-    "amuros diff": (("diff", "bodas-test-advanced.amxmi", "bodas-test-simple.amxmi"),),
+    "amuros diff": (("diff", "bodas-test-advanced.amxmi", "bodas-test-simple.amxmi", "--impact"),),
     "amuros migrate": (("migrate", "pump-1.2.0.amxmi", "-o", "migrated.amxmi"),),
     "amuros info": (("info", "bodas-test-hardware.amxmi"), ("info", "pump-1.2.0.amxmi")),
     "amuros rules": (("rules", "TIM"),),
 }
 
 #: Sections of types -> the section whose runs have each of their fields.
-SHARED = {"finding": "amuros check", "metric": "amuros analyze", "observation": "amuros simulate"}
+SHARED = {
+    "finding": "amuros check",
+    "metric": "amuros analyze",
+    "observation": "amuros simulate",
+    "change": "amuros analyze",
+    "impact": "amuros analyze",
+}
 
 Place = tuple[str, ...]
 
@@ -108,6 +120,8 @@ def folder(tmp_path):
     model.root.constraints_model.requirements.append(am.RunnableRequirement(name="callback", runnable=runnable, limit=limit))
     model.root.sw_model.tasks.append(am.Task(name="Empty", stimuli=[model[am.Task, "Control_Function"].stimuli[0]]))
     save(model, tmp_path / "unknown.amxmi")
+    model[am.Runnable, "Message_Factor_Callback"].activity_graph = None
+    save(model, tmp_path / "no-times.amxmi")
     return tmp_path
 
 

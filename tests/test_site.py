@@ -1,5 +1,6 @@
 """The documentation as a site: it builds without a warning, loads nothing from elsewhere, and has what others point to."""
 
+import json
 import os
 import re
 import subprocess
@@ -22,6 +23,8 @@ from amalthea_uros.validate import registry
 #: What makes a browser load something at once; a link in the text does not.
 LOADING = {"script": "src", "img": "src", "iframe": "src", "source": "src", "object": "data", "embed": "src"}
 LOADING_LINKS = {"stylesheet", "icon", "preload", "prefetch", "preconnect", "dns-prefetch", "modulepreload"}
+
+NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
 
 needs_mkdocs = pytest.mark.skipif(
     any(find_spec(name) is None for name in ("mkdocs", "material", "mkdocstrings")), reason="needs pip install amuros[docs]"
@@ -64,6 +67,7 @@ def test_the_site(site):
     is_page_of_every_finding(site)
     is_complete_for_commands(site)
     is_complete_for_the_library(site)
+    shows_the_notebooks(site)
     loads_nothing_external(site)
 
 
@@ -81,7 +85,8 @@ def is_complete_for_commands(site: Path) -> None:
     for name in COMMANDS:
         assert f"amuros {name}" in page
         command = cli.get_command(None, name)
-        for option in (option for param in command.params for option in param.opts if option.startswith("--")):
+        shown = (param for param in command.params if not getattr(param, "hidden", False))
+        for option in (option for param in shown for option in param.opts if option.startswith("--")):
             assert option in page, f"{name} {option}"
 
 
@@ -89,6 +94,17 @@ def is_complete_for_the_library(site: Path) -> None:
     page = text_of(site, "api")
     shown = {found.rpartition(".")[2] for found in re.findall(r'<h3 id="([\w.]+)" class="doc', page)}
     assert set(amalthea_uros.__all__) - {"am", "errors", "perf", "units"} <= shown
+
+
+def shows_the_notebooks(site: Path) -> None:
+    for path in NOTEBOOKS:
+        page = text_of(site, f"notebooks/{path.stem}")
+        assert "amuros" in page
+        assert f'href="../notebooks/{path.stem}/"' in text_of(site, "library")
+        outputs = [output for cell in json.loads(path.read_text())["cells"] for output in cell.get("outputs", ())]
+        tables = [table for output in outputs for table in output.get("data", {}).get("text/html", ())]
+        assert tables
+        assert all(table.strip() in page for table in tables)
 
 
 def loads_nothing_external(site: Path) -> None:
@@ -112,6 +128,7 @@ def test_every_page_is_in_the_navigation():
     listed = re.findall(r": ([\w./-]+\.(?:md|ipynb))$", text.partition("\nnav:")[2], re.MULTILINE)
     assert len(listed) == len(set(listed))
     assert set(listed) >= {path.name for path in (ROOT / "docs").glob("*.md")}
+    assert set(listed) >= {f"notebooks/{path.stem}.md" for path in NOTEBOOKS}
 
 
 def test_rules_of_users_have_no_page():

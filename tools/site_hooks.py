@@ -1,15 +1,18 @@
-"""What mkdocs calls while it builds the site: a page for each finding, lists that follow the code, links out of docs/."""
+"""What mkdocs calls while it builds the site: pages of findings and notebooks, lists that follow the code, links out of docs/."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from itertools import chain
+from pathlib import Path
 
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 from site_api import api_lists
 from site_commands import command_lists
+from site_notebooks import LINK, notebook_pages
 from site_rules import rule_pages
 
 from amalthea_uros._internal.addresses import REPOSITORY
@@ -24,10 +27,10 @@ _ARROW = re.compile(r"(\w+) --> (\w+)")
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the pages of the findings."""
-    for path, text in rule_pages():
+    """Add the pages of the findings, and those of the notebooks in place of their files."""
+    for path, text in chain(rule_pages(), notebook_pages(Path(config.docs_dir))):
         files.append(File.generated(config, path, content=text))
-    return files
+    return Files(file for file in files if not file.src_uri.endswith(".ipynb"))
 
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
@@ -38,6 +41,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     if page.file.generated_by:
         return markdown
     markdown = _FINDING.sub(r"| [\1](rules/\1.md) ", markdown)
+    markdown = LINK.sub(r"](\1.md)", markdown)
     markdown = _GRAPH.sub(lambda found: _arrows(found[1]), markdown)
     return _OUTSIDE.sub(rf"]({REPOSITORY}/blob/main/\1)", markdown)
 

@@ -12,7 +12,7 @@ from amalthea_uros.analyze.results import EXPLAINED, Analysis, Claim, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.changes.apply import apply
+from amalthea_uros.services.changes.apply import Difference, apply, describe
 from amalthea_uros.services.changes.key import Configuration
 from amalthea_uros.services.improvement_candidates import Candidate, candidates
 from amalthea_uros.timing.arrivals import nominal_period
@@ -46,12 +46,14 @@ class Improvement:
 
     Attributes
     ----------
+    differences : the values that the change sets, before and after; none if it only changes the communication
     before : None if there was no finite value
     claim : of the value after the change
     latencies : all latencies of the chain that can be explained, before and after; None where there is no finite value
     """
 
     change: Candidate
+    differences: tuple[Difference, ...]
     before: Time | None
     after: Time
     claim: Claim
@@ -111,7 +113,8 @@ def improvements(result: AnalysisResult, chain: str, quantity: Quantity = Quanti
         except InvalidArgumentError:
             continue
         tried += 1
-        found.append(_improvement(candidate, chain, quantity, analysis, after))
+        differences = describe(*present, candidate.changes)
+        found.append(_improvement(candidate, differences, chain, quantity, analysis, after))
     ranked = sorted(filter(None, found), key=lambda each: (each.after, not each.is_safe))
     return Improvements(chain=chain, quantity=quantity, found=tuple(ranked), tried=tried, untried=max(0, len(applied) - most))
 
@@ -137,7 +140,14 @@ def _arrivals(configuration: Configuration) -> list[tuple[str, Time | None]]:
     ]
 
 
-def _improvement(candidate: Candidate, chain: str, quantity: Quantity, before: Analysis, after: Analysis) -> Improvement | None:
+def _improvement(
+    candidate: Candidate,
+    differences: tuple[Difference, ...],
+    chain: str,
+    quantity: Quantity,
+    before: Analysis,
+    after: Analysis,
+) -> Improvement | None:
     latencies = {each: (_latency(before, chain, each), _latency(after, chain, each)) for each in EXPLAINED}
     then, now = latencies[quantity]
     value = after.chains[chain].value(quantity)
@@ -145,6 +155,7 @@ def _improvement(candidate: Candidate, chain: str, quantity: Quantity, before: A
         return None
     return Improvement(
         change=candidate,
+        differences=differences,
         before=then,
         after=now,
         claim=value.claim,

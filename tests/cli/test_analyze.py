@@ -321,6 +321,7 @@ class TestExplain:
         assert [cause["kind"] for cause in chain["hops"][2]["wait_causes"]] == ["next_job", "interference"]
         best = result["explanation"]["improvements"]["found"][0]
         # The callback in each millisecond: one for the next control function, the executor and the control function itself.
-        assert (best["changes"][0]["value"], best["before_ps"], best["after_ps"]) == ("1ms", 20_029_000_000, 1_016_000_000)
+        assert (best["before_ps"], best["after_ps"]) == (20_029_000_000, 1_016_000_000)
+        assert best["changes"] == [{"key": "Message_Factor.period", "from": "20 ms", "to": "1 ms", "consequence": False}]
         # The rest of the result is there as well.
         assert result["chains"][0]["name"] == "factor-to-output"

@@ -141,7 +141,7 @@ def test_changes_and_failures_are_shown_beside_the_result(run, tmp_path):
     assert closing.startswith("Observed over 1 s (seed 2001)")
     assert run(ADVANCED, *arguments, "--runs", 2, "--jobs", 1)[0] == 1
     assert json.loads((tmp_path / "r.json").read_text())["changes"] == [
-        {"key": "Control_Function.period", "from": "1 ms", "to": "2 ms"}
+        {"key": "Control_Function.period", "from": "1 ms", "to": "2 ms", "consequence": False}
     ]
 
 

@@ -46,9 +46,7 @@ def test_without_a_change_there_is_no_table():
 
 def test_json_has_exact_numbers():
     found = json.loads(amuros("analyze", MODEL, *SET, "--output", "json").stdout)
-    assert found["changes"] == [
-        {"object": "Executor_Task", "key": "priority", "before": "3", "after": "0", "consequence": False}
-    ]
+    assert found["changes"] == [{"key": "Executor_Task.priority", "from": "3", "to": "0", "consequence": False}]
     rows = {(row["object"], row["quantity"]): row for row in found["impact"]["rows"]}
     row = rows["Executor_Task", "worst_case_response_time"]
     assert (row["before"]["value_ps"], row["after"]["value_ps"], row["effect"]) == (12_000_000, 18_000_000, "worse")
@@ -127,7 +125,9 @@ def test_diff_of_descriptions_in_words_of_timing(tmp_path):
             "kind": "changed",
             "class": "runnable",
             "object": "Control_Function_Callback",
-            "values": [{"key": "execution_time", "before": "4 ticks", "after": "6 ticks"}],
+            "values": [
+                {"key": "Control_Function_Callback.execution_time", "from": "4 ticks", "to": "6 ticks", "consequence": False}
+            ],
         }
     ]
     assert content["impact"]["rows"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from amalthea_uros.report.findings import finding_json, joined
+from amalthea_uros.report.json import changes
 from amalthea_uros.services.simulate import CampaignResult
 
 
@@ -15,7 +16,7 @@ def content(result: CampaignResult) -> dict[str, Any]:
         "findings": [finding_json(finding) for finding in result.findings],
         "duration_ps": result.options.duration,
         "mode": result.options.mode,
-        "changes": [{"key": each.target, "from": each.before, "to": each.after} for each in result.differences],
+        "changes": changes.content(result.differences),
         "planned_runs": result.planned,
         "runs": result.rows,
     }

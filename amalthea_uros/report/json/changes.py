@@ -1,4 +1,4 @@
-"""Changes of a system for programs."""
+"""Changed values of a system for programs."""
 
 from __future__ import annotations
 
@@ -8,14 +8,7 @@ from amalthea_uros.services.changes.apply import Difference
 
 
 def content(differences: Iterable[Difference]) -> list[dict[str, str | bool]]:
-    """The values before and after, as text."""
+    """The values before and after, as text; the keys are those of `--set`."""
     return [
-        {
-            "object": each.object,
-            "key": each.key,
-            "before": each.before,
-            "after": each.after,
-            "consequence": each.is_consequence,
-        }
-        for each in differences
+        {"key": each.target, "from": each.before, "to": each.after, "consequence": each.is_consequence} for each in differences
     ]

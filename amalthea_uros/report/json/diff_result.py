@@ -7,7 +7,7 @@ from typing import Any
 from amalthea_uros.difference.comparison import Change
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.report.findings import finding_json
-from amalthea_uros.report.json import impact
+from amalthea_uros.report.json import changes, impact
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.timing_changes import TimingChange
 
@@ -31,7 +31,7 @@ def _timing_json(change: TimingChange) -> dict[str, Any]:
         "kind": change.happening,
         "class": change.kind,
         "object": change.object,
-        "values": [{"key": each.key, "before": each.before, "after": each.after} for each in change.differences],
+        "values": changes.content(change.differences),
     }
 
 

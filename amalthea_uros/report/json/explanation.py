@@ -13,6 +13,7 @@ from amalthea_uros.analyze.execution_shares import ExecutionShare
 from amalthea_uros.analyze.explanation import ProcessExplanation
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
+from amalthea_uros.report.json import changes
 from amalthea_uros.services.analyze import Explanation
 
 if TYPE_CHECKING:
@@ -164,7 +165,7 @@ def _improvement_json(improvement: Improvement) -> dict[str, Any]:
     return {
         "text": change.text,
         "options": list(change.options),
-        "changes": [{"object": each.object, "key": each.key, "value": each.value} for each in change.changes],
+        "changes": changes.content(improvement.differences),
         "before_ps": improvement.before,
         "after_ps": improvement.after,
         "claim": improvement.claim,
