@@ -65,6 +65,7 @@ def _read(subject: Subject) -> Model | None:
         return None
     model = load(*paths)
     _refuse_several(model)
+    _refuse_migrated(model)
     return model
 
 
@@ -74,6 +75,18 @@ def _refuse_several(model: Model) -> None:
         raise InvalidArgumentError(
             f"the model has {number}, but the changed model is written to one file; change the values in the files"
         )
+
+
+def _refuse_migrated(model: Model) -> None:
+    """Refuse a model that was converted while it was read: more than the changed values would differ."""
+    from amalthea_uros.metamodel.versions import spelled
+
+    for document in model.documents:
+        if document.migrated_from is not None:
+            raise InvalidArgumentError(
+                f"{document.path}: a model of {spelled(document.migrated_from)} is not written with other values; "
+                f"migrate it first: amuros migrate {document.path}"
+            )
 
 
 def _built(subject: Subject, changes: Sequence[Change], settings: Settings) -> Model:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from support import ROOT
+from support import MODEL, ROOT
 
 import amalthea_uros as amuros
 from amalthea_uros.analyze.impact import figures
@@ -129,6 +129,18 @@ def test_what_cannot_be_written_is_refused_before_anything_is(tmp_path):
     with pytest.raises(InvalidArgumentError, match="written as an AMALTHEA model, not as a description"):
         found.save(tmp_path / "app.yaml")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_model_that_is_migrated_while_it_is_read_is_refused(tmp_path):
+    """The whole file would be in another version, so more than the changed value would differ."""
+    path = tmp_path / "old.amxmi"
+    path.write_text(
+        MODEL.replace("3.3.0", "0.9.5").format('<swModel><tasks name="T" multipleTaskActivationLimit="1"/></swModel>')
+    )
+    found = amuros.what_if(path, ["T.activation_limit=3"])
+    with pytest.raises(InvalidArgumentError, match=r"AMALTHEA 0[.]9[.]5 is not written with other values; migrate it first"):
+        found.save(tmp_path / "changed.amxmi")
+    assert [file.name for file in tmp_path.iterdir()] == ["old.amxmi"]
 
 
 def test_a_model_of_several_files_is_refused(tmp_path):
