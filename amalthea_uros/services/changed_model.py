@@ -127,8 +127,9 @@ def _other_part(one: System, other: System) -> str:
 def _changed(system: System, changes: Sequence[Change], settings: Settings) -> System:
     """The system with the changes, also with those that are settings of an analysis."""
     changed = apply(system, settings, changes)
-    frequencies = {core: rate for core, rate in changed.settings.frequencies.items() if settings.frequencies.get(core) != rate}
-    phases = {source: time for source, time in changed.settings.phases.items() if settings.phases.get(source) != time}
+    stated = {change.target for change in changes}
+    frequencies = {core: rate for core, rate in changed.settings.frequencies.items() if f"{core}.frequency" in stated}
+    phases = {source: time for source, time in changed.settings.phases.items() if f"{source}.phase" in stated}
     for core, frequency in frequencies.items():
         changed = changed._replace(system=_with_core_frequency(changed.system, core, frequency))
     return with_stated_phases(changed.system, phases)

@@ -9,6 +9,7 @@ import amalthea_uros as amuros
 from amalthea_uros.analyze.impact import figures
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.changes.kinds import KINDS
+from amalthea_uros.timing.settings import Settings
 
 SAMPLES = ROOT / "samples"
 #: A value for each key that no sample has; what depends on the names of a model is in `value_for`.
@@ -102,6 +103,14 @@ def test_a_clock_that_others_have_is_copied(tmp_path):
     clocks = {name: system.clocks[core.clock].frequency for name, core in system.cores.items() if core.clock}
     assert clocks["Core_0"] == 200 * 10**6
     assert clocks["Core_1"] == 300 * 10**6
+
+
+def test_a_frequency_that_a_setting_has_already_is_written_if_it_is_set(tmp_path):
+    """A setting is not part of the model, but a change is."""
+    settings, target = Settings(frequencies={"Core_0": 3 * 10**6}), tmp_path / "changed.amxmi"
+    amuros.what_if(SAMPLES / "executor.amxmi", ["Core_0.frequency=3MHz"], settings).save(target)
+    (clock,) = amuros.extract(amuros.load(target)).system.clocks.values()
+    assert clock.frequency == 3 * 10**6
 
 
 def test_a_description_and_a_system_become_the_model_of_the_changed_system(tmp_path):
