@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
+from functools import partial
 from typing import TypeAlias
 
 from amalthea_uros._internal.shown import Shown
@@ -85,6 +86,7 @@ class Figure:
     ----------
     object : name of the core, process, chain or requirement; "" for the whole system
     quantity : such as "worst_case_response_time"
+    about : of a requirement, what it limits; requirements of one name that limit something else are not the same
     value : None if it is unknown; a verdict also if nothing is judged
     claim : None for verdicts, stated limits and what is unknown
     at_least : of an unknown value, the part that is known; None if there is none
@@ -102,11 +104,12 @@ class Figure:
     at_least: Fraction | None = None
     is_overload: bool = False
     reason: str = ""
+    about: str = ""
 
     @property
-    def key(self) -> tuple[Part, str, str]:
+    def key(self) -> tuple[Part, str, str, str]:
         """What says that two figures are about the same."""
-        return self.part, self.object, self.quantity
+        return self.part, self.object, self.quantity, self.about
 
     @property
     def compared(self) -> tuple[Amount | None, Fraction | None, bool]:
@@ -348,12 +351,14 @@ def _of_chain(chain: ChainResult) -> Iterator[Figure]:
 
 
 def _of_requirement(requirement: RequirementResult) -> Iterator[Figure]:
-    name = requirement.name
+    bound = "maximum" if requirement.is_upper else "minimum"
+    figure = partial(
+        Figure, part=Part.REQUIREMENT, object=requirement.name, about=f"{bound} {requirement.quantity} of {requirement.object}"
+    )
     if requirement.limit is not None:
         margin = None if requirement.verdict is Verdict.UNKNOWN else requirement.margin
-        yield Figure(
-            part=Part.REQUIREMENT,
-            object=name,
+        yield figure(quantity="limit", value=requirement.limit)
+        yield figure(
             quantity="margin",
             value=margin,
             goal=Goal.HIGH,
@@ -361,4 +366,4 @@ def _of_requirement(requirement: RequirementResult) -> Iterator[Figure]:
             is_overload=requirement.verdict is Verdict.UNBOUNDED,
             reason=requirement.reason,
         )
-    yield verdict_figure(Part.REQUIREMENT, name, requirement.verdict, requirement.reason)
+    yield figure(quantity="verdict", value=requirement.verdict, unit=Unit.VERDICT, reason=requirement.reason)

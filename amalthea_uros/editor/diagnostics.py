@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from pathlib import Path
 
 from lsprotocol import types
 
@@ -24,15 +25,26 @@ _SEVERITIES = {
 
 
 def diagnostics_of(document: Document) -> list[types.Diagnostic]:
-    """One diagnostic for each flaw, as `amuros check` shows them; none for YAML files of other programs."""
+    """One diagnostic for each flaw, as `amuros check` shows them; none for YAML files of other programs.
+
+    A model of several files is checked as a whole.
+    """
     with overlaid(document.contents):
         if not document.is_ours:
             return []
+        files = document.files
         try:
-            groups = check_files(document.path).presentation.groups
+            groups = check_files(files).presentation.groups
         except ReadError as error:  # the settings of the project
             groups = group(error.findings)
-    return [_diagnostic(document, found) for found in groups]
+    others = {file for file in files if file != document.path}
+    return [_diagnostic(document, found) for found in groups if not _is_elsewhere(found, others)]
+
+
+def _is_elsewhere(found: Group, others: Collection[Path]) -> bool:
+    """Whether all findings of a flaw are in other files of the model, of which the editor shows them."""
+    places = [finding.location for finding in (*found.same, *found.consequences)]
+    return all(place is not None and place.path in others for place in places)
 
 
 def _diagnostic(document: Document, found: Group) -> types.Diagnostic:

@@ -11,6 +11,7 @@ from pathlib import Path
 from lsprotocol import types
 from pygls.workspace import PositionCodec
 
+from amalthea_uros.services.files_of_model import files_of_model
 from amalthea_uros.services.paths import is_description, is_other_yaml
 
 #: The ends of lines of the protocol; `str.splitlines` knows more.
@@ -54,6 +55,11 @@ class Document:
     def is_ours(self) -> bool:
         """Whether the text is an `app.yaml` or a model; needs its contents to be overlaid."""
         return not is_other_yaml(self.path)
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files of the model that the text is part of; needs its contents to be overlaid."""
+        return (self.path,) if self.is_description else files_of_model(self.path)
 
     def position(self, line: int, column: int) -> types.Position:
         """A place, counted from 0 in characters, as the editor counts it."""

@@ -25,7 +25,7 @@ def analysis_of(document: Document) -> AnalysisResult | None:
         if not document.is_ours:
             return None
         try:
-            return analyze_files(document.path)
+            return analyze_files(document.files)
         except AmurosError:
             return None  # the diagnostics say why
 

@@ -28,7 +28,7 @@ def read_baseline(path: Path) -> set[str]:
     try:
         content = json.loads(read_text(path, BASELINE_SIZE))
     except FileError as error:
-        raise ValueError(" ".join(filter(None, (f"{path}: {error.reason}", error.advice)))) from None
+        raise ValueError(f"{path}: {error.reason}" + (f". {error.advice}" if error.advice else "")) from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path} is not a baseline of amuros: {error}") from None
     accepted = content.get("accepted") if isinstance(content, dict) else None

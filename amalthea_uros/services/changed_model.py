@@ -65,6 +65,7 @@ def _read(subject: Subject) -> Model | None:
         return None
     model = load(*paths)
     _refuse_several(model)
+    _refuse_migrated(model)
     return model
 
 
@@ -74,6 +75,18 @@ def _refuse_several(model: Model) -> None:
         raise InvalidArgumentError(
             f"the model has {number}, but the changed model is written to one file; change the values in the files"
         )
+
+
+def _refuse_migrated(model: Model) -> None:
+    """Refuse a model that was converted while it was read: more than the changed values would differ."""
+    from amalthea_uros.metamodel.versions import spelled
+
+    for document in model.documents:
+        if document.migrated_from is not None:
+            raise InvalidArgumentError(
+                f"{document.path}: a model of {spelled(document.migrated_from)} is not written with other values; "
+                f"migrate it first: amuros migrate {document.path}"
+            )
 
 
 def _built(subject: Subject, changes: Sequence[Change], settings: Settings) -> Model:
@@ -114,8 +127,9 @@ def _other_part(one: System, other: System) -> str:
 def _changed(system: System, changes: Sequence[Change], settings: Settings) -> System:
     """The system with the changes, also with those that are settings of an analysis."""
     changed = apply(system, settings, changes)
-    frequencies = {core: rate for core, rate in changed.settings.frequencies.items() if settings.frequencies.get(core) != rate}
-    phases = {source: time for source, time in changed.settings.phases.items() if settings.phases.get(source) != time}
+    stated = {change.target for change in changes}
+    frequencies = {core: rate for core, rate in changed.settings.frequencies.items() if f"{core}.frequency" in stated}
+    phases = {source: time for source, time in changed.settings.phases.items() if f"{source}.phase" in stated}
     for core, frequency in frequencies.items():
         changed = changed._replace(system=_with_core_frequency(changed.system, core, frequency))
     return with_stated_phases(changed.system, phases)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import TYPE_CHECKING
 
 from amalthea_uros.analyze.chains.explanation import explain_chain
+from amalthea_uros.analyze.impact import Amount, Effect, Figure, Part, Unit, impact
 from amalthea_uros.analyze.results import EXPLAINED, Analysis, Claim, Quantity
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.changes.apply import Difference, apply, describe
 from amalthea_uros.services.changes.key import Configuration
@@ -26,13 +26,11 @@ if TYPE_CHECKING:
 MAX_ANALYSES, MIN_ANALYSES = 24, 4
 #: The processes of all changed systems together.
 MAX_PROCESSES = 2_000
-#: From the best to the worst verdict.
-_SEVERITY = {None: 0, Verdict.MET: 0, Verdict.UNKNOWN: 1, Verdict.MISSED: 2, Verdict.UNBOUNDED: 2}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drawback:
-    """What a change makes worse: a verdict, or another latency of the chain; the values before and after, as text."""
+    """What a change makes worse: a verdict, or another latency of this or another chain; the values before and after, as text."""
 
     name: str
     before: str
@@ -159,7 +157,7 @@ def _improvement(
         before=then,
         after=now,
         claim=value.claim,
-        drawbacks=(*_worse_verdicts(before, after), *_worse_latencies(latencies)),
+        drawbacks=tuple(_drawbacks(chain, latencies, before, after)),
         latencies=latencies,
     )
 
@@ -169,22 +167,33 @@ def _latency(analysis: Analysis, chain: str, quantity: Quantity) -> Time | None:
     return None if value is None else value.value
 
 
-def _worse_verdicts(before: Analysis, after: Analysis) -> Iterable[Drawback]:
-    verdicts = {(each.name, index): each.verdict for index, each in enumerate(after.requirements)}
-    pairs = [
-        *((each.name, each.verdict, after.processes[each.name].verdict) for each in before.processes),
-        *((each.name, each.verdict, verdicts[each.name, index]) for index, each in enumerate(before.requirements)),
-    ]
-    for name, then, now in pairs:
-        if _SEVERITY[now] > _SEVERITY[then]:
-            yield Drawback(name=name, before=str(then or "no deadline"), after=str(now), is_verdict=True)
+def _drawbacks(
+    chain: str, latencies: Mapping[Quantity, tuple[Time | None, Time | None]], before: Analysis, after: Analysis
+) -> Iterator[Drawback]:
+    """What gets worse: verdicts, cores that are overloaded now, and latencies of the chain and of others."""
+    worse = [row for row in impact(before, after).rows if row.effect is Effect.WORSE]
+    for row in worse:
+        if row.part in (Part.PROCESS, Part.REQUIREMENT) and row.figure.unit is Unit.VERDICT:
+            yield Drawback(name=row.object, before=_verdict(row.before), after=_verdict(row.after), is_verdict=True)
     for core in after.processors:
         if core.is_overloaded and not before.processors[core.name].is_overloaded:
             yield Drawback(name=core.name, before="not overloaded", after="overloaded", is_verdict=True)
-
-
-def _worse_latencies(latencies: Mapping[Quantity, tuple[Time | None, Time | None]]) -> Iterable[Drawback]:
     for quantity, (then, now) in latencies.items():
         if then is not None and (now is None or now > then):
-            text = "unknown" if now is None else time_text(now)
-            yield Drawback(name=quantity.replace("_", " "), before=time_text(then), after=text, is_verdict=False)
+            yield Drawback(name=_words(quantity), before=_text(then), after=_text(now), is_verdict=False)
+    for row in worse:
+        if row.part is Part.CHAIN and row.object != chain and row.before is not None and row.after is not None:
+            name = f"{_words(row.quantity)} of {row.object}"
+            yield Drawback(name=name, before=_text(row.before.value), after=_text(row.after.value), is_verdict=False)
+
+
+def _verdict(figure: Figure | None) -> str:
+    return "no deadline" if figure is None or figure.value is None else str(figure.value)
+
+
+def _words(quantity: str) -> str:
+    return quantity.replace("_", " ")
+
+
+def _text(value: Amount | None) -> str:
+    return time_text(value) if isinstance(value, int) else "unknown"

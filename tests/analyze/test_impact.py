@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.analyze.impact import Effect, Figure, Goal, Impact, Part, Unit, compare, verdict_figure
-from amalthea_uros.analyze.results import Claim
+from amalthea_uros.analyze.impact import Effect, Figure, Goal, Impact, Part, Unit, _of_requirement, compare, verdict_figure
+from amalthea_uros.analyze.results import Claim, RequirementResult
 from amalthea_uros.analyze.summary import Schedulable
 from amalthea_uros.analyze.verdicts import Failure, Verdict
 
@@ -86,6 +86,31 @@ def test_requirements_of_one_name_are_compared_in_their_order():
     found = compare([figure(1), figure(5)], [figure(1), figure(4)])
     assert [(row.before.value, row.after.value) for row in found.rows] == [(5, 4)]
     assert found.unchanged == 1
+
+
+def requirement(limit, thing="A", verdict=Verdict.MET, value=5):
+    return RequirementResult(
+        name="R", object=thing, quantity="response time", is_upper=True, limit=limit, verdict=verdict, lower=value, upper=value
+    )
+
+
+def of_requirements(*requirements):
+    """The figures of requirements."""
+    return [figure for each in requirements for figure in _of_requirement(each)]
+
+
+def test_a_limit_that_changes_is_said_where_its_margin_and_verdict_get_better():
+    rows = compare(of_requirements(requirement(4, verdict=Verdict.MISSED)), of_requirements(requirement(9))).rows
+    found = {row.quantity: (row.before.value, row.after.value, row.effect) for row in rows}
+    assert found["limit"] == (4, 9, Effect.CHANGED)
+    assert found["verdict"] == (Verdict.MISSED, Verdict.MET, Effect.BETTER)
+
+
+def test_requirements_of_one_name_about_different_objects_are_not_compared():
+    bad, good = requirement(4, "A", Verdict.MISSED), requirement(9, "B")
+    assert not compare(of_requirements(bad, good), of_requirements(good, bad))
+    effects = {row.effect for row in compare(of_requirements(bad), of_requirements(good)).rows}
+    assert effects == {Effect.ADDED, Effect.REMOVED}
 
 
 VALUES = st.one_of(st.none(), st.integers(0, 9))

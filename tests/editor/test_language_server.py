@@ -1,5 +1,6 @@
 """`amuros lsp`, as an editor uses it: a process that answers in JSON-RPC."""
 
+import json
 import sys
 
 import pytest
@@ -189,6 +190,56 @@ def test_a_hover_on_a_name_in_a_model_shows_the_same_as_in_its_description(serve
     server.open(tmp_path / "app.amxmi", text, "xml")
     line, column = position_of(text, 'name="B"')
     assert "worst-case response time 3 ms (exact)" in server.hover(tmp_path / "app.amxmi", line, column + len('name="'))
+
+
+TASK = MODEL.format('<swModel><tasks name="A" stimuli="S?type=PeriodicStimulus"/></swModel>')
+STIMULUS = MODEL.format(
+    '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="S"><recurrence value="5" unit="ms"/></stimuli></stimuliModel>'
+)
+
+
+def unresolved(diagnostics):
+    return {found["code"] for found in diagnostics} & {"XMI020", "XMI025", "AM-EMF-INTRINSIC/proxy-resolves"}
+
+
+def test_a_reference_to_another_file_of_the_folder_is_resolved_as_check_does_it(server, tmp_path):
+    path, other = tmp_path / "tasks.amxmi", tmp_path / "stimuli.amxmi"
+    assert unresolved(server.open(path, TASK, "xml"))
+    other.write_text(STIMULUS)
+    server.change(path, TASK + "\n")
+    shown = server.diagnostics_of(path)
+    path.write_text(TASK)
+    checked = amuros("check", tmp_path, "--output", "json").stdout
+    findings = json.loads(checked)["findings"]
+    assert not unresolved(shown)
+    assert {found["code"] for found in shown} <= {each["rule"] for each in findings if each["file"] == str(path)}
+    server.change(path, TASK.replace('"S?', '"T?'))
+    assert unresolved(server.diagnostics_of(path))
+
+
+def test_a_file_to_which_others_refer_is_part_of_their_model(server, tmp_path):
+    """That the task is not mapped is only said while no other file maps it."""
+    path = tmp_path / "tasks.amxmi"
+    task = MODEL.format('<swModel><tasks name="A"/></swModel>')
+    assert "TIM-ALLOCATION" in {found["code"] for found in server.open(path, task, "xml")}
+    mapping = MODEL.format(
+        '<osModel><operatingSystems name="O"><taskSchedulers name="S"/></operatingSystems></osModel>'
+        '<mappingModel><taskAllocation task="A?type=Task" scheduler="S?type=TaskScheduler"/></mappingModel>'
+    )
+    (tmp_path / "mapping.amxmi").write_text(mapping)
+    server.change(path, task + "\n")
+    assert "TIM-ALLOCATION" not in {found["code"] for found in server.diagnostics_of(path)}
+
+
+def test_unrelated_and_broken_files_of_the_folder_do_not_matter(server, tmp_path):
+    path = tmp_path / "tasks.amxmi"
+    alone = found(server.open(path, TASK, "xml"))
+    (tmp_path / "twin.amxmi").write_text(TASK)  # would define A twice
+    server.change(path, TASK + "\n")
+    assert found(server.diagnostics_of(path)) == alone
+    (tmp_path / "broken.amxmi").write_text("<am:Amalthea")
+    server.change(path, TASK)
+    assert found(server.diagnostics_of(path)) == alone
 
 
 def test_a_closed_text_has_no_diagnostics(server, tmp_path):

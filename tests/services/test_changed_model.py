@@ -3,12 +3,13 @@
 from pathlib import Path
 
 import pytest
-from support import ROOT
+from support import MODEL, ROOT
 
 import amalthea_uros as amuros
 from amalthea_uros.analyze.impact import figures
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.changes.kinds import KINDS
+from amalthea_uros.timing.settings import Settings
 
 SAMPLES = ROOT / "samples"
 #: A value for each key that no sample has; what depends on the names of a model is in `value_for`.
@@ -104,6 +105,14 @@ def test_a_clock_that_others_have_is_copied(tmp_path):
     assert clocks["Core_1"] == 300 * 10**6
 
 
+def test_a_frequency_that_a_setting_has_already_is_written_if_it_is_set(tmp_path):
+    """A setting is not part of the model, but a change is."""
+    settings, target = Settings(frequencies={"Core_0": 3 * 10**6}), tmp_path / "changed.amxmi"
+    amuros.what_if(SAMPLES / "executor.amxmi", ["Core_0.frequency=3MHz"], settings).save(target)
+    (clock,) = amuros.extract(amuros.load(target)).system.clocks.values()
+    assert clock.frequency == 3 * 10**6
+
+
 def test_a_description_and_a_system_become_the_model_of_the_changed_system(tmp_path):
     path, target = SAMPLES / "bodas-test-advanced.yaml", tmp_path / "changed.amxmi"
     found = amuros.what_if(path, {"Control_Function.priority": "7"})
@@ -129,6 +138,18 @@ def test_what_cannot_be_written_is_refused_before_anything_is(tmp_path):
     with pytest.raises(InvalidArgumentError, match="written as an AMALTHEA model, not as a description"):
         found.save(tmp_path / "app.yaml")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_model_that_is_migrated_while_it_is_read_is_refused(tmp_path):
+    """The whole file would be in another version, so more than the changed value would differ."""
+    path = tmp_path / "old.amxmi"
+    path.write_text(
+        MODEL.replace("3.3.0", "0.9.5").format('<swModel><tasks name="T" multipleTaskActivationLimit="1"/></swModel>')
+    )
+    found = amuros.what_if(path, ["T.activation_limit=3"])
+    with pytest.raises(InvalidArgumentError, match=r"AMALTHEA 0[.]9[.]5 is not written with other values; migrate it first"):
+        found.save(tmp_path / "changed.amxmi")
+    assert [file.name for file in tmp_path.iterdir()] == ["old.amxmi"]
 
 
 def test_a_model_of_several_files_is_refused(tmp_path):

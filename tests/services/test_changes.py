@@ -316,3 +316,17 @@ def test_the_phase_of_a_message():
 def test_any_name_without_an_equals_sign_is_possible(name, key, value):
     name, value = name.replace("=", "").strip() or "x", value.strip() or "x"
     assert parse_change(f"{name}.{key}={value}") == Change(name, key, value)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("A.period=1.5ms", ("A", "period", "1.5ms")),
+        ("a.b.period = 2ms", ("a.b", "period", "2ms")),
+        ("a=b.period=2ms", ("a=b", "period", "2ms")),
+        ("a.b=c.period=2ms", ("a", "b", "c.period=2ms")),  # as short a name as possible: there is no key b, so this is refused
+    ],
+)
+def test_dots_and_equals_signs_of_names(text, expected):
+    change = parse_change(text)
+    assert (change.object, change.key, change.value) == expected

@@ -42,6 +42,8 @@ def test_a_baseline_accepts_findings(project, tmp_path):
     assert amuros.check_files(project, amuros.CheckSettings(baseline=tmp_path / "accepted.json")).findings == ()
     with pytest.raises(ValueError, match="is not a baseline"):
         amuros.check_files(project, amuros.CheckSettings(baseline=project))
+    with pytest.raises(ValueError, match=r"missing[.]json: file not found[.] Check the path[.]"):
+        amuros.check_files(project, amuros.CheckSettings(baseline=tmp_path / "missing.json"))
 
 
 def test_a_comment_suppresses_a_finding_of_a_model(tmp_path):

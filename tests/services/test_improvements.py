@@ -109,3 +109,14 @@ def test_what_bounds_a_chain_without_a_bound():
     result = analyze_files(SAMPLES / "bodas-test-advanced.yaml", Settings(scale=60))
     found = improvements(result, CHAIN).found
     assert [each.change.text for each in found if each.before is None] == ["frequency of Core_0 1 MHz -> 2 MHz"]
+
+
+def test_other_chains_that_take_longer_are_drawbacks():
+    """After the exchange Control_Speed runs after Set_Speed, whose 30 us its own chain then waits for, too."""
+    found = improvements(analyze_files(SAMPLES / "drive-and-lift.yaml"), "speed-to-torque").found
+    (exchanged,) = [each for each in found if each.change.text == "exchange the priorities of Set_Speed and Control_Speed"]
+    assert [(each.name, each.before, each.after) for each in exchanged.drawbacks] == [
+        ("max reduced reaction time of wheel-to-torque", "15.2821 ms", "15.3121 ms"),
+        ("max reduced data age of wheel-to-torque", "25.2821 ms", "25.3121 ms"),
+    ]
+    assert exchanged.is_safe

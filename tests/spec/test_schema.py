@@ -116,3 +116,26 @@ def test_what_the_reader_refuses_in_a_task_the_schema_refuses(key, value):
     content["tasks"] = [{"name": "A", "period": "10 ms", "execution_time": "1 ms", key: value}]
     assert not reader_accepts(content)
     assert not schema_accepts(content)
+
+
+PARTS = [value for sample in SAMPLES for value in (copy.deepcopy(sample["application"]), *sample.get("tasks", ()))]
+
+
+@given(st.data())
+def test_parts_of_samples_in_wrong_places_are_no_false_alarms(data):
+    """An editor must not underline what `amuros check` accepts, wherever a part of another file was pasted."""
+    content = copy.deepcopy(data.draw(st.sampled_from(SAMPLES)))
+    *outer, last = data.draw(st.sampled_from([path for path in places(content) if path]))
+    holder = content
+    for key in outer:
+        holder = holder[key]
+    part = copy.deepcopy(data.draw(st.sampled_from(PARTS)))
+    *inner, _ = data.draw(st.sampled_from([path for path in places(part) if path]))
+    for key in inner:
+        part = part[key]
+    if isinstance(holder, list):
+        holder.append(part)
+    else:
+        holder[last] = part
+    if not schema_accepts(content):
+        assert not reader_accepts(content)

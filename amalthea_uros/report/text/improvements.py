@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 #: Further changes shorten the latency less.
 _MOST = 5
+#: Further drawbacks of a change are only counted.
+_MOST_DRAWBACKS = 3
 
 
 def write(found: Improvements, terminal: Terminal) -> None:
@@ -43,4 +45,7 @@ def _after(improvement: Improvement) -> str:
 
 
 def _drawbacks(improvement: Improvement) -> str:
-    return "; ".join(f"{each.name}: {each.before} -> {each.after}" for each in improvement.drawbacks)
+    """What gets worse, verdicts first, as they are in an improvement."""
+    texts = [f"{each.name}: {each.before} -> {each.after}" for each in improvement.drawbacks]
+    more = len(texts) - _MOST_DRAWBACKS
+    return "; ".join(texts[:_MOST_DRAWBACKS]) + (f"; {more:,} more" if more > 0 else "")

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from amalthea_uros.errors import InvalidArgumentError
 
 FORM, EXAMPLE = "OBJECT.KEY=VALUE", "Executor_Task.period=2ms"
+
+#: The first equals sign after a key; one before it belongs to the name of the object.
+_ASSIGNMENT = re.compile(r"(.*?\.\s*\w+\s*)=(.*)", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +53,8 @@ def parse_change(text: str) -> Change:
 
 def split_assignment(text: str, form: str, example: str) -> tuple[str, str]:
     """What is before and after the equals sign; raises as `parse_change`."""
-    target, _, value = (part.strip() for part in text.partition("="))
+    match = _ASSIGNMENT.fullmatch(text)
+    target, value = (part.strip() for part in (match.groups() if match else text.partition("=")[::2]))
     if not target or not value:
         raise InvalidArgumentError(f"{text!r} is not of the form {form}; an example: {example}")
     return target, value
