@@ -313,7 +313,10 @@ class TestExplain:
     def test_an_overload(self):
         run = amuros("analyze", ADVANCED, "--scale", "80", "--explain", "Control_Function")
         assert run.returncode == 1
-        assert run.stdout.splitlines()[1:3] == ["  what would give it a bound", "    Reduce the load by at least 33.2% of the core."]
+        assert run.stdout.splitlines()[1:3] == [
+            "  what would give it a bound",
+            "    Reduce the load by at least 33.2% of the core.",
+        ]
         # 12.65 us and 4 us in each millisecond, 80 times.
         rows = [line.split() for line in run.stdout.splitlines()]
         assert ["Executor_Task", "3", "101.200%"] in rows
