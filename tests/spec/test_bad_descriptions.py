@@ -103,7 +103,7 @@ def test_the_good_one_is_good(tmp_path):
         (
             "execution_time: 4 us",
             "execution_time: {min: 4 us, mean: 5 us, max: 6 us}",
-            (10, 68, "YML010", "unknown key 'mean'", "Did you mean 'avg'?"),
+            (10, 67, "YML010", "unknown key 'mean'", "Did you mean 'avg'?"),
         ),
         (
             "execution_time: 4 us",
