@@ -35,12 +35,15 @@ def similar(name: str, known: Iterable[str], count: int = 1, cutoff: float = 0.6
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """The question whether one of the most similar names was meant, "" if none is similar.
+    """The question whether one of the most similar names was meant, or else one that only has a further part; "" if there is none.
 
+    >>> did_you_mean("Control", ["Executor", "Control_Callback"])
+    "did you mean 'Control_Callback'?"
     >>> did_you_mean("anlyze", ["analyze", "build"]), did_you_mean("x", ["analyze", "build"])
     ("did you mean 'analyze'?", '')
     """
-    near = similar(name, known, count=_MOST)
+    every = list(known)
+    near = similar(name, every, count=_MOST) or [each for each in every if each.startswith(f"{name}_")][:_MOST]
     return f"did you mean {' or '.join(map(repr, near))}?" if near else ""
 
 

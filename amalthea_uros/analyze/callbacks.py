@@ -162,11 +162,14 @@ class _CallSite:
     @property
     def is_simple(self) -> bool:
         """Whether the call is executed once in each job, or in those that a counter selects."""
+        return self.is_once and self.counter is not None and self.counter.is_phase_known
+
+    @property
+    def is_once(self) -> bool:
+        """Whether each job executes the call once and then what follows, or a counter, possibly an unknown one, prevents the call."""
         runnable = self.solution.context.system.runnables.get(self.call.runnable)
         return (
             self.position.is_certain
-            and self.counter is not None
-            and self.counter.is_phase_known
             and self.call.times is None
             and not self.terminates
             and runnable is not None
@@ -221,6 +224,10 @@ class _CallSite:
             count = len(demand_table(until, MultiframeDemand.best_of)) + first_effect(self.counter)
             count += lcm(demand_cycle(until), self.counter.prescaler)
             before = min(until.best_of(job) for job in range(1, count + 1) if takes_effect(self.counter, job))
+        elif self.is_once:
+            # Whatever the call follows, it takes its own time.
+            before = self._demand([replace(self.call, counter=None)]).best
+        if self.is_once:
             after = self._demand(self._after).best // time_base
         return Metric(
             min=before // time_base,

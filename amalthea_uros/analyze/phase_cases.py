@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import gcd, lcm
 from typing import TypeAlias
 
@@ -159,7 +159,12 @@ class PhaseCases:
         periods = [task.releases.period for task in tasks.values()]
         lengths = sorted({gcd(*periods), *periods, lcm(*periods)})
         length = next((length for length in lengths if all(task.ends_in_slots(length) for task in tasks.values())), None)
-        return None if length is None else _Slots(tasks, length)
+        return None if length is None else self._made_slots.setdefault(frozenset(tasks), _Slots(tasks, length))
+
+    @cached_property
+    def _made_slots(self) -> dict[frozenset[str], _Slots]:
+        """The slots by their tasks: chains and processes often have the same ones."""
+        return {}
 
     def _is_exact(self, core: str) -> bool:
         """Whether the schedule of a core is evaluated for each combination, and repeats from the start."""
@@ -206,14 +211,22 @@ class _Task:
 
     def executed(self, phases: Sequence[int], jobs: int) -> list[tuple[bool, ...]]:
         """For each of the first jobs, which of the counters let it do something."""
-        each = list(zip(phases, (counter.prescaler for counter in self.counters), strict=True))
-        return [tuple((job - phase) % prescaler == 0 for phase, prescaler in each) for job in range(1, jobs + 1)]
+        if not self.counters:
+            return [()] * jobs
+        each = zip(phases, self.counters, strict=True)
+        return list(zip(*(_selected(phase, counter.prescaler, jobs) for phase, counter in each), strict=True))
 
     def phases(self, combination: Mapping[Occurrence, int]) -> tuple[int, ...]:
         """The first job that each counter selects."""
         return tuple(
             first_effect(each) if each.is_phase_known else combination[Occurrence.of(self.name, each)] for each in self.counters
         )
+
+
+@cache
+def _selected(phase: int, prescaler: int, jobs: int) -> tuple[bool, ...]:
+    """Which of the first jobs a counter selects."""
+    return tuple((job - phase) % prescaler == 0 for job in range(1, jobs + 1))
 
 
 class _Slots:
@@ -223,6 +236,7 @@ class _Slots:
         self._tasks = tasks
         self._length = length
         self._cycle = lcm(length, *(task.cycle for task in tasks.values()))
+        self._releases = {name: self._slots_of(task) for name, task in tasks.items()}
         self._executed: dict[tuple[str, tuple[int, ...]], list[tuple[bool, ...]]] = {}
         self._contents: dict[tuple[Hashable, ...], int] = {}
         self._rows: dict[tuple[int, ...], tuple[int, ...]] = {}
@@ -235,26 +249,28 @@ class _Slots:
         name : only slots in which this process is released count; None: all
         """
         found: list[list[Hashable]] = [[] for _ in range(self._cycle // self._length)]
-        is_counted = [name is None] * len(found)
         for task in self._tasks.values():
-            period, offset = task.releases.period, task.releases.offset
-            for job, executed in enumerate(self._jobs(task, combination)):
-                slot, at = divmod(offset + job * period, self._length)
+            for (slot, at), executed in zip(self._releases[task.name], self._jobs(task, combination), strict=True):
                 found[slot].append((task.name, at, executed))
-                is_counted[slot] |= task.name == name
-        contents = (tuple(jobs) if counts else () for jobs, counts in zip(found, is_counted, strict=True))
+        counted = range(len(found)) if name is None else {slot for slot, _ in self._releases[name]}
+        contents = (tuple(jobs) if slot in counted else () for slot, jobs in enumerate(found))
         row = tuple(self._contents.setdefault(jobs, len(self._contents)) for jobs in contents)
         if row not in self._rows:
             start = least_rotation(row)
             self._rows[row] = row[start:] + row[:start]
         return self._rows[row]
 
+    def _slots_of(self, task: _Task) -> list[tuple[int, Time]]:
+        """For each job of a cycle, the slot in which it is released, and when in the slot."""
+        period, offset = task.releases.period, task.releases.offset
+        return [divmod(offset + job * period, self._length) for job in range(self._cycle // period)]
+
     def _jobs(self, task: _Task, combination: Mapping[Occurrence, int]) -> Sequence[tuple[bool, ...]]:
         """What each job of a cycle does."""
         phases = task.phases(combination)
         key = (task.name, phases)
         if key not in self._executed:
-            self._executed[key] = task.executed(phases, self._cycle // task.releases.period)
+            self._executed[key] = task.executed(phases, len(self._releases[task.name]))
         return self._executed[key]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,10 @@ class Offer(click.Choice[str]):
 
     name = "NAME"
 
+    def __init__(self, names: Sequence[str], advice: str = "") -> None:
+        super().__init__(names)
+        self._advice = advice
+
     def get_metavar(self, param: click.Parameter, ctx: click.Context) -> str:
         """The names are in the help text."""
         return self.name
@@ -27,17 +32,20 @@ class Offer(click.Choice[str]):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """Check the name."""
         if value not in self.choices:
-            advice = did_you_mean(value, self.choices) or f"known names: {', '.join(self.choices)}"
+            advice = did_you_mean(value, self.choices) or f"known names: {', '.join(self.choices)}{self._advice}"
             self.fail(f"there is no {value!r}; {advice}", param, ctx)
         return str(value)
 
 
+_ANOTHER_BOARD = "; for another controller omit --board, and set its frequency and cores in the file"
 _BOARDS, _EXAMPLES = known_platforms(), example_names()
 
 
 @click.command("init")
 @click.argument("target", type=OUTPUT, default=Path(), metavar="[FILE_OR_FOLDER]")
-@click.option("--board", type=Offer(_BOARDS), help=f"Controller: {', '.join(_BOARDS)}. Default: {DEFAULT_BOARD}.")
+@click.option(
+    "--board", type=Offer(_BOARDS, _ANOTHER_BOARD), help=f"Controller: {', '.join(_BOARDS)}. Default: {DEFAULT_BOARD}."
+)
 @click.option("--example", type=Offer(_EXAMPLES), help=f"Copy an example: {', '.join(_EXAMPLES)}.")
 @click.option("--list", "lists", is_flag=True, help="List the boards and the examples, and write nothing.")
 @click.option("--force", is_flag=True, help="Replace a file that exists.")

@@ -48,7 +48,8 @@ class LazyGroup(click.Group):
             _check_environment()
             return super().invoke(ctx)
         except click.ClickException as error:
-            if error.format_message().isprintable():
+            # The list of what can be given for a missing argument has lines of its own, and nothing of the user in it.
+            if error.format_message().isprintable() or isinstance(error, click.MissingParameter):
                 raise
             raise click.UsageError(visible(error.format_message()), ctx) from None
         except KeyboardInterrupt:
@@ -113,12 +114,13 @@ def main() -> None:
             raise OSError(errno.EBADF, "it is closed")
         cli()
     except AmurosError as error:
+        from amalthea_uros.cli.output import show_findings
         from amalthea_uros.findings.unreadable import is_unreadable
         from amalthea_uros.report.terminal import Terminal
         from amalthea_uros.report.wording import findings_text
 
         terminal = Terminal(sys.stderr)
-        terminal.findings(error.findings)
+        show_findings(error.findings)
         if is_unreadable(error.findings):
             sys.exit(2)
         terminal.line(f"{findings_text(error.findings)}; no result is written")

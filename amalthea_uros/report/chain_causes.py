@@ -13,6 +13,8 @@ def cause_text(cause: Cause, hop: Hop) -> str:
     match cause.kind:
         case CauseKind.JUST_MISSED:
             return f"just missed: it has read, and reads again {_period(hop)} later"
+        case CauseKind.NEXT_JOB if hop.period is not None and cause.time > hop.one_in * hop.period:
+            return f"still reads this value, every {_period(hop)}, until a new one comes"
         case CauseKind.NEXT_JOB:
             return f"waits for its next job{_that_takes_part(hop)}, {_every(hop)}"
         case CauseKind.INTERFERENCE:

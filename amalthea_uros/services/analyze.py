@@ -193,6 +193,7 @@ def explain(result: AnalysisResult, name: str, quantity: Quantity = Quantity.MAX
 
     Parameters
     ----------
+    name : a callback in an executor also by its name in the `app.yaml`
     quantity : of a chain, one of `analyze.results.EXPLAINED`
 
     Raises
@@ -202,17 +203,22 @@ def explain(result: AnalysisResult, name: str, quantity: Quantity = Quantity.MAX
     from amalthea_uros.analyze.callback_explanation import explain_callback
     from amalthea_uros.analyze.chains.explanation import explain_chain
     from amalthea_uros.analyze.explanation import explain_process
-    from amalthea_uros.services.improvements import improvements
+    from amalthea_uros.services.improvements import improvements_of
 
     system, analysis = result.system, result.analysis
-    callbacks = [callback.name for callback in analysis.callbacks]
-    require("process, callback or chain", [name], dict.fromkeys((*system.processes, *callbacks, *system.chains)))
+    known = dict.fromkeys((*system.processes, *(callback.name for callback in analysis.callbacks), *system.chains))
+    if name not in known:
+        from amalthea_uros.uros.application import body_name
+
+        name = body_name(name) if body_name(name) in known else name
+    require("process, callback or chain", [name], known)
+    chain = explain_chain(analysis, name, quantity) if name in system.chains else None
     return Explanation(
         name=name,
         process=explain_process(analysis, name) if name in system.processes else None,
-        chain=explain_chain(analysis, name, quantity) if name in system.chains else None,
+        chain=chain,
         callbacks=explain_callback(analysis, name),
-        improvements=improvements(result, name, quantity) if name in system.chains else None,
+        improvements=None if chain is None else improvements_of(result, chain),
     )
 
 

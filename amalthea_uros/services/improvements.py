@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from amalthea_uros.analyze.chains.explanation import explain_chain
+from amalthea_uros.analyze.chains.explanation import ChainExplanation, explain_chain
 from amalthea_uros.analyze.impact import Amount, Effect, Figure, Part, Unit, impact
 from amalthea_uros.analyze.results import EXPLAINED, Analysis, Claim, Quantity
 from amalthea_uros.analyze.system import analyze_system
@@ -91,17 +91,24 @@ class Improvements:
 
 
 def improvements(result: AnalysisResult, chain: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Improvements:
-    """Try single changes of a system, and rank those that shorten a latency of a chain.
-
-    Periods are only shortened: with a longer period of the first process, inputs wait longer before the chain begins, which a latency
-    that begins there does not include.
+    """Try single changes of a system, and rank those that shorten a latency of a chain; see `improvements_of`.
 
     Parameters
     ----------
     quantity : one of `analyze.results.EXPLAINED`
     """
+    return improvements_of(result, explain_chain(result.analysis, chain, quantity))
+
+
+def improvements_of(result: AnalysisResult, explanation: ChainExplanation) -> Improvements:
+    """Try single changes of a system, and rank those that shorten an explained latency.
+
+    Periods are only shortened: with a longer period of the first process, inputs wait longer before the chain begins, which a latency
+    that begins there does not include.
+    """
+    chain, quantity = explanation.chain.name, explanation.quantity
     analysis, present = result.analysis, Configuration(result.system, result.settings)
-    every = candidates(explain_chain(analysis, chain, quantity), analysis, present, result.task_periods)
+    every = candidates(explanation, analysis, present, result.task_periods)
     applied = [(each, changed) for each in every if (changed := _applied(each, present)) is not None]
     most = min(MAX_ANALYSES, max(MIN_ANALYSES, MAX_PROCESSES // max(1, len(analysis.processes))))
     found, tried = [], 0

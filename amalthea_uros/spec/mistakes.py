@@ -24,6 +24,17 @@ _AFTER_COMMA = re.compile(r"\d+ ?[^\W\d]+(/s)?")
 #: As in difflib.
 _SIMILAR = 0.6
 
+#: What the field also calls a key.
+_SYNONYMS = {
+    "mean": ("avg",),
+    "average": ("avg",),
+    "acet": ("avg",),
+    "bcet": ("min", "execution_time"),
+    "wcet": ("max", "execution_time"),
+    "frequency": ("rate",),
+    "cycle_time": ("period",),
+}
+
 _LIST = "Write [a, b], or one item per line after '- '."
 _MAPPING = "Write key: value pairs."
 #: Types of errors -> message without what was found, and help.
@@ -86,8 +97,9 @@ def finding_of(mistake: Mistake, source: Source, kind: type[Section]) -> Finding
 
 def intended_key(mistake: Mistake, kind: type[Section], similarity: float = _SIMILAR) -> str | None:
     """The key that an unknown key is probably a misspelling of."""
-    known = _keys(mistake.details["loc"][:-1], kind)
-    return next(iter(similar(mistake.key.replace("-", "_"), known, cutoff=similarity)), None)
+    known, key = _keys(mistake.details["loc"][:-1], kind), mistake.key.replace("-", "_")
+    synonym = next((each for each in _SYNONYMS.get(key.lower(), ()) if each in known), None)
+    return synonym or next(iter(similar(key, known, cutoff=similarity)), None)
 
 
 def intended_word(mistake: Mistake, similarity: float = _SIMILAR) -> str | None:

@@ -74,7 +74,8 @@ def _file(stated: Hardware, name: str, folder: Path) -> tuple[Path, tuple[Findin
     if name in known:
         return _known_file(name), ()
     near = similar(name, known)
-    advice = f"Did you mean {near[0]!r}?" if near else f"Known platforms: {', '.join(known)}; or give a file, e.g. ./mine.yaml."
+    others = f"Known platforms: {', '.join(known)}; use 'generic' with 'frequency' and 'cores', or a file, e.g. ./mine.yaml."
+    advice = f"Did you mean {near[0]!r}?" if near else others
     finding = _undefined(stated, f"unknown platform {name!r}", advice)
     if not similar(name, known, cutoff=CERTAIN):
         raise ReadError([finding])

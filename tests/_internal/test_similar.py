@@ -1,6 +1,6 @@
 """Suggestions for unknown names take limited time."""
 
-from amalthea_uros._internal.similar import MAX_LENGTH, Suggestions, similar
+from amalthea_uros._internal.similar import MAX_LENGTH, Suggestions, did_you_mean, similar
 
 
 def test_the_most_similar_names_come_first():
@@ -19,3 +19,8 @@ def test_the_last_of_many_names_get_no_suggestion():
     found = [suggestions.nearest("Tusk", ["Task", "Label", "Runnable"]) for _ in range(5)]
     assert found == ["Task", "Task", "Task", "", ""]
     assert suggestions.advice("Tusk", ["Task"]) == ""
+
+
+def test_a_name_with_a_further_part_may_be_meant():
+    assert did_you_mean("Imu", ["Executor", "Imu_Callback"]) == "did you mean 'Imu_Callback'?"
+    assert did_you_mean("Imu", ["Executor", "Imus_of_all_wheels"]) == ""

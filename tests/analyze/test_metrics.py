@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
 from math import lcm
+from textwrap import dedent
 
 import pytest
 from hypothesis import assume, given
@@ -31,6 +32,7 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler, Semaph
 from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, Periodic, Stimuli
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.analyze import analyze
 from amalthea_uros.units import MICROSECOND as US
 
 #: Figure 6.6 of S. R. Bappanadu, "Modeling and Timing Analysis of Micro-ROS Application on an Off-Road Vehicle Control Unit",
@@ -388,6 +390,34 @@ class TestCallbacks:
 
         # At most 30 + 20 + 10 + 8 us for the process.
         assert self.response("T1.base", jitter=self.JITTER, activities=with_rest) == (15, 68 - 6, "bound")
+
+    def test_callbacks_whose_phases_are_too_many(self):
+        application = """
+            amuros: 1
+            name: slow-topics
+            hardware: {platform: generic}
+            middleware:
+              executor: {name: Spin, period: 5 ms, callbacks: in-executor, execution_time: {base: 18 us, per_message: 22 us}}
+            application:
+              nodes:
+                - name: robot
+                  subscriptions:
+                    - {name: Often, topic: a, rate: 20 Hz, message_size: 4 B, execution_time: {min: 21 us, max: 44 us}}
+                    - {name: Seldom, topic: b, rate: 1 Hz, message_size: 4 B, execution_time: {min: 5 us, max: 9 us}}
+                  timers:
+                    - {name: Each, period: 5 ms, execution_time: {min: 310 us, max: 520 us}}
+                    - {name: Fourth, period: 20 ms, execution_time: {min: 180 us, max: 260 us}}
+            """
+        # A job takes 18 + 22 + 44 + 22 + 9 + 520 + 260 us at most; after the messages, it executes Each in any case.
+        found = {
+            each.name: (each.response.best / US, each.response.worst / US) for each in analyze(dedent(application)).callbacks
+        }
+        assert found == {
+            "Often_Callback": (21, 895 - 310),
+            "Seldom_Callback": (5, 895 - 310),
+            "Each_Callback": (18 + 310, 895),
+            "Fourth_Callback": (180, 895),
+        }
 
     def test_a_call_in_a_branch(self):
         def by_chance(name, row):

@@ -262,15 +262,21 @@ class TestExplain:
         lines = run.stdout.splitlines()
         assert lines[0] == "factor-to-output: max reduced reaction time 20.029 ms (exact)"
         assert lines[1] == "  factor-to-output_reaction, reaction at most 25 ms: met, 4.971 ms left"
-        assert lines[3].split() == ["process", "job", "release", "start", "read", "write", "wait", "run", "share"]
-        assert lines[6].split("  ")[1] == "Control_Function"
-        assert lines[6].endswith("1.007 ms   4 us   5.0%")
+        # What takes most and what to do comes before all details.
+        assert lines[2] == "  largest part: 18.975 ms (94.7%), Message_Factor: waits for its next job, which runs every 20 ms"
+        assert lines[3] == "  what helps: period of Message_Factor 20 ms -> 1 ms, which gives 1.016 ms (exact)"
+        assert lines[4] == "  to see all its effects: --set Message_Factor.period=1ms"
+        assert lines[6].split() == ["process", "job", "release", "start", "read", "write", "wait", "run", "share"]
+        assert lines[9].split("  ")[1] == "Control_Function"
+        assert lines[9].endswith("1.007 ms   4 us   5.0%")
 
     def test_another_quantity(self):
         run = amuros("analyze", ADVANCED, "--explain", "factor-to-output", "--quantity", "max_data_age")
         assert run.stdout.startswith("factor-to-output: max data age 40.029 ms (exact)")
         # The next control function ends a millisecond later.
         assert "  until overwritten" in run.stdout
+        # The factor of a message is used for 20 ms, by all jobs of the control function in this time.
+        assert ", Control_Function: still reads this value, every 1 ms, until a new one comes" in run.stdout
 
     def test_a_process_and_a_chain_of_the_same_name(self, tmp_path):
         path = tmp_path / "app.yaml"
@@ -289,6 +295,15 @@ class TestExplain:
         run = amuros("analyze", ROOT / "samples" / "rclc-in-executor.yaml", "--explain", "On_Command_Callback")
         assert run.stdout.startswith("On_Command_Callback: worst-case response time 232.8 us (exact), in rclc_executor")
 
+    def test_a_callback_by_its_name_in_the_description(self):
+        run = amuros("analyze", ROOT / "samples" / "rclc-in-executor.yaml", "--explain", "On_Command")
+        assert run.stdout.startswith("On_Command_Callback: worst-case response time 232.8 us (exact), in rclc_executor")
+
+    def test_what_takes_the_largest_part_of_a_response_time(self):
+        run = amuros("analyze", ADVANCED, "--explain", "Message_Factor")
+        # 2 us of its own, 25 us of Executor_Task and 4 us of Control_Function: 25 / 31.
+        assert run.stdout.splitlines()[2] == "  largest part: 25 us (80.6%), interference by Executor_Task"
+
     def test_lines_fit_into_a_page(self):
         for model, name in ((ADVANCED, "factor-to-output"), (ROOT / "samples" / "rclc-in-executor.yaml", "rclc_executor")):
             run = amuros("analyze", model, "--explain", name)
@@ -298,6 +313,10 @@ class TestExplain:
     def test_an_overload(self):
         run = amuros("analyze", ADVANCED, "--scale", "80", "--explain", "Control_Function")
         assert run.returncode == 1
+        assert run.stdout.splitlines()[1:3] == [
+            "  what would give it a bound",
+            "    Reduce the load by at least 33.2% of the core.",
+        ]
         # 12.65 us and 4 us in each millisecond, 80 times.
         rows = [line.split() for line in run.stdout.splitlines()]
         assert ["Executor_Task", "3", "101.200%"] in rows

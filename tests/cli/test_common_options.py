@@ -55,6 +55,17 @@ def test_errors_are_never_quiet(tmp_path):
         assert "unknown key 'rat'" in quiet.stdout + quiet.stderr
 
 
+def test_a_quiet_failure_shows_no_warnings(tmp_path):
+    path = tmp_path / "app.yaml"
+    text = (SAMPLES / "drive-and-lift.yaml").read_text()
+    path.write_text(text.replace("[Executor_Task, Set_Speed", "[Executor_Task, Set_Sped").replace("acknowledgement: 10 ms", ""))
+    whole, quiet = amuros("analyze", path).stderr, amuros("analyze", path, "-q").stderr
+    assert " warning: " in whole
+    assert " warning: " not in quiet
+    assert "'Set_Sped'" in quiet
+    assert quiet.splitlines()[-1] == whole.splitlines()[-1]
+
+
 def test_a_quiet_check_shows_errors_but_no_warnings(tmp_path):
     model = tmp_path / "m.amxmi"
     text = (DATA / "brake.amxmi").read_text()

@@ -103,6 +103,14 @@ def test_commands_are_completed_without_importing_them():
     assert not any(f"amalthea_uros.cli.{name}" in modules.split() for name in COMMANDS)
 
 
+def test_the_shells_are_listed_if_none_is_given():
+    run = amuros("completion")
+    assert run.returncode == 2
+    assert "completion [OPTIONS] {bash|zsh|fish}" in run.stderr.splitlines()[0]
+    assert "\\" not in run.stderr
+    assert [line.strip(" \t,") for line in run.stderr.splitlines()[-3:]] == ["bash", "zsh", "fish"]
+
+
 def test_a_shell_that_is_not_known_is_refused():
     run = amuros("completion", "tcsh")
     assert run.returncode == 2

@@ -79,7 +79,7 @@ def test_a_file_that_exists_is_replaced_only_with_force(tmp_path):
     ("option", "name", "advice"),
     [
         ("--board", "generik", "did you mean 'generic'?"),
-        ("--board", "?", f"known names: {', '.join(known_platforms())}"),
+        ("--board", "?", f"known names: {', '.join(known_platforms())}; for another controller omit --board"),
         ("--example", "drive-and-left", "did you mean 'drive-and-lift'?"),
     ],
 )

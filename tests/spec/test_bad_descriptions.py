@@ -102,6 +102,16 @@ def test_the_good_one_is_good(tmp_path):
         ),
         (
             "execution_time: 4 us",
+            "execution_time: {min: 4 us, mean: 5 us, max: 6 us}",
+            (10, 67, "YML010", "unknown key 'mean'", "Did you mean 'avg'?"),
+        ),
+        (
+            "execution_time: 4 us",
+            "wcet: 4 us",
+            (10, 39, "YML010", "unknown key 'wcet'", "Did you mean 'execution_time'?"),
+        ),
+        (
+            "execution_time: 4 us",
             "execution_time: {min: 4 us, max: 5 us, avg: 6 us}",
             (10, 55, "YML012", "execution_time: 'avg' is not between 'min' and 'max'", ""),
         ),

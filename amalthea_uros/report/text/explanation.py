@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import NamedTuple
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.callback_explanation import CallbackExplanation
 from amalthea_uros.analyze.chains.explanation import ChainExplanation
 from amalthea_uros.analyze.execution_shares import ExecutionShare
 from amalthea_uros.analyze.explanation import ProcessExplanation
-from amalthea_uros.analyze.results import CallbackResult, ProcessResult, Response
+from amalthea_uros.analyze.results import CallbackResult, ProcessResult, Response, Value
 from amalthea_uros.analyze.unknown_origins import OriginKind
 from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.perf.stimuli import Counter
@@ -19,6 +20,7 @@ from amalthea_uros.report.hops import write_hops
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import improvements
 from amalthea_uros.services.analyze import Explanation
+from amalthea_uros.services.improvements import Improvements
 from amalthea_uros.units import Time, time_text
 
 #: More executions of the worst case are only counted.
@@ -37,9 +39,7 @@ def write(explanation: Explanation, terminal: Terminal) -> None:
     for callback in explanation.callbacks:
         _callback(callback, terminal)
     if explanation.chain is not None:
-        _chain(explanation.chain, terminal)
-    if explanation.improvements is not None:
-        improvements.write(explanation.improvements, terminal)
+        _chain(explanation.chain, explanation.improvements, terminal)
 
 
 def _process(explanation: ProcessExplanation, terminal: Terminal) -> None:
@@ -53,11 +53,12 @@ def _process(explanation: ProcessExplanation, terminal: Terminal) -> None:
     else:
         terminal.line(f"{name}: worst-case response time {time_text(response.worst)} ({response.claim})")
         _deadline(process, terminal)
+        _largest_term(explanation, response, response.worst, terminal)
         _terms(response, response.worst, explanation, terminal)
-    _execution(explanation, terminal)
-    _callbacks(explanation.callbacks, terminal)
-    _loads(explanation, terminal)
     _origins(explanation, terminal)
+    _loads(explanation, terminal)
+    _execution(explanation, terminal)
+    _callbacks(explanation, terminal)
 
 
 def _deadline(process: ProcessResult, terminal: Terminal) -> None:
@@ -76,9 +77,20 @@ def _margin(verdict: Verdict, margin: Time) -> str:
     return f"the bound is {distance}" if verdict is Verdict.UNKNOWN else distance
 
 
-def _callbacks(callbacks: Sequence[CallbackResult], terminal: Terminal) -> None:
-    """Write when the callbacks of an executor end, in the order of their calls."""
-    if not callbacks:
+def _largest_term(explanation: ProcessExplanation, response: Response, worst: Time, terminal: Terminal) -> None:
+    """Write what takes the largest part of a response time, if it has several parts."""
+    shares = {f"interference by {share.name}": share.time for share in explanation.shares}
+    terms = {term: time for term, time in response.terms.items() if time and not (term == "interference" and shares)}
+    parts = {**terms, **shares}
+    if len(parts) > 1:
+        name = max(parts, key=lambda part: parts[part])
+        terminal.line(f"  largest part: {time_text(parts[name])} ({parts[name] / worst:.1%}), {name}")
+
+
+def _callbacks(explanation: ProcessExplanation, terminal: Terminal) -> None:
+    """Write when the callbacks of an executor end, in the order of their calls, unless nothing is known of them."""
+    callbacks = explanation.callbacks
+    if not callbacks or explanation.origins:
         return
     rows = [
         (each.name, _response_text(each), "-" if each.deadline is None else time_text(each.deadline), _claim(each))
@@ -207,20 +219,31 @@ def _percent(load: Fraction | None) -> str:
     return "?" if load is None else f"{float(load):.3%}"
 
 
-def _chain(explanation: ChainExplanation, terminal: Terminal) -> None:
-    """Write the hops of a chain, which add up to its latency, and why each of them takes its time."""
+def _chain(explanation: ChainExplanation, found: Improvements | None, terminal: Terminal) -> None:
+    """Write the largest part of a latency and what shortens it, then the hops, which add up to it, and all causes and changes."""
     name, quantity = terminal.style(explanation.chain.name, "1"), explanation.quantity.replace("_", " ")
     value = explanation.value
     if value is None or value.value is None:
         terminal.line(f"{name}: {quantity} unknown: {explanation.reason}")
         _requirements(explanation, terminal)
-        return
-    terminal.line(f"{name}: {quantity} {time_text(value.value)} ({value.claim})")
-    _requirements(explanation, terminal)
+    else:
+        terminal.line(f"{name}: {quantity} {time_text(value.value)} ({value.claim})")
+        _requirements(explanation, terminal)
+        _largest_cause(explanation, terminal)
+    if found is not None:
+        improvements.write_best(found, terminal)
+    if value is not None and value.value is not None:
+        _worst_case(explanation, value, value.value, terminal)
+    if found is not None:
+        improvements.write(found, terminal)
+
+
+def _worst_case(explanation: ChainExplanation, value: Value, total: Time, terminal: Terminal) -> None:
+    """Write the way, the hops with their causes, and the executions."""
     if explanation.route:
         terminal.line(f"  {explanation.route}")
     if explanation.hops:
-        write_hops(explanation, value.value, value.claim, terminal)
+        write_hops(explanation, total, value.claim, terminal)
         _causes(explanation, terminal)
         _executions(explanation, terminal)
     else:
@@ -239,17 +262,42 @@ def _requirements(explanation: ChainExplanation, terminal: Terminal) -> None:
         terminal.line(f"  {each.name}, {each.quantity}{limit}: {each.verdict}{rest}")
 
 
-def _causes(explanation: ChainExplanation, terminal: Terminal) -> None:
-    """Write why each wait and each run takes its time, with its share of the latency."""
-    rows = [
-        (hop.process, part, time_text(cause.time), f"{float(explanation.share(cause.time)):.1%}", cause_text(cause, hop))
+class _Part(NamedTuple):
+    """A wait or a run in a latency."""
+
+    process: str
+    kind: str
+    time: Time
+    reason: str
+
+
+def _parts(explanation: ChainExplanation) -> list[_Part]:
+    """All waits and runs with their causes, in their order."""
+    parts = [
+        _Part(hop.process, kind, cause.time, cause_text(cause, hop))
         for hop in explanation.hops
-        for part, causes in (("wait", hop.wait_causes), ("run", hop.run_causes))
+        for kind, causes in (("wait", hop.wait_causes), ("run", hop.run_causes))
         for cause in causes
     ]
     if explanation.overwritten:
-        share = f"{float(explanation.share(explanation.overwritten)):.1%}"
-        rows.append((explanation.hops[-1].process, "wait", time_text(explanation.overwritten), share, "until it writes again"))
+        parts.append(_Part(explanation.hops[-1].process, "wait", explanation.overwritten, "until it writes again"))
+    return parts
+
+
+def _largest_cause(explanation: ChainExplanation, terminal: Terminal) -> None:
+    """Write which wait or run takes the largest part of a latency."""
+    largest = max(_parts(explanation), key=lambda part: part.time, default=None)
+    if largest is not None:
+        share = f"{float(explanation.share(largest.time)):.1%}"
+        terminal.line(f"  largest part: {time_text(largest.time)} ({share}), {largest.process}: {largest.reason}")
+
+
+def _causes(explanation: ChainExplanation, terminal: Terminal) -> None:
+    """Write why each wait and each run takes its time, with its share of the latency."""
+    rows = [
+        (part.process, part.kind, time_text(part.time), f"{float(explanation.share(part.time)):.1%}", part.reason)
+        for part in _parts(explanation)
+    ]
     terminal.table(("why so long", "", "time", "share", "reason"), _once(rows), right=(2, 3))
 
 

@@ -18,22 +18,33 @@ _MOST = 5
 _MOST_DRAWBACKS = 3
 
 
+def write_best(found: Improvements, terminal: Terminal) -> None:
+    """Write the change with the greatest effect that breaks nothing, with the options that show all its effects."""
+    recommended = next((each for each in found.found if each.is_safe), None)
+    if recommended is not None:
+        result = f"{time_text(recommended.after)} ({recommended.claim})"
+        terminal.line(f"  what helps: {recommended.change.text}, which gives {result}")
+        terminal.line(f"  to see all its effects: {shlex.join(recommended.change.options)}")
+    elif found.found:
+        terminal.line("  what helps: only changes that break something else; the last table shows them")
+    else:
+        terminal.line(f"  what helps: no single change shortens it: {_tried(found)}")
+
+
 def write(found: Improvements, terminal: Terminal) -> None:
     """Write the changes with the greatest effect, and what they make worse."""
-    tried = f"{counted(found.tried, 'change')} analysed, one at a time"
-    if found.untried:
-        tried += f"; {found.untried:,} more were not tried"
     best = found.best(_MOST)
     if not best:
-        terminal.line(f"  no single change shortens it: {tried}")
         return
     rows = [(each.change.text, _before(each), _after(each), _drawbacks(each)) for each in best]
     headings = ("what would shorten it", "latency", "", "what gets worse" if any(row[-1] for row in rows) else "")
     terminal.table(headings, rows, right=(1,))
-    terminal.line(f"  {tried}")
-    recommended = next((each for each in best if each.is_safe), None)
-    if recommended is not None:
-        terminal.line(f"  to see all effects of the first one that breaks nothing: {shlex.join(recommended.change.options)}")
+    terminal.line(f"  {_tried(found)}")
+
+
+def _tried(found: Improvements) -> str:
+    tried = f"{counted(found.tried, 'change')} analysed, one at a time"
+    return f"{tried}; {found.untried:,} more were not tried" if found.untried else tried
 
 
 def _before(improvement: Improvement) -> str:
