@@ -91,7 +91,7 @@ def draw_system(system: System, analysis: Analysis | None = None) -> Markup:
     ----------
     analysis : shows loads and verdicts, too
     """
-    shown = SystemFlows(system)
+    shown = SystemFlows.of(system, analysis)
     is_large = len(system.processes) > MOST_PROCESSES
     return _drawn(_of_cores(shown, analysis) if is_large else _of_processes(shown, analysis), _subtitle(shown))
 
