@@ -106,7 +106,7 @@ def command(
 
 def _outputs(files: tuple[Path, ...], standard_format: str | None) -> list[Output]:
     """The formats and files, of which each can be written; refused before work that may take long."""
-    if len(set(files)) < len(files):
+    if len({path if is_standard_output(path) else path.resolve() for path in files}) < len(files):
         raise click.UsageError("two options -o name the same file; give each its own")
     if standard_format is not None and not any(map(is_standard_output, files)):
         raise click.UsageError(

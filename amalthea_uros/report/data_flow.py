@@ -18,7 +18,7 @@ _PLAIN = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ01234567
 
 def mermaid(system: System) -> str:
     """The processes on their cores and the flows between them as a flowchart of Mermaid."""
-    shown = SystemFlows(system)
+    shown = SystemFlows.of(system)
     lines = ["flowchart LR"]
     ids = _ids(shown)
     for number, (core, processes) in enumerate(shown.cores.items()):
@@ -39,7 +39,7 @@ def mermaid(system: System) -> str:
 
 def dot(system: System) -> str:
     """The same as a graph of Graphviz."""
-    shown = SystemFlows(system)
+    shown = SystemFlows.of(system)
     lines = ["digraph {", "  rankdir=LR;", "  node [shape=box];"]
     ids = _ids(shown)
     for number, (core, processes) in enumerate(shown.cores.items()):

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
+from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System
@@ -58,14 +59,20 @@ class ChainPath:
 
 @dataclass(frozen=True)
 class SystemFlows:
-    """A system as its pictures show it."""
+    """A system as its pictures show it.
+
+    Attributes
+    ----------
+    context : where processes run, and how they are connected
+    """
 
     system: System
+    context: TimingContext
 
-    @cached_property
-    def context(self) -> TimingContext:
-        """Where processes run, and how they are connected."""
-        return TimingContext.of_scheduling(self.system)
+    @classmethod
+    def of(cls, system: System, analysis: Analysis | None = None) -> SystemFlows:
+        """Those of a system; its analysis has followed the activities already."""
+        return cls(system, analysis.solution.context if analysis is not None else TimingContext.of_scheduling(system))
 
     @cached_property
     def cores(self) -> dict[str | None, tuple[Process, ...]]:

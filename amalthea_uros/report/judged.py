@@ -1,11 +1,12 @@
-"""What a report puts first: the tightest requirements and the worst chains."""
+"""What a report puts first: the limits that are missed, unknown or nearly reached, and the worst chains."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf
+from typing import TypeAlias
 
 from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessResult, Quantity, RequirementResult
 from amalthea_uros.analyze.summary import FAILURES, Judged
@@ -13,6 +14,8 @@ from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
 
 _BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET)
+#: Sorts the worst first.
+_Rank: TypeAlias = tuple[int, Fraction | float]
 #: The quantities of chains that limits of these names limit.
 LIMITED = {"reaction": Quantity.MAX_REDUCED_REACTION_TIME, "data age": Quantity.MAX_REDUCED_DATA_AGE}
 
@@ -36,33 +39,46 @@ class JudgedRow:
 
 
 def judged_rows(analysis: Analysis) -> list[JudgedRow]:
-    """All deadlines, requirements and constraints, the worst first: what fails, what is unknown, then the least margin.
+    """All deadlines, requirements and constraints, the worst first: what fails, what is unknown, then what uses most of its limit.
 
-    A deadline that is also stated as a requirement is shown once.
+    A deadline that is also stated as a requirement is shown once, unless its process fails in another way: by lost activations.
     """
-    stated = {(each.object, each.limit) for each in analysis.requirements if each.quantity == "response time"}
+    stated = {(each.object, each.limit): each.verdict for each in analysis.requirements if each.quantity == "response time"}
     processes = (
         each
         for each in analysis.processes
-        if each.verdict is not None and (each.is_implicit or (each.name, each.deadline) not in stated)
+        if each.verdict is not None and (each.is_implicit or _is_worse(each.verdict, stated.get((each.name, each.deadline))))
     )
     items: list[Judged] = [*processes, *analysis.requirements]
-    return [_row(item) for item in sorted(items, key=_rank)]
+    claims = {each.name: _claim(each) for each in analysis.processes}
+    return [_row(item, claims) for item in sorted(items, key=_rank)]
 
 
-def _rank(item: Judged) -> tuple[int, float]:
+def _is_worse(verdict: Verdict, stated: Verdict | None) -> bool:
+    return stated is None or (stated not in FAILURES and _BADNESS.index(verdict) < _BADNESS.index(stated))
+
+
+def _rank(item: Judged) -> _Rank:
+    """A verdict, and how near the value is to the limit: a maximum from below, a minimum from above."""
     badness = len(_BADNESS) if item.verdict is None else _BADNESS.index(item.verdict)
-    return badness, inf if item.margin is None else item.margin
+    if isinstance(item, ProcessResult):
+        parts = item.response.worst if item.response is not None else None, item.deadline
+    else:
+        parts = (item.value, item.limit) if item.is_upper else (item.limit, item.value)
+    part, whole = parts
+    if part is None or whole is None:
+        return badness, 0
+    return badness, -Fraction(part, whole) if whole else -inf
 
 
-def _row(item: Judged) -> JudgedRow:
+def _row(item: Judged, claims: Mapping[str, str]) -> JudgedRow:
     if isinstance(item, ProcessResult):
         what = "response time, period" if item.is_implicit else "response time, deadline"
         value = item.response.worst if item.response is not None else None
         return _of(item, what, value, value, item.deadline, _claim(item))
     what = f"{item.quantity} of {item.object}" if item.object else item.quantity
     lower, upper = item.lower, item.upper
-    return _of(item, what, lower, upper, item.limit, _requirement_claim(item))
+    return _of(item, what, lower, upper, item.limit, _requirement_claim(item, claims))
 
 
 def _of(item: Judged, what: str, lower: Time | None, upper: Time | None, limit: Time | None, claim: str) -> JudgedRow:
@@ -73,7 +89,7 @@ def _of(item: Judged, what: str, lower: Time | None, upper: Time | None, limit: 
         value=_value_text(item, lower, upper, limit, is_upper),
         limit=limit_text(item),
         margin=margin_text(item),
-        used=_used(upper, limit) if is_upper else "-",
+        used=_used(upper, limit, item.verdict) if is_upper else "-",
         claim=claim,
     )
 
@@ -102,19 +118,24 @@ def margin_text(item: Judged) -> str:
     return rounded_time_text(item.margin, Rounding.DOWN)
 
 
-def _used(value: Time | None, limit: Time | None) -> str:
+def _used(value: Time | None, limit: Time | None, verdict: Verdict | None) -> str:
+    """The share of the limit; where the verdict is unknown, the value is anywhere below its bound."""
     if value is None or not limit:
         return "-"
-    return f"{number_text(rounded(Fraction(value * 100, limit), Rounding.UP, 100))} %"
+    share = f"{number_text(rounded(Fraction(value * 100, limit), Rounding.UP, 100))} %"
+    return f"up to {share}" if verdict is Verdict.UNKNOWN else share
 
 
 def _claim(process: ProcessResult) -> str:
     return str(process.response.claim) if process.response is not None and process.response.worst is not None else ""
 
 
-def _requirement_claim(requirement: RequirementResult) -> str:
+def _requirement_claim(requirement: RequirementResult, claims: Mapping[str, str]) -> str:
+    """That of the value; a worst-case response time has the same claim as in the results of its process."""
     if requirement.value is None:
         return ""
+    if requirement.is_upper and requirement.quantity == "response time" and requirement.object in claims:
+        return claims[requirement.object]
     return str(Claim.EXACT if requirement.lower == requirement.upper else Claim.BOUND)
 
 
@@ -128,11 +149,11 @@ def why(item: Judged) -> str:
 def worst_chains(analysis: Analysis) -> list[ChainResult]:
     """The chains, those with the worst requirements first, then by reaction time."""
     ranks = _ranks(analysis.requirements)
-    return sorted(analysis.chains, key=lambda chain: (ranks.get(chain.name, (len(_BADNESS), inf)), -_reaction(chain)))
+    return sorted(analysis.chains, key=lambda chain: (ranks.get(chain.name, (len(_BADNESS), 0)), -_reaction(chain)))
 
 
-def _ranks(requirements: Iterable[RequirementResult]) -> dict[str, tuple[int, float]]:
-    found: dict[str, tuple[int, float]] = {}
+def _ranks(requirements: Iterable[RequirementResult]) -> dict[str, _Rank]:
+    found: dict[str, _Rank] = {}
     for requirement in sorted(requirements, key=_rank):
         found.setdefault(requirement.object, _rank(requirement))
     return found

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from io import StringIO
@@ -10,11 +9,11 @@ from pathlib import Path
 
 from amalthea_uros.report import formats
 from amalthea_uros.report.suffixes import format_of
-from amalthea_uros.services.changes.change import Change
 from amalthea_uros.services.paths import StrPath
 from amalthea_uros.services.report import ReportContent, compile_report, save_text
 from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject
+from amalthea_uros.services.what_if import Changes
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time
 
@@ -63,7 +62,7 @@ def report(
     subject: Subject,
     settings: Settings | None = None,
     *,
-    changes: Iterable[Change | str] = (),
+    changes: Changes = (),
     duration: str | Time | None = None,
     seed: int = 1,
     with_simulation: bool = True,
@@ -77,7 +76,7 @@ def report(
 
     Parameters
     ----------
-    changes : such as "Executor_Task.period=2ms"
+    changes : such as `{"Executor_Task.period": "2 ms"}`, or texts as for `amuros report --set`
     duration : of the simulation, such as "1 s", or picoseconds; None: so long that the work is limited
     with_bus : with the messages on the CAN bus of an `app.yaml`
     title : None: the names of the files

@@ -17,12 +17,12 @@ from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.activities import Call, walk
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.changes.apply import Difference, apply, describe
-from amalthea_uros.services.changes.change import Change, parse_change
 from amalthea_uros.services.inputs import ModelInput, refuse_descriptions
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.paths import StrPath, as_paths, is_description
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.services.subject import Subject
+from amalthea_uros.services.what_if import Changes, as_changes
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.load import activation_rates
 from amalthea_uros.timing.settings import Settings
@@ -81,7 +81,7 @@ def compile_report(
     subject: Subject,
     settings: Settings | None = None,
     *,
-    changes: Iterable[Change | str] = (),
+    changes: Changes = (),
     with_bus: bool = False,
     with_simulation: bool = True,
     duration: Time | None = None,
@@ -93,7 +93,8 @@ def compile_report(
 
     Parameters
     ----------
-    changes : such as "Executor_Task.period=2ms"; made before everything but the check of the files
+    changes : such as `{"Executor_Task.period": "2 ms"}`, or texts as for `amuros report --set`; made before everything but the check
+        of the files
     with_bus : with the messages on the CAN bus of an `app.yaml`
     duration : of the simulation; None: so long that about twenty thousand jobs and calls are executed, but at most 10 s
     title : None: the names of the files
@@ -105,7 +106,7 @@ def compile_report(
     InvalidArgumentError : changes or settings name what does not exist, or are wrong; there is no bus.
     """
     opened = _open(subject, with_bus)
-    parsed = [change if isinstance(change, Change) else parse_change(change) for change in changes]
+    parsed = as_changes(changes)
     unchanged = settings or Settings()
     require_settings(unchanged, opened.system)
     differences = describe(opened.system, unchanged, parsed)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from math import isfinite
 
 from amalthea_uros.perf.activities import Count
@@ -41,6 +42,7 @@ def is_average(times: Count | float | None) -> bool:
     return isinstance(times, float) and isfinite(times) and not times.is_integer()
 
 
+@lru_cache(maxsize=1024)
 def bounds_of(times: Count | float | None) -> tuple[int, int | None]:
     """The least number of executions, and the greatest one; None if it is unknown."""
     if times is None:

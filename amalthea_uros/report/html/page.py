@@ -27,7 +27,6 @@ from amalthea_uros.report.html.sections import (
     methods,
     observed,
     pools,
-    requirements,
     response_times,
     system,
     tightest,
@@ -48,7 +47,6 @@ _SECTIONS: Sequence[Callable[[ReportContent], Section | None]] = (
     worst_window.section,
     histograms.section,
     hops.section,
-    requirements.section,
     findings.section,
     methods.section,
     bus.section,
@@ -121,8 +119,8 @@ def _facts(content: ReportContent) -> str:
     system = content.system
     numbers = {"core": len(system.cores), "task": len(system.software.tasks), "interrupt": len(system.software.isrs)}
     numbers |= {"runnable": len(system.software.runnables), "event chain": len(system.chains)}
-    judged = content.analysis.summary.judged
-    return ", ".join(counted(number, noun) for noun, number in {**numbers, "limit": judged}.items() if number)
+    numbers |= {"limit": len(judged_rows(content.analysis))}
+    return ", ".join(counted(number, noun) for noun, number in numbers.items() if number)
 
 
 def _verdict(content: ReportContent) -> Opening:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from fractions import Fraction
 
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
@@ -28,8 +27,3 @@ def about(value: Time | Fraction | None) -> str:
 def deadline_text(deadline: Time | None, is_implicit: bool) -> str:
     """A deadline, and whether it is the period."""
     return "-" if deadline is None else f"{time_text(deadline)}{' (period)' if is_implicit else ''}"
-
-
-def load_text(load: Fraction | None, rounding: Callable[[Fraction], int] = round) -> str:
-    """A load in percent; bounds are rounded so that they remain bounds."""
-    return UNKNOWN if load is None else f"{rounding(load * 100_000) / 1000:.3f} %"

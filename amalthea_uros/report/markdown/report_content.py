@@ -80,7 +80,7 @@ def _requirements(content: ReportContent) -> Iterator[str]:
         (row.item.name, row.what, row.value, row.limit, row.margin, row.claim, str(row.item.verdict), why(row.item))
         for row in islice(found, _MOST_ROWS)
     ]
-    yield from ("", f"### Tightest of {counted(len(found), 'requirement')}", "")
+    yield from ("", f"### {counted(len(found), 'requirement')}, what is closest to its limit first", "")
     yield from _table(("requirement", "what", "value", "limit", "margin", "claim", "verdict", "why"), rows, right=(2, 3, 4))
 
 

@@ -8,16 +8,18 @@ from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.results import Analysis, ProcessorResult
+from amalthea_uros.report.load_text import load_text
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import TEXT_SIZE, UNKNOWN
 from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
 from amalthea_uros.report.pictures.text_widths import elided, text_width
 from amalthea_uros.report.pictures.ticks import multiples, nice_step
+from amalthea_uros.units import Rounding
 
 #: More cores are not drawn, those with the lowest loads.
 MOST_CORES = 40
 #: Pixels.
-_ROW, _BAR, _GAP, _AXIS, _NARROWEST, _WIDEST, _TEXT = 34, 16, 10, 44, 60, 200, 270
+_ROW, _BAR, _GAP, _AXIS, _NARROWEST, _WIDEST, _TEXT = 34, 16, 10, 44, 60, 200, 290
 #: The axis ends at least here and at most there, in percent.
 _SHORTEST, _LONGEST, _PARTS = 100, 200, 10
 _LOWEST = 1.0
@@ -88,13 +90,9 @@ def _bar(left: float, right: float, top: float, height: float = _BAR, **look: st
 
 
 def _values(core: ProcessorResult) -> str:
-    worst = f"at least {_percent(core.at_least)}" if core.worst is None else f"worst {_percent(core.worst)}"
-    others = (f"{name} {_percent(load)}" for name, load in (("mean", core.mean), ("best", core.best)) if load is not None)
-    return ", ".join((worst, *others))
-
-
-def _percent(load: Fraction) -> str:
-    return f"{float(100 * load):.4g} %"
+    known = (("worst", core.worst, Rounding.UP), ("mean", core.mean, Rounding.NEAREST), ("best", core.best, Rounding.DOWN))
+    texts = [f"{name} {load_text(load, rounding)}" for name, load, rounding in known if load is not None]
+    return ", ".join(texts if core.worst is not None else (f"at least {load_text(core.at_least, Rounding.DOWN)}", *texts))
 
 
 def _grid(scale: _Scale, bottom: float) -> Markup:

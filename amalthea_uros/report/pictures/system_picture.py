@@ -14,6 +14,7 @@ from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.flows import ChainPath, Flow, SystemFlows
+from amalthea_uros.report.load_text import load_text
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import PALETTE, SMALL_SIZE, TEXT_SIZE
 from amalthea_uros.report.pictures.svg import Markup, element, number, text, tooltip
@@ -23,6 +24,7 @@ from amalthea_uros.report.pictures.verdict_marks import MARK, draw_verdict, verd
 from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.load import activation_rates, loads
+from amalthea_uros.units import Rounding
 
 #: With more processes, the picture shows cores and the flows between them; with more flows, one line for all data of a process.
 MOST_PROCESSES, MOST_FLOWS = 40, 40
@@ -91,7 +93,7 @@ def draw_system(system: System, analysis: Analysis | None = None) -> Markup:
     ----------
     analysis : shows loads and verdicts, too
     """
-    shown = SystemFlows(system)
+    shown = SystemFlows.of(system, analysis)
     is_large = len(system.processes) > MOST_PROCESSES
     return _drawn(_of_cores(shown, analysis) if is_large else _of_processes(shown, analysis), _subtitle(shown))
 
@@ -147,7 +149,7 @@ def _loads(analysis: Analysis) -> dict[str, Fraction]:
 
 
 def _percent(load: Fraction) -> str:
-    return "< 0.01 %" if 0 < load < Fraction(1, 10_000) else f"{float(100 * load):.3g} %"
+    return "< 0.01 %" if 0 < load < Fraction(1, 10_000) else load_text(load, Rounding.UP)
 
 
 def _core_text(core: str | None, analysis: Analysis | None) -> str:
@@ -159,7 +161,11 @@ def _core_load(core: str, analysis: Analysis | None) -> str:
     result = next((each for each in _processors(analysis) if each.name == core), None)
     if result is None:
         return ""
-    return f"load {_percent(result.worst)}" if result.worst is not None else f"load at least {_percent(result.at_least)}"
+    return (
+        f"load {_percent(result.worst)}"
+        if result.worst is not None
+        else f"load at least {load_text(result.at_least, Rounding.DOWN)}"
+    )
 
 
 def _processors(analysis: Analysis | None) -> Iterable[ProcessorResult]:

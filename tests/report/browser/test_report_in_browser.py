@@ -12,6 +12,7 @@ from amalthea_uros import report
 
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 AXE = ROOT / "tests" / "node" / "node_modules" / "axe-core" / "axe.min.js"
+SAMPLE = ROOT / "samples" / "bodas-test-advanced.yaml"
 selenium = pytest.importorskip("selenium.webdriver")
 wait = pytest.importorskip("selenium.webdriver.support.wait")
 pytestmark = pytest.mark.skipif(CHROMIUM is None or DRIVER is None, reason="chromium and its driver are not installed")
@@ -33,7 +34,7 @@ COLOUR = "return getComputedStyle(document.querySelector(arguments[0])).getPrope
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
     path = tmp_path_factory.mktemp("report") / "report.html"
-    report(ROOT / "samples" / "bodas-test-advanced.yaml", duration="100 ms").save(path)
+    report(SAMPLE, duration="100 ms").save(path)
     return path
 
 
@@ -149,12 +150,24 @@ def test_all_of_it_is_printed(opened, tmp_path):
     assert opened.execute_script("return document.querySelectorAll('details[open]').length") == 0
 
 
+@pytest.fixture(scope="module", params=["met", "missed", "unknown"])
+def verdict_page(request, page, tmp_path_factory):
+    if request.param == "met":
+        return page
+    # In each millisecond, Control_Function takes more than that; or so much that it may be late when a message arrives.
+    time = {"missed": "1990us", "unknown": "980us"}[request.param]
+    path = tmp_path_factory.mktemp("verdict") / "report.html"
+    report(SAMPLE, duration="20 ms", changes={"Control_Function.execution_time": time}).save(path)
+    return path
+
+
 @pytest.mark.skipif(not AXE.exists(), reason="axe-core is not installed: npm ci in tests/node")
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_it_is_accessible(opened, scheme):
-    opened.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
-    opened.execute_script(Path(AXE).read_text())
-    opened.execute_script("for (const details of document.querySelectorAll('details')) details.open = true")
-    found = opened.execute_async_script("axe.run().then(arguments[arguments.length - 1])")
+def test_it_is_accessible(browser, verdict_page, scheme):
+    browser.get(verdict_page.as_uri())
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+    browser.execute_script(Path(AXE).read_text())
+    browser.execute_script("for (const details of document.querySelectorAll('details')) details.open = true")
+    found = browser.execute_async_script("axe.run().then(arguments[arguments.length - 1])")
     serious = [each for each in found["violations"] if each["impact"] in ("serious", "critical")]
     assert [(each["id"], [node["html"][:200] for node in each["nodes"][:3]]) for each in serious] == []

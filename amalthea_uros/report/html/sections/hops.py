@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from amalthea_uros.analyze.chains.explanation import ChainExplanation, Hop, explain_chain
 from amalthea_uros.analyze.results import Claim, Quantity
-from amalthea_uros.report.html.blocks import Block, Figure, Heading, Section, Sentences, table
+from amalthea_uros.report.html import shortened
+from amalthea_uros.report.html.blocks import Block, Figure, Folded, Heading, Section, Sentences, table
 from amalthea_uros.report.judged import LIMITED, decisive_quantity, requirements_of, worst_chains
 from amalthea_uros.report.latencies import value_text
 from amalthea_uros.report.pictures.chain_hops import draw_hops
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.units import Time, time_text
 
-#: Chains that are explained, the worst first.
-MOST_CHAINS = 6
+#: Chains that are explained, the worst first, and those of them that are seen at once.
+MOST_CHAINS, _SHOWN = 6, 2
 
 
 def section(content: ReportContent) -> Section | None:
-    """The hops of the worst chains; of each, the latency with the tightest limit."""
+    """The hops of the worst chains, of each the latency with the tightest limit; of the worst one, also what would shorten it."""
     chains = worst_chains(content.analysis)
     if not chains:
         return None
@@ -24,7 +25,11 @@ def section(content: ReportContent) -> Section | None:
     for number, chain in enumerate(chains[:MOST_CHAINS]):
         quantity = decisive_quantity(chain.name, content.analysis)
         limit = _limit(chain.name, quantity, content)
-        blocks += _blocks(explain_chain(content.analysis, chain.name, quantity), limit, f"hops-{number}")
+        explanation = explain_chain(content.analysis, chain.name, quantity)
+        found = _blocks(explanation, limit, f"hops-{number}")
+        if number == 0 and requirements_of(chain.name, content.analysis):
+            found.append(shortened.block(content, chain.name, quantity))
+        blocks += [Heading(_title(explanation)), *found] if number < _SHOWN else [Folded(_title(explanation), found)]
     if len(chains) > MOST_CHAINS:
         sentence = f"The {MOST_CHAINS} worst of {len(chains):,} chains are shown; amuros analyze --explain NAME explains any."
         blocks.append(Sentences([sentence]))
@@ -32,12 +37,15 @@ def section(content: ReportContent) -> Section | None:
     return Section("chains", "Worst cases of the event chains", lead, blocks)
 
 
+def _title(explanation: ChainExplanation) -> str:
+    quantity = explanation.quantity.removeprefix("max_reduced_").replace("_", " ")
+    return f"{explanation.chain.name}: {quantity} {value_text(explanation.value).replace('-', 'unknown')}"
+
+
 def _blocks(explanation: ChainExplanation, limit: Time | None, name: str) -> list[Block]:
     value = explanation.value
-    quantity = explanation.quantity.removeprefix("max_reduced_").replace("_", " ")
-    found: list[Block] = [Heading(f"{explanation.chain.name}: {quantity} {value_text(value).replace('-', 'unknown')}")]
     if not explanation.hops or value is None or value.value is None:
-        return [*found, Sentences([f"Its single hops are not known: {explanation.reason}."])]
+        return [Sentences([f"Its single hops are not known: {explanation.reason}."])]
     rows = [_row(hop) for hop in explanation.hops]
     if explanation.overwritten:
         rows.append(("until overwritten", "", "", "", "", "", time_text(explanation.overwritten), ""))
@@ -45,9 +53,8 @@ def _blocks(explanation: ChainExplanation, limit: Time | None, name: str) -> lis
     notes = [f"{explanation.route}.", f"{value.claim}: {value.method} ({value.source})."]
     if value.claim is Claim.BOUND:
         notes.append("Each read is as early and each write as late as possible, which need not occur in one run.")
-    found.append(Figure(name, draw_hops(explanation, limit)))
     return [
-        *found,
+        Figure(name, draw_hops(explanation, limit)),
         table(f"Hops of {explanation.chain.name}; times are relative to the first read", titles, rows),
         Sentences(notes),
     ]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from math import ceil, floor
+from fractions import Fraction
 
 from amalthea_uros.analyze.results import ProcessorResult
 from amalthea_uros.report.html.blocks import Badge, Cell, Figure, Section, Tone, table
-from amalthea_uros.report.html.times import UNKNOWN, load_text
+from amalthea_uros.report.html.times import UNKNOWN
+from amalthea_uros.report.load_text import load_text
 from amalthea_uros.report.pictures.load_bars import draw_loads
 from amalthea_uros.services.report import ReportContent
-from amalthea_uros.units import frequency_text
+from amalthea_uros.units import Rounding, frequency_text
 
 
 def section(content: ReportContent) -> Section | None:
@@ -29,20 +30,24 @@ def section(content: ReportContent) -> Section | None:
 
 
 def _row(core: ProcessorResult, content: ReportContent) -> tuple[Cell, ...]:
-    worst = load_text(core.worst, ceil)
+    worst = _load(core.worst, Rounding.UP)
     if core.worst is None and core.at_least:
-        worst = f"at least {load_text(core.at_least, floor)}"
+        worst = f"at least {load_text(core.at_least, Rounding.DOWN)}"
     simulation = content.simulation.simulation if content.simulation is not None else None
     observed = simulation.cores[core.name].load if simulation is not None else None
     return (
         core.name,
         frequency_text(core.frequency) if core.frequency else UNKNOWN,
-        load_text(core.best, floor),
-        load_text(core.mean),
+        _load(core.best, Rounding.DOWN),
+        _load(core.mean),
         worst,
         "-" if observed is None else load_text(observed),
         _remark(core),
     )
+
+
+def _load(load: Fraction | None, rounding: Rounding = Rounding.NEAREST) -> str:
+    return UNKNOWN if load is None else load_text(load, rounding)
 
 
 def _remark(core: ProcessorResult) -> Cell:

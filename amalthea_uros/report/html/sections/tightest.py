@@ -1,4 +1,4 @@
-"""The tightest requirements and the worst chains."""
+"""All requirements and chains, the worst first."""
 
 from __future__ import annotations
 
@@ -9,11 +9,9 @@ from amalthea_uros.report.judged import judged_rows, limit_text, margin_text, re
 from amalthea_uros.report.latencies import value_text
 from amalthea_uros.services.report import ReportContent
 
-_MOST = 8
-
 
 def section(content: ReportContent) -> Section | None:
-    """The first rows of both; all of them are in later sections."""
+    """What is missed, unknown or closest to its limit first; the rest of long tables is folded."""
     analysis = content.analysis
     blocks: list[Block] = []
     rows = judged_rows(analysis)
@@ -21,28 +19,30 @@ def section(content: ReportContent) -> Section | None:
         shown = [
             (
                 row.item.name,
+                verdict_badge(row.item),
                 row.what,
                 row.value,
                 row.limit,
-                row.margin,
                 row.used,
+                row.margin,
                 row.claim,
-                verdict_badge(row.item),
                 why(row.item),
             )
-            for row in rows[:_MOST]
+            for row in rows
         ]
-        titles = ("requirement", "what", ">value", ">limit", ">margin", ">used", "claim", "verdict", "why")
-        blocks.append(table(f"Tightest of {len(rows):,} deadlines, requirements and constraints", titles, shown))
+        titles = ("requirement", "verdict", "what", ">value", ">limit", ">used", ">margin", "claim", "why")
+        blocks.append(table("Deadlines, requirements and constraints", titles, shown))
     chains = worst_chains(analysis)
     if chains:
-        of_chains = ("chain", ">reaction time", ">data age", "claim", ">limit", ">margin", "verdict", "why")
-        shown_chains = [_chain(chain, analysis) for chain in chains[:_MOST]]
-        blocks.append(table(f"Worst of {len(chains):,} event chains", of_chains, shown_chains))
+        of_chains = ("chain", "verdict", ">reaction time", ">data age", "claim", ">limit", ">margin", "why")
+        blocks.append(table("Latencies of event chains", of_chains, [_chain(chain, analysis) for chain in chains]))
     if not blocks:
         return None
-    lead = "Missed and unknown limits come first, then those with the least margin; “exact” values occur, “bounds” are never exceeded."
-    return Section("tightest", "Tightest requirements and worst chains", lead, blocks)
+    lead = (
+        "What is missed or unknown comes first, then what uses most of its limit. “Met” and “missed” are certain; a limit between the"
+        " known ends of a value is unknown. “Exact” values occur, a “bound” is never exceeded."
+    )
+    return Section("requirements", "Closest to their limits", lead, blocks)
 
 
 def _chain(chain: ChainResult, analysis: Analysis) -> tuple[Cell, ...]:
@@ -51,10 +51,10 @@ def _chain(chain: ChainResult, analysis: Analysis) -> tuple[Cell, ...]:
     worst = next(iter(requirements_of(chain.name, analysis)), None)
     return (
         chain.name,
+        badge(None) if worst is None else verdict_badge(worst),
         *(value_text(value).replace("-", "unknown") for value in values),
         ", ".join(claims),
         "-" if worst is None or worst.limit is None else f"{worst.quantity} {limit_text(worst)}",
         "-" if worst is None else margin_text(worst),
-        badge(None) if worst is None else verdict_badge(worst),
         chain.reason or ("" if worst is None else why(worst)),
     )

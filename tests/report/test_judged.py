@@ -1,0 +1,49 @@
+"""What a report puts first, and what it says of each limit."""
+
+import pytest
+from support import ROOT
+
+from amalthea_uros import analyze, task, taskset
+from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.report.judged import judged_rows
+
+ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
+
+
+def rows(changes=()):
+    return {row.item.name: row for row in judged_rows(analyze(ADVANCED, changes=changes))}
+
+
+def test_what_uses_most_of_its_limit_comes_first():
+    # 20.029 ms of 25 ms, 29 us of 1 ms, 25 us of 1 ms, 31 us of 20 ms: the least time left is that of the second one.
+    assert list(rows()) == ["factor-to-output_reaction", "Control_Function_response_time", "Executor_Task", "Message_Factor"]
+
+
+def test_of_an_unknown_verdict_the_share_is_an_upper_bound():
+    unknown = next(row for row in rows({"Control_Function.execution_time": "980us"}).values() if row.used.startswith("up to"))
+    assert unknown.item.verdict is Verdict.UNKNOWN
+
+
+def test_a_process_that_loses_activations_is_shown_beside_its_requirement():
+    found = rows({"Control_Function.execution_time": "980us"})
+    assert found["Control_Function"].item.verdict is Verdict.MISSED
+    assert found["Control_Function_response_time"].item.verdict is Verdict.UNKNOWN
+    assert next(iter(found)) == "Control_Function"
+
+
+@pytest.mark.parametrize("changes", [(), {"Control_Function.execution_time": "980us"}])
+def test_a_response_time_has_one_claim(changes):
+    analysis = analyze(ADVANCED, changes=changes)
+    claims = {each.name: each.response.claim for each in analysis.processes}
+    for row in judged_rows(analysis):
+        if getattr(row.item, "quantity", "") == "response time":
+            assert row.claim == claims[row.item.object]
+
+
+def test_shares_order_tasks_of_different_periods():
+    # 9 ms of 10 ms are closer than 600 us of 1 ms, which has less time left.
+    system = taskset(
+        [task("fast", period="1 ms", wcet="600 us", core="A"), task("slow", period="10 ms", wcet="9 ms", core="B")],
+        priorities="rate monotonic",
+    )
+    assert [row.item.name for row in judged_rows(analyze(system))] == ["slow", "fast"]
