@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.response_times.kernel import report_machine_code
-from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
+from amalthea_uros.analyze.results import Analysis, ChainResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from amalthea_uros.services.what_if import Changes
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Explanation:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Explanation(Shown):
     """What the response time of a process or callback, or a latency of a chain consists of; several of them if they have the name.
 
     Attributes
@@ -51,6 +51,9 @@ class Explanation:
     chain: ChainExplanation | None
     callbacks: tuple[CallbackExplanation, ...] = ()
     improvements: Improvements | None = None
+
+    def __repr__(self) -> str:
+        return f"<Explanation of {self.name}>"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -188,31 +191,27 @@ def _proposals(analysis: Analysis) -> tuple[Proposal, ...]:
     return tuple(propose_priorities(analysis))
 
 
-def explain(result: AnalysisResult, name: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Explanation:
-    """Explain the response time of a process or callback, or a maximum latency of a chain.
+#: What can be explained: an analysis, or what can be analyzed.
+Analyzed: TypeAlias = "Analysis | AnalysisResult | Subject"
 
-    Parameters
-    ----------
-    quantity : of a chain, one of `analyze.results.EXPLAINED`
 
-    Raises
-    ------
-    InvalidArgumentError : there is no such process, callback or chain.
-    """
-    from amalthea_uros.analyze.callback_explanation import explain_callback
-    from amalthea_uros.analyze.chains.explanation import explain_chain
-    from amalthea_uros.analyze.explanation import explain_process
-    from amalthea_uros.services.improvements import improvements
-
-    system, analysis = result.system, result.analysis
-    callbacks = [callback.name for callback in analysis.callbacks]
-    require("process, callback or chain", [name], dict.fromkeys((*system.processes, *callbacks, *system.chains)))
-    return Explanation(
-        name=name,
-        process=explain_process(analysis, name) if name in system.processes else None,
-        chain=explain_chain(analysis, name, quantity) if name in system.chains else None,
-        callbacks=explain_callback(analysis, name),
-        improvements=improvements(result, name, quantity) if name in system.chains else None,
+def analysis_result(analyzed: Analyzed) -> AnalysisResult:
+    """The analysis with what it rests on; of something else than files, there are no paths."""
+    if isinstance(analyzed, AnalysisResult):
+        return analyzed
+    offered: tuple[Time, ...] = ()
+    if not isinstance(analyzed, Analysis):
+        opened = open_subject(analyzed)
+        analysis, offered = analyze_system(opened.system), opened.task_periods
+        analyzed = replace(analysis, findings=unsuppressed((*opened.findings, *analysis.findings)))
+    context = analyzed.solution.context
+    return AnalysisResult(
+        paths=(),
+        task_periods=offered,
+        system=context.system,
+        settings=context.settings,
+        analysis=analyzed,
+        findings=analyzed.findings,
     )
 
 

@@ -32,7 +32,7 @@ def written(result, name):
 
 def test_records_have_the_names_and_values_of_the_json_output(analysis):
     content = json.loads(written(amuros.analyze_files(YAML), "json"))
-    for record, process in zip(analysis.to_records(), content["processes"], strict=True):
+    for record, process in zip(analysis.to_records(full=True), content["processes"], strict=True):
         plain = {key: value for key, value in process.items() if not isinstance(value, dict)}
         assert record.items() >= plain.items()
         assert record["terms.own_ps"] == process["terms"]["own_ps"]
