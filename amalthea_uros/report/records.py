@@ -19,11 +19,21 @@ from amalthea_uros.analyze.results import (
     RequirementResult,
 )
 from amalthea_uros.analyze.sensitivity import Sensitivity
-from amalthea_uros.report.json import analysis_result, check_result, diff_result, impact, simulation_result
+from amalthea_uros.report.json import (
+    analysis_result,
+    build_result,
+    check_result,
+    diff_result,
+    impact,
+    migration_result,
+    simulation_result,
+)
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
+from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.improvements import Improvements
+from amalthea_uros.services.migrate import MigrationResult
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult
 from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.simulate.results import (
@@ -165,6 +175,18 @@ def _(requirement: RequirementObservation) -> list[Record]:
 @all_records.register
 def _(result: CheckResult) -> list[Record]:
     return [flat(finding) for finding in check_result.content(result)["findings"]]
+
+
+@all_records.register
+def _(result: BuildResult) -> list[Record]:
+    """The periods that were chosen, with reasons."""
+    return [flat(choice) for choice in build_result.content(result)["choices"]]
+
+
+@all_records.register
+def _(result: MigrationResult) -> list[Record]:
+    """The objects that were changed."""
+    return [flat(change) for change in migration_result.content(result)["changes"]]
 
 
 @all_records.register

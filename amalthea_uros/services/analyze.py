@@ -14,6 +14,7 @@ from amalthea_uros.analyze.results import Analysis, ChainResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.changes.apply import Difference, apply
 from amalthea_uros.services.changes.change import Change
@@ -57,7 +58,7 @@ class Explanation(Shown):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AnalysisResult(Shown):
+class AnalysisResult(Brief, Shown):
     """The analysis of some files, with what it rests on.
 
     Attributes

@@ -14,6 +14,7 @@ from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.campaign.run import Outcome, Record, Run, plan_runs
 from amalthea_uros.services.campaign.sending import system_bytes, system_from
@@ -68,7 +69,7 @@ class SimulationPlan:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationResult(Shown):
+class SimulationResult(Brief, Shown):
     """The simulation of some files, with what it rests on.
 
     Attributes
@@ -98,7 +99,7 @@ class SimulationResult(Shown):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CampaignResult(Shown):
+class CampaignResult(Brief, Shown):
     """Many simulations of some files.
 
     Attributes

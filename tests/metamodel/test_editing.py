@@ -85,7 +85,7 @@ WRONG = {
     "a core twice": (lambda m: m.add_core("Core_0", frequency="1 MHz"), "already has a ProcessingUnit 'Core_0'"),
     "a task twice": (lambda m: m.add_task("Slow", period="1 ms", wcet="1 us"), "already has a Task 'Slow'"),
     "a label twice": (lambda m: m.add_label("speed", size="4 B"), "already has a Label 'speed'"),
-    "a chain twice": (lambda m: m.add_chain("speed-used", ["Control", "Slow"]), "already has a EventChain 'speed-used'"),
+    "a chain twice": (lambda m: m.add_chain("speed-used", ["Control", "Slow"]), "already has an EventChain 'speed-used'"),
     "no unit": (lambda m: m.add_task("X", period="1", wcet="1 us"), "X: period: '1' has no unit"),
     "a number": (lambda m: m.add_task("X", period=1, wcet="1 us"), "expected a text with a unit"),
     "frequency 0": (lambda m: m.add_core("X", frequency="0 Hz"), "X: frequency: '0 Hz' is not positive"),
