@@ -90,6 +90,9 @@ WRONG = {
     "a number": (lambda m: m.add_task("X", period=1, wcet="1 us"), "expected a text with a unit"),
     "frequency 0": (lambda m: m.add_core("X", frequency="0 Hz"), "X: frequency: '0 Hz' is not positive"),
     "bcet above wcet": (lambda m: m.add_task("X", period="1 ms", wcet="1 us", bcet="2 us"), "bcet 2 us exceeds the wcet 1 us"),
+    "a task twice in a chain": (lambda m: m.add_chain("c", ["Slow", "Slow"]), "a task occurs twice"),
+    "a name that is no text": (lambda m: m.add_task(5, period="1 ms", wcet="1 us"), "must be a text, not 5"),
+    "a frequency without unit": (lambda m: m.add_core("X", frequency=100), "such as '100 MHz', not 100"),
     "a short chain": (lambda m: m.add_chain("c", ["Slow"]), "at least two tasks"),
     "a wrong priority": (lambda m: m.set_priority("Slow", "high"), "must be a whole number, not 'high'"),
     "an unknown preemption": (

@@ -1,7 +1,7 @@
 """Task sets with response times and latencies that other programs and papers give, made by `taskset` alone.
 
-The oracles: published examples that were derived again; pyCPA and response-time-analysis-rs for random task sets; the end-to-end analyses
-of TU Dortmund (2021) and E2EEvaluation (2025) for chains. Times in nanoseconds, priority 0 is the highest.
+The oracles: published examples that were derived again; pyCPA and response-time-analysis-rs for random task sets; the end-to-end
+analyses of TU Dortmund (2021) and E2EEvaluation (2025) for chains. Times in nanoseconds, priority 0 is the highest.
 """
 
 import json
