@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import index
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -400,10 +401,11 @@ def _available_cores() -> int:
 
 def time_of(duration: str | Time) -> Time:
     """A duration in picoseconds; InvalidArgumentError if it is no time."""
-    if isinstance(duration, int):
-        return duration
     try:
-        return parse_time(duration)
+        return parse_time(duration) if isinstance(duration, str) else index(duration)
+    except TypeError:
+        message = f"the duration must be a time such as '1 s', or whole picoseconds, not {duration!r}"
+        raise InvalidArgumentError(message) from None
     except ValueError as error:
         raise InvalidArgumentError(f"the duration {error}") from None
 
