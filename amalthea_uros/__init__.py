@@ -9,7 +9,8 @@
 This module is the public interface:
 
 - answers about whatever describes a system (files, the text or content of an `app.yaml`, a model, a system): `analyze`, `simulate`,
-  `what_if`; their results have `to_records()` and `to_dataframe()`, and notebooks display them as tables
+  `what_if`; why, and what would be better: `explain`, `improvements`; their results have `to_records()` and `to_dataframe()`, and
+  notebooks display them as tables
 - synthetic tasks and chains without any file: `taskset`, `task`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
@@ -78,6 +79,7 @@ if TYPE_CHECKING:
     from amalthea_uros.report.library import Report as Report
     from amalthea_uros.report.library import report as report
     from amalthea_uros.services.analyze import AnalysisResult as AnalysisResult
+    from amalthea_uros.services.analyze import Explanation as Explanation
     from amalthea_uros.services.analyze import analyze as analyze
     from amalthea_uros.services.analyze import analyze_files as analyze_files
     from amalthea_uros.services.build import BuildResult as BuildResult
@@ -95,6 +97,10 @@ if TYPE_CHECKING:
     from amalthea_uros.services.check import check_files as check_files
     from amalthea_uros.services.diff import DiffResult as DiffResult
     from amalthea_uros.services.diff import diff as diff
+    from amalthea_uros.services.explain import explain as explain
+    from amalthea_uros.services.improvements import Improvement as Improvement
+    from amalthea_uros.services.improvements import Improvements as Improvements
+    from amalthea_uros.services.improvements import improvements as improvements
     from amalthea_uros.services.migrate import MigrationResult as MigrationResult
     from amalthea_uros.services.migrate import migrate as migrate
     from amalthea_uros.services.settings import CheckSettings as CheckSettings
@@ -153,7 +159,7 @@ _NAMES = {
     "perf.activities": ("Communication",),
     "perf.system": ("System",),
     "report.library": ("Report", "report"),
-    "services.analyze": ("AnalysisResult", "analyze", "analyze_files"),
+    "services.analyze": ("AnalysisResult", "Explanation", "analyze", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
     "services.campaign.run": ("Outcome", "Run"),
     "services.campaign.tables": ("write_table",),
@@ -161,6 +167,8 @@ _NAMES = {
     "services.changes.sweep": ("Sweep", "parse_sweep"),
     "services.check": ("CheckResult", "check", "check_files"),
     "services.diff": ("DiffResult", "diff"),
+    "services.explain": ("explain",),
+    "services.improvements": ("Improvement", "Improvements", "improvements"),
     "services.migrate": ("MigrationResult", "migrate"),
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),

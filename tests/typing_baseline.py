@@ -20,6 +20,9 @@ changed: amuros.Analysis = amuros.what_if(model, {"Executor_Task.period": "2 ms"
 process: amuros.ProcessResult = analysis["Executor_Task"]
 system: amuros.System = amuros.taskset([amuros.task("T", period="5 ms", wcet="1 ms"), ("5 ms", 1.5)], policy="EDF")
 rows: list[dict[str, str | int | float | bool | None]] = analysis.chains.to_records()
+small: list[dict[str, str | int | float | bool | None]] = amuros.explain(system, "T").to_records()
+best: amuros.Improvements = amuros.improvements(analysis, "chain")
+listed: amuros.System = amuros.taskset([{"period": 5, "wcet": 1}, (10, 2, 8)], unit="ms")
 new: Task = amuros.Model.new().add_task("T", period="5 ms", wcet="1 ms", priority=1)
 
 Task(name=3)  # type: ignore[arg-type]

@@ -21,12 +21,21 @@ class Shown:
 
     __slots__ = ()
 
-    def to_records(self) -> list[Record]:
-        """The result as rows of a table, with the names of the JSON output; times are whole picoseconds in columns `..._ps`."""
-        return presenter().records(self)
+    def to_records(self, *, full: bool = False) -> list[Record]:
+        """The result as rows of a table, with the names of the JSON output; times are whole picoseconds in columns `..._ps`.
 
-    def to_dataframe(self) -> pd.DataFrame:
+        Parameters
+        ----------
+        full : with all metrics, terms, methods and sources, which are many columns
+        """
+        return presenter().records(self, full)
+
+    def to_dataframe(self, *, full: bool = False) -> pd.DataFrame:
         """The records as a data frame; needs the package pandas.
+
+        Parameters
+        ----------
+        full : as for `to_records`
 
         Raises
         ------
@@ -36,7 +45,7 @@ class Shown:
             import pandas as pd
         except ImportError as error:
             raise ImportError("a data frame needs pandas; install it with: pip install amuros[pandas]") from error
-        return pd.DataFrame(self.to_records())
+        return pd.DataFrame(self.to_records(full=full))
 
     def __str__(self) -> str:
         """What the command line prints of such a result, or a short text."""
@@ -50,8 +59,8 @@ class Shown:
 class Presenter(Protocol):
     """How results are shown."""
 
-    def records(self, result: object) -> list[Record]:
-        """The rows of a table."""
+    def records(self, result: object, full: bool) -> list[Record]:
+        """The rows of a table, with the most important columns or all."""
 
     def text(self, result: object) -> str:
         """A text for people."""

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import permutations
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results import Analysis, Claim, ProcessResult, require_analysis
 from amalthea_uros.analyze.summary import FAILURES
 from amalthea_uros.analyze.system import analyze_system
@@ -44,8 +45,8 @@ class Outcome(StrEnum):
     EXCLUDED = "excluded"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Proposal:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Proposal(Shown):
     """Priorities for the tasks of a core.
 
     Attributes
@@ -58,6 +59,9 @@ class Proposal:
     outcome: Outcome
     priorities: Mapping[str, int] | None = None
     reason: str = ""
+
+    def __repr__(self) -> str:
+        return f"<Proposal for {self.core}: {self.outcome}{self.reason and f', {self.reason}'}>"
 
 
 def propose_priorities(analysis: Analysis) -> list[Proposal]:

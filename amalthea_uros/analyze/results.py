@@ -149,11 +149,19 @@ class ProcessResult(Shown):
         return f"<ProcessResult {self.name}: response time {worst}, deadline {_text(self.deadline)}{verdict}>"
 
     @property
+    def wcrt(self) -> Time | None:
+        """The worst-case response time; None if it is unknown or has no finite bound."""
+        return None if self.response is None else self.response.worst
+
+    @property
+    def bcrt(self) -> Time | None:
+        """The best-case response time; None if it is unknown."""
+        return None if self.response is None else self.response.best
+
+    @property
     def margin(self) -> Time | None:
         """Distance of the worst-case response time from the deadline; negative if it is later."""
-        if self.deadline is None or self.response is None or self.response.worst is None:
-            return None
-        return self.deadline - self.response.worst
+        return None if self.deadline is None or self.wcrt is None else self.deadline - self.wcrt
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -203,7 +211,7 @@ class Quantity(StrEnum):
 
 
 #: The quantities that can be explained.
-EXPLAINED = (
+EXPLAINED: tuple[Quantity, ...] = (
     Quantity.MAX_REACTION_TIME,
     Quantity.MAX_REDUCED_REACTION_TIME,
     Quantity.MAX_DATA_AGE,

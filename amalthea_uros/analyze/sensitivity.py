@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results import Analysis, RequirementResult, require_analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.analyze.verdicts import Verdict
@@ -24,8 +25,8 @@ RESOLUTION = Fraction(1, 1000)
 MAX_FACTOR = 1000
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Sensitivity:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Sensitivity(Shown):
     """The maximum factors on worst-case execution times with which nothing is missed; None if there is no such factor.
 
     With a factor above 1, nothing is missed with any execution times up to it.
@@ -38,6 +39,10 @@ class Sensitivity:
 
     everything: Fraction | None
     processes: Mapping[str, Fraction | None]
+
+    def __repr__(self) -> str:
+        factor = "none" if self.everything is None else f"{float(self.everything):.4g}"
+        return f"<Sensitivity: maximum factor on all execution times {factor}>"
 
 
 def sensitivity(analysis: Analysis) -> Sensitivity:

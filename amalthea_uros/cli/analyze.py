@@ -26,7 +26,7 @@ from amalthea_uros.cli.output import (
 )
 from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
 from amalthea_uros.report.closing_line import closing_line
-from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail, explain
+from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail
 from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.services.changes.change import EXAMPLE, Change
 from amalthea_uros.timing.settings import Settings
@@ -120,6 +120,8 @@ def command(
         with_bus=with_bus,
     )
     if explained is not None:
+        from amalthea_uros.services.explain import explain
+
         result = replace(result, explanation=explain(result, explained, Quantity(quantity)))
     as_text = result.explanation or (chain_detail(result, chain) if chain is not None else None)
     if target is not None:

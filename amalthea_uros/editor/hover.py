@@ -11,7 +11,8 @@ from amalthea_uros.editor.document import Document
 from amalthea_uros.errors import AmurosError
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text.explanation import write
-from amalthea_uros.services.analyze import AnalysisResult, analyze_files, explain
+from amalthea_uros.services.analyze import AnalysisResult, analyze_files
+from amalthea_uros.services.explain import explain
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 #: In characters. The analysis of larger texts takes too long to be repeated while somebody types.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, floor
@@ -168,8 +168,10 @@ class Editing:
         """
         constraints = _part(self.root, "constraints_model", am.ConstraintsModel)
         _check_new(name, am.EventChain, constraints.event_chains)
-        if isinstance(path, str) or len(path) < 2:
+        if isinstance(path, str) or not isinstance(path, Sequence) or len(path) < 2:
             raise InvalidArgumentError(f"{name}: expected the names of at least two tasks, e.g. ['A', 'B'], not {path!r}")
+        if len(set(path)) < len(path):
+            raise InvalidArgumentError(f"{name}: a task occurs twice, but a chain cannot contain cycles")
         tasks = [self[am.Task, task] for task in path]
         limits = [
             (kind, _positive(f"{name}: {word}", value, parse_time))
@@ -333,15 +335,20 @@ def _first(items: Iterable[Element], cls: type[E]) -> E | None:
 
 
 def _check_new(name: str, cls: type[am.INamed], items: Iterable[am.INamed]) -> None:
-    if not name:
-        raise InvalidArgumentError(f"a {cls.__name__} needs a name")
+    if not isinstance(name, str) or not name:
+        raise InvalidArgumentError(f"the name of a new {cls.__name__} must be a text, not {name!r}")
     if any(item.name == name for item in items):
-        raise InvalidArgumentError(f"the model already has a {cls.__name__} {name!r}")
+        article = "an" if cls.__name__.startswith(("A", "E", "I", "O", "U")) else "a"
+        raise InvalidArgumentError(f"the model already has {article} {cls.__name__} {name!r}")
+
+
+#: A text that each function accepts.
+_EXAMPLES: Mapping[Callable[[str], Any], str] = {parse_time: "10 ms", parse_frequency: "100 MHz", parse_data_size: "4 B"}
 
 
 def _parsed(what: str, text: str, parse: Callable[[str], Q]) -> Q:
     if not isinstance(text, str):
-        raise InvalidArgumentError(f"{what}: expected a text with a unit, such as '10 ms', not {text!r}")
+        raise InvalidArgumentError(f"{what}: expected a text with a unit, such as {_EXAMPLES[parse]!r}, not {text!r}")
     try:
         value = parse(text)
     except ValueError as error:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
@@ -19,6 +19,9 @@ from amalthea_uros.metamodel.source import Source
 from amalthea_uros.metamodel.versions import nearest_version, newest_version
 
 E = TypeVar("E", bound=Element)
+
+#: So many names are listed.
+_MOST_NAMES = 10
 
 
 class Spelling(NamedTuple):
@@ -174,14 +177,13 @@ class Model(Editing):
         ------
         KeyError : there is none; the text names near ones.
         """
-        if not isinstance(key, tuple):
+        if not isinstance(key, tuple) or len(key) != 2:
             raise TypeError(f"a model is indexed by class and name, e.g. model[am.Task, {key!r}]")
         cls, name = key
         found = self.find(cls, name)
         if found is None:
             names = [n for n, elements in self._by_name.items() if any(isinstance(e, cls) for e in elements)]
-            near = did_you_mean(name, names)
-            raise KeyError(f"no {cls.__name__} named {name!r}{f', {near}' if near else ''}")
+            raise KeyError(f"no {cls.__name__} named {name!r}; {did_you_mean(name, names) or _known(names)}")
         return found
 
     def references_to(self, target: Element) -> list[Reference]:
@@ -229,3 +231,9 @@ class Model(Editing):
         paths = ", ".join(str(document.path or "unsaved") for document in self.documents)
         versions = ", ".join(dict.fromkeys(document.version for document in self.documents))
         return f"<Model {paths}, AMALTHEA {versions}, {counted(sum(1 for _ in self.walk()), 'object')}>"
+
+
+def _known(names: Sequence[str]) -> str:
+    """The names that there are, unless they are too many to be read."""
+    more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
+    return f"known: {', '.join(map(str, names[:_MOST_NAMES]))}{more}" if names else "there is none"

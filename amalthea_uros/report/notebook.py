@@ -9,15 +9,16 @@ from io import StringIO
 from pathlib import Path
 
 from amalthea_uros._internal.shown import Cell, Record
+from amalthea_uros.analyze.assignment import Proposal
 from amalthea_uros.analyze.impact import Impact
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.report.by_result import module_for, rendered_in
 from amalthea_uros.report.escape import visible
-from amalthea_uros.report.records import records as records
+from amalthea_uros.report.records import all_records, lean_records
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.report.text import analysis_result, impact, simulation_result
-from amalthea_uros.services.analyze import AnalysisResult
+from amalthea_uros.report.text import analysis_result, impact, proposals, simulation_result
+from amalthea_uros.services import analyze as services_analyze
 from amalthea_uros.services.changes.apply import Difference
 from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.simulate.results import Simulation
@@ -29,8 +30,11 @@ _ROWS = 100
 _TIME = "_ps"
 _TABLE = '<table class="amuros" style="border-collapse:collapse">'
 _CELL = "padding:2px 12px 2px 0;vertical-align:top;min-width:4em"
-#: Groups of columns that are too many to be displayed.
-_DETAILS = ("metrics.", "terms.")
+
+
+def records(result: object, full: bool) -> list[Record]:
+    """The rows of a result, with the most important columns or all."""
+    return all_records(result) if full else lean_records(result)
 
 
 def text(result: object) -> str:
@@ -42,7 +46,7 @@ def text(result: object) -> str:
 def html(result: object) -> str:
     """The tables that the command line prints of a result; of others, a table of its records."""
     page = _Page()
-    return page.content if _write(result, page) else _table(records(result))
+    return page.content if _write(result, page) else _table(lean_records(result))
 
 
 def _write(result: object, terminal: Terminal) -> bool:
@@ -50,7 +54,7 @@ def _write(result: object, terminal: Terminal) -> bool:
     match result:
         case Analysis():
             terminal.findings(result.findings)
-            analysis_result.write(_analysis_alone(result), terminal)
+            analysis_result.write(services_analyze.analysis_result(result), terminal)
         case Simulation():
             terminal.findings(result.findings)
             simulation_result.write(_SimulationAlone(result), terminal)
@@ -58,19 +62,13 @@ def _write(result: object, terminal: Terminal) -> bool:
             for change in result.differences:
                 terminal.line(str(change))
             impact.write(result.impact, terminal)
+        case Proposal():
+            proposals.write_proposals(terminal, (result,))
         case _ if type(result).__name__ in rendered_in("text"):
             module_for(result, "text").write(result, terminal)
         case _:
             return False
     return True
-
-
-def _analysis_alone(analysis: Analysis) -> AnalysisResult:
-    """The analysis of something that is not in files."""
-    context = analysis.solution.context
-    return AnalysisResult(
-        paths=(), system=context.system, settings=context.settings, analysis=analysis, findings=analysis.findings
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,9 +126,9 @@ def _table_html(headings: Sequence[str], rows: Iterable[Sequence[str]], right: S
 
 
 def _table(rows: Sequence[Record]) -> str:
-    """Records as a table without empty columns and details; times are texts with units."""
+    """Records as a table without empty columns; times are texts with units."""
     stated = dict.fromkeys(name for row in rows for name, value in row.items() if value not in (None, ""))
-    names = [name for name in stated if not name.startswith(_DETAILS)]
+    names = list(stated)
     shown = rows[:_ROWS]
     cells = [[_cell(name, row.get(name)) for name in names] for row in shown]
     right = [index for index, name in enumerate(names) if all(not isinstance(row.get(name), str) for row in shown)]

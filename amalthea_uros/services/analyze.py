@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.response_times.kernel import report_machine_code
-from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
+from amalthea_uros.analyze.results import Analysis, ChainResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.changes.apply import Difference, apply
 from amalthea_uros.services.changes.change import Change
@@ -36,8 +37,8 @@ if TYPE_CHECKING:
     from amalthea_uros.services.what_if import Changes
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Explanation:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Explanation(Shown):
     """What the response time of a process or callback, or a latency of a chain consists of; several of them if they have the name.
 
     Attributes
@@ -52,9 +53,12 @@ class Explanation:
     callbacks: tuple[CallbackExplanation, ...] = ()
     improvements: Improvements | None = None
 
+    def __repr__(self) -> str:
+        return f"<Explanation of {self.name}>"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AnalysisResult(Shown):
+class AnalysisResult(Brief, Shown):
     """The analysis of some files, with what it rests on.
 
     Attributes
@@ -188,37 +192,27 @@ def _proposals(analysis: Analysis) -> tuple[Proposal, ...]:
     return tuple(propose_priorities(analysis))
 
 
-def explain(result: AnalysisResult, name: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Explanation:
-    """Explain the response time of a process or callback, or a maximum latency of a chain.
+#: What can be explained: an analysis, or what can be analyzed.
+Analyzed: TypeAlias = "Analysis | AnalysisResult | Subject"
 
-    Parameters
-    ----------
-    name : a callback in an executor also by its name in the `app.yaml`
-    quantity : of a chain, one of `analyze.results.EXPLAINED`
 
-    Raises
-    ------
-    InvalidArgumentError : there is no such process, callback or chain.
-    """
-    from amalthea_uros.analyze.callback_explanation import explain_callback
-    from amalthea_uros.analyze.chains.explanation import explain_chain
-    from amalthea_uros.analyze.explanation import explain_process
-    from amalthea_uros.services.improvements import improvements_of
-
-    system, analysis = result.system, result.analysis
-    known = dict.fromkeys((*system.processes, *(callback.name for callback in analysis.callbacks), *system.chains))
-    if name not in known:
-        from amalthea_uros.uros.application import body_name
-
-        name = body_name(name) if body_name(name) in known else name
-    require("process, callback or chain", [name], known)
-    chain = explain_chain(analysis, name, quantity) if name in system.chains else None
-    return Explanation(
-        name=name,
-        process=explain_process(analysis, name) if name in system.processes else None,
-        chain=chain,
-        callbacks=explain_callback(analysis, name),
-        improvements=None if chain is None else improvements_of(result, chain),
+def analysis_result(analyzed: Analyzed) -> AnalysisResult:
+    """The analysis with what it rests on; of something else than files, there are no paths."""
+    if isinstance(analyzed, AnalysisResult):
+        return analyzed
+    offered: tuple[Time, ...] = ()
+    if not isinstance(analyzed, Analysis):
+        opened = open_subject(analyzed)
+        analysis, offered = analyze_system(opened.system), opened.task_periods
+        analyzed = replace(analysis, findings=unsuppressed((*opened.findings, *analysis.findings)))
+    context = analyzed.solution.context
+    return AnalysisResult(
+        paths=(),
+        task_periods=offered,
+        system=context.system,
+        settings=context.settings,
+        analysis=analyzed,
+        findings=analyzed.findings,
     )
 
 

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT, is_file
 from amalthea_uros._internal.garbage import paused_garbage_collection
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import AmurosError, ReadError, WriteError
 from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.paths import StrPath, folder_of
 from amalthea_uros.uros.assemble import Assembly, assemble
 
@@ -25,7 +27,7 @@ TEXT = Path("<text>")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BuildResult:
+class BuildResult(Brief, Shown):
     """A model that was built from a description.
 
     Attributes

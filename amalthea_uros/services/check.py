@@ -19,6 +19,7 @@ from amalthea_uros.findings.suppression import is_suppressed
 from amalthea_uros.findings.targets import TARGETS, Target
 from amalthea_uros.findings.unreadable import is_unreadable
 from amalthea_uros.metamodel.model import Model
+from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import ModelInput, open_model
 from amalthea_uros.services.paths import StrPath, as_paths, by_model, without_other_yaml
@@ -31,7 +32,7 @@ from amalthea_uros.validate.user_rules import rules_of_file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CheckResult(Shown):
+class CheckResult(Brief, Shown):
     """The findings about some files that are not suppressed, by file and line.
 
     Attributes

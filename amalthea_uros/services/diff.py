@@ -13,6 +13,7 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.difference.comparison import Change, difference
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import known_versions, newest_version
+from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import ModelInput, open_model
 from amalthea_uros.services.migrate import migrate
@@ -28,7 +29,7 @@ _MIGRATION = ("XMI008", "XMI009")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DiffResult(Shown):
+class DiffResult(Brief, Shown):
     """The differences of two models.
 
     Attributes

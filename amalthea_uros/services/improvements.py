@@ -5,22 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.chains.explanation import ChainExplanation, explain_chain
 from amalthea_uros.analyze.impact import Amount, Effect, Figure, Part, Unit, impact
 from amalthea_uros.analyze.results import EXPLAINED, Analysis, Claim, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.services.analyze import AnalysisResult, Analyzed, analysis_result
 from amalthea_uros.services.changes.apply import Difference, apply, describe
 from amalthea_uros.services.changes.key import Configuration
 from amalthea_uros.services.improvement_candidates import Candidate, candidates
+from amalthea_uros.services.names import require
 from amalthea_uros.timing.arrivals import nominal_period
 from amalthea_uros.timing.phases import counters
 from amalthea_uros.units import Time, time_text
-
-if TYPE_CHECKING:
-    from amalthea_uros.services.analyze import AnalysisResult
 
 #: The analyses of changed systems: at most so many, fewer for systems with many processes, but always some.
 MAX_ANALYSES, MIN_ANALYSES = 24, 4
@@ -64,8 +63,8 @@ class Improvement:
         return not any(each.is_verdict for each in self.drawbacks)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Improvements:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Improvements(Shown):
     """What shortens a latency of a chain.
 
     Attributes
@@ -81,6 +80,10 @@ class Improvements:
     tried: int
     untried: int
 
+    def __repr__(self) -> str:
+        best = f"{time_text(self.found[0].after)} by {self.found[0].change.text}" if self.found else "none found"
+        return f"<Improvements of {self.chain}, {self.quantity.replace('_', ' ')}: {best}>"
+
     def best(self, count: int) -> tuple[Improvement, ...]:
         """The first ones, of changes of the same values with the same effect only the smallest."""
         different: dict[tuple[object, ...], Improvement] = {}
@@ -90,13 +93,21 @@ class Improvements:
         return tuple(islice(different.values(), count))
 
 
-def improvements(result: AnalysisResult, chain: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Improvements:
+def improvements(analyzed: Analyzed, chain: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Improvements:
     """Try single changes of a system, and rank those that shorten a latency of a chain; see `improvements_of`.
 
     Parameters
     ----------
-    quantity : one of `analyze.results.EXPLAINED`
+    analyzed : an analysis, or what `analyze` takes
+    quantity : one of `MAX_REACTION_TIME`, `MAX_REDUCED_REACTION_TIME`, `MAX_DATA_AGE` and `MAX_REDUCED_DATA_AGE`
+
+    Raises
+    ------
+    InvalidArgumentError : there is no such chain, or another quantity.
     """
+    result = analysis_result(analyzed)
+    require("chain", [chain], result.system.chains)
+    check_explained(quantity)
     return improvements_of(result, explain_chain(result.analysis, chain, quantity))
 
 
@@ -122,6 +133,17 @@ def improvements_of(result: AnalysisResult, explanation: ChainExplanation) -> Im
         found.append(_improvement(candidate, differences, chain, quantity, analysis, after))
     ranked = sorted(filter(None, found), key=lambda each: (each.after, not each.is_safe))
     return Improvements(chain=chain, quantity=quantity, found=tuple(ranked), tried=tried, untried=max(0, len(applied) - most))
+
+
+def check_explained(quantity: object) -> None:
+    """Refuse what is no latency that can be explained.
+
+    Raises
+    ------
+    InvalidArgumentError : lists those that can be.
+    """
+    if quantity not in EXPLAINED:
+        raise InvalidArgumentError(f"cannot explain {str(quantity)!r}; expected one of {', '.join(EXPLAINED)}")
 
 
 def _applied(candidate: Candidate, present: Configuration) -> Configuration | None:

@@ -8,10 +8,12 @@ from pathlib import Path
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.limits import MODEL_SIZE
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import AmurosError, ReadError, WriteError
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import newest_version
+from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.inputs import refuse_descriptions
 from amalthea_uros.services.migrated_paths import Destination, given_files
 from amalthea_uros.services.migration import FileState, Kind, MigratedFile, MigrationChange
@@ -31,7 +33,7 @@ TARGETS = VERSIONS[1:]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MigrationResult:
+class MigrationResult(Brief, Shown):
     """Models in another version, and what was done for that.
 
     Attributes

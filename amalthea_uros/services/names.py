@@ -29,7 +29,9 @@ def require(kind: str, names: Iterable[str], known: Iterable[str]) -> None:
 
 
 def require_settings(settings: Settings, system: System) -> None:
-    """Refuse settings for what a system does not have; raises as `require`."""
+    """Refuse settings for what a system does not have; raises as `require`, and TypeError for what is no `Settings`."""
+    if not isinstance(settings, Settings):
+        raise TypeError(f"expected Settings, not {type(settings).__name__}; changes of values are given as changes=...")
     require("core", settings.frequencies, system.cores)
     require("process", settings.factors, system.processes)
     if settings.phases:

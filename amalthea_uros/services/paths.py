@@ -9,6 +9,7 @@ from pathlib import Path
 
 from amalthea_uros._internal.files import STANDARD_INPUT, FileError, read_bytes
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE, MODEL_SIZE
+from amalthea_uros.errors import InvalidArgumentError
 
 StrPath = str | PathLike[str]
 
@@ -54,11 +55,11 @@ def as_paths(paths: StrPath | Iterable[StrPath]) -> tuple[Path, ...]:
 
     Raises
     ------
-    ValueError : there is none.
+    InvalidArgumentError : there is none.
     """
     found = (Path(paths),) if isinstance(paths, str | PathLike) else tuple(map(Path, paths))
     if not found:
-        raise ValueError("no path given; expected at least one file or folder")
+        raise InvalidArgumentError("no path given; expected at least one file or folder")
     return found
 
 

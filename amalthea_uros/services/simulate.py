@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import index
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -14,6 +15,7 @@ from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.campaign.run import Outcome, Record, Run, plan_runs
 from amalthea_uros.services.campaign.sending import system_bytes, system_from
@@ -68,7 +70,7 @@ class SimulationPlan:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationResult(Shown):
+class SimulationResult(Brief, Shown):
     """The simulation of some files, with what it rests on.
 
     Attributes
@@ -98,7 +100,7 @@ class SimulationResult(Shown):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CampaignResult(Shown):
+class CampaignResult(Brief, Shown):
     """Many simulations of some files.
 
     Attributes
@@ -399,10 +401,11 @@ def _available_cores() -> int:
 
 def time_of(duration: str | Time) -> Time:
     """A duration in picoseconds; InvalidArgumentError if it is no time."""
-    if isinstance(duration, int):
-        return duration
     try:
-        return parse_time(duration)
+        return parse_time(duration) if isinstance(duration, str) else index(duration)
+    except TypeError:
+        message = f"the duration must be a time such as '1 s', or whole picoseconds, not {duration!r}"
+        raise InvalidArgumentError(message) from None
     except ValueError as error:
         raise InvalidArgumentError(f"the duration {error}") from None
 

@@ -82,5 +82,5 @@ def _paths(subject: object) -> list[StrPath]:
         paths = [item for item in items if isinstance(item, str | PathLike)]
         if len(paths) == len(items):
             return paths
-        given = f"a {given} with other objects than paths"
+        given = f"a {given} with other objects than paths; taskset() makes a System of tasks"
     raise TypeError(f"expected {_ACCEPTED}; not {given}")

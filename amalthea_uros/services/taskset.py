@@ -3,33 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from decimal import Decimal
 from fractions import Fraction
+from inspect import signature
 from itertools import pairwise
 from math import ceil, floor
-from typing import Literal, TypeAlias, TypeVar
+from operator import index
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar
 
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.perf.activities import AccessKind, Communication, Demand, Execute, LabelAccess
+from amalthea_uros.perf.activities import (
+    AccessKind,
+    Activity,
+    Communication,
+    Demand,
+    Execute,
+    LabelAccess,
+    SemaphoreAccess,
+    SemaphoreOperation,
+)
 from amalthea_uros.perf.distributions import Boundaries, Constant, Uniform
 from amalthea_uros.perf.events import EventChain, Events, ProcessChange, ProcessEvent, Segment
 from amalthea_uros.perf.events import Sequence as InSequence
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure, StructureKind
 from amalthea_uros.perf.mapping import Mapping as SystemMapping
 from amalthea_uros.perf.mapping import TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
+from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler, Semaphore, SemaphoreKind
 from amalthea_uros.perf.software import Label, Preemption, Software, Task
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import SECOND, TIME, Time, parse_time, time_text
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 E = TypeVar("E", Preemption, Communication)
 
-#: Text with a unit, such as "5 ms", or picoseconds.
-Duration: TypeAlias = str | int
-#: Period and worst-case execution time; numbers are counted in the `unit` of the task set.
-PeriodAndWcet: TypeAlias = tuple[str | float | Fraction, str | float | Fraction]
+#: Text with a unit, such as "5 ms", or a number, also one of numpy.
+Duration: TypeAlias = str | float | Fraction | Decimal
+#: What makes a task of a set: `task(...)`; a period, a worst-case execution time, and perhaps a deadline; or the parameters of `task`.
+TaskLike: TypeAlias = "TaskParameters | tuple[Duration, Duration] | tuple[Duration, Duration, Duration] | Mapping[str, Any]"
 
 #: In the theory, jobs wait until their predecessors have ended, however many they are.
 _NO_LIMIT = 2**31 - 1
@@ -52,6 +67,7 @@ class TaskParameters:
     jitter : greatest delay of an activation
     priority : higher numbers are served first; None: not stated
     communication : when the task reads and writes the data of its chains; None: not stated, which means implicit
+    critical_sections : maximum execution time that a job holds each resource; part of the execution time
     """
 
     name: str
@@ -66,6 +82,7 @@ class TaskParameters:
     core: str = "Core_0"
     preemption: Preemption = Preemption.PREEMPTIVE
     communication: Communication | None = None
+    critical_sections: Mapping[str, Time] = field(default_factory=dict, hash=False)
 
     @property
     def distance(self) -> Time:
@@ -87,19 +104,24 @@ def task(
     core: str = "Core_0",
     preemption: Literal["preemptive", "cooperative", "non-preemptive"] = "preemptive",
     communication: Literal["implicit", "explicit", "LET"] | None = None,
+    critical_sections: Mapping[str, Duration] | None = None,
+    unit: str | None = None,
 ) -> TaskParameters:
-    """A task of a `taskset`; times are texts such as "5 ms", or picoseconds.
+    """A task of a `taskset`; times are texts such as "5 ms", or numbers.
 
     >>> control = task("Control", period="5 ms", wcet="1 ms", priority=3)
-    >>> brake = task("Brake", min_distance="20 ms", wcet="2 ms", deadline="10 ms", priority=4)
+    >>> brake = task("Brake", min_distance=20, wcet=2, deadline=10, priority=4, unit="ms")
 
     Parameters
     ----------
     period, min_distance : one of them: a periodic task, or a sporadic one
     bcet : 0 if it is not stated, so that jobs may end at any time up to their worst case
     offset : of the first activation; if it is not stated, any phase is possible
-    deadline : if it is not stated, the period or the minimum distance
+    deadline : if it is not stated, the period or the minimum distance; it can be longer than these
     priority : higher numbers are served first
+    critical_sections : resources of the core, and the execution time for which each job holds them, one after the other, at most; it
+        is part of the `wcet`. Who holds a resource runs at its ceiling (immediate ceiling protocol)
+    unit : of the numbers; without it, they are whole picoseconds. Fractions of a picosecond are rounded to the safe side
 
     Raises
     ------
@@ -107,8 +129,10 @@ def task(
     """
 
     def time(what: str, value: Duration, least: Time = 0) -> Time:
-        return _time(name, what, value, least)
+        return _time(f"{name}: {what}", value, unit, _ROUNDING[what], least)
 
+    _check_text("the name of a task", name)
+    _check_text(f"{name}: the core", core)
     if (period is None) == (min_distance is None):
         raise InvalidArgumentError(f"{name}: expected either a period, or the min_distance of a sporadic task")
     if communication == "LET" and offset is None:
@@ -126,27 +150,75 @@ def task(
         deadline=None if deadline is None else time("deadline", deadline, 1),
         offset=None if offset is None else time("offset", offset),
         jitter=time("jitter", jitter),
-        priority=priority,
+        priority=None if priority is None else _whole(f"{name}: the priority", priority),
         core=core,
         preemption=_member(name, "preemption", Preemption, preemption),
         communication=None if communication is None else _member(name, "communication", Communication, communication),
+        critical_sections={each: time("critical_sections", held) for each, held in (critical_sections or {}).items()},
     )
     if made.bcet > made.wcet:
         raise InvalidArgumentError(f"{name}: the bcet {time_text(made.bcet)} exceeds the wcet {time_text(made.wcet)}")
+    held = sum(made.critical_sections.values())
+    if held > made.wcet:
+        raise InvalidArgumentError(
+            f"{name}: the critical sections take {time_text(held)}, more than the wcet {time_text(made.wcet)} that they are part of"
+        )
     return made
 
 
-def _time(name: str, what: str, value: object, least: Time) -> Time:
+#: To which side fractions of a picosecond are rounded; no side is the safe one for an offset.
+_ROUNDING: Mapping[str, Callable[[Fraction], int]] = {
+    "period": floor,
+    "min_distance": floor,
+    "deadline": floor,
+    "bcet": floor,
+    "wcet": ceil,
+    "jitter": ceil,
+    "critical_sections": ceil,
+    "offset": round,
+}
+
+
+def _time(what: str, value: Duration, unit: str | None, rounding: Callable[[Fraction], int], least: Time) -> Time:
     if isinstance(value, str):
         try:
-            value = parse_time(value)
+            found = parse_time(value)
         except ValueError as error:
-            raise InvalidArgumentError(f"{name}: {what}: {error}") from None
-    if not isinstance(value, int) or isinstance(value, bool):
-        raise InvalidArgumentError(f"{name}: {what}: expected a time such as '10 ms', or whole picoseconds, not {value!r}")
-    if value < least:
-        raise InvalidArgumentError(f"{name}: {what}: {time_text(value)} is {'not positive' if least else 'negative'}")
-    return value
+            raise InvalidArgumentError(f"{what}: {error}") from None
+    elif unit is None:
+        found = _whole(what, value, "a time such as '10 ms', whole picoseconds, or a number with its unit=")
+    elif unit not in TIME.units:
+        raise InvalidArgumentError(f"{unit!r} is not a unit of time; known units: {', '.join(TIME.units)}")
+    else:
+        found = rounding(_number(what, value) * TIME.units[unit])
+    if found < least:
+        raise InvalidArgumentError(f"{what}: {time_text(found)} is {'not positive' if least else 'negative'}")
+    return found
+
+
+def _number(what: str, value: object) -> Fraction:
+    """The number that somebody wrote: 0.1 is a tenth, and not the nearest binary fraction."""
+    try:
+        if isinstance(value, bool):
+            raise TypeError
+        return Fraction(value if isinstance(value, Fraction | Decimal) else str(value))
+    except (OverflowError, ValueError, TypeError, ZeroDivisionError):
+        raise InvalidArgumentError(f"{what}: expected a finite number, not {value!r}") from None
+
+
+def _whole(what: str, value: object, expected: str = "a whole number") -> int:
+    """An integer, also of numpy."""
+    try:
+        if isinstance(value, bool):
+            raise TypeError
+        return index(value)  # type: ignore[arg-type]
+    except TypeError:
+        raise InvalidArgumentError(f"{what}: expected {expected}, not {value!r}") from None
+
+
+def _check_text(what: str, value: object) -> None:
+    if not isinstance(value, str) or not value:
+        raise InvalidArgumentError(f"{what} must be a text, not {value!r}")
 
 
 def _member(name: str, what: str, kind: type[E], value: str) -> E:
@@ -158,7 +230,7 @@ def _member(name: str, what: str, kind: type[E], value: str) -> E:
 
 
 def taskset(
-    tasks: Iterable[TaskParameters | PeriodAndWcet],
+    tasks: Iterable[TaskLike] | pd.DataFrame,
     *,
     chains: Mapping[str, Sequence[str]] | None = None,
     policy: Literal["fixed priority", "EDF"] = "fixed priority",
@@ -171,28 +243,34 @@ def taskset(
 
     Parameters
     ----------
-    tasks : made by `task`; or pairs of period and worst-case execution time, which get the names T1, T2, ...
+    tasks : made by `task`; pairs of period and worst-case execution time, or triples with a deadline; or mappings or the rows of a
+        data frame with the parameters of `task`, where None and NaN are not stated. Tasks without names are T1, T2, ...
     chains : names of tasks, in the order in which they pass data to each other; each chain begins with the start of a job of its
         first task, and ends with the end of a job of its last one
     policy : of all cores; under EDF, tasks without a deadline are scheduled by their periods
     priorities : how tasks get their priorities; without it, each task has the stated one, and nothing is assumed of the others
-    unit : of the numbers in pairs; fractions of a picosecond are rounded to the safe side
+    unit : of the numbers in pairs, mappings and data frames; fractions of a picosecond are rounded to the safe side
 
     Raises
     ------
     InvalidArgumentError : a value is wrong, or a chain names a task that does not exist.
     """
-    made = [item if isinstance(item, TaskParameters) else _pair(number, item, unit) for number, item in enumerate(tasks, 1)]
+    made = [_made(number, item, unit) for number, item in enumerate(_items(tasks), 1)]
     _check_names(made)
     if priorities is not None:
         made = _with_priorities(made, priorities)
     if policy not in _POLICIES:
         raise InvalidArgumentError(f"unknown policy {policy!r}; expected one of {', '.join(_POLICIES)}")
+    if chains is not None and not isinstance(chains, Mapping):
+        raise TypeError(f"expected the names of chains with their tasks, e.g. {{'a-b': ['A', 'B']}}, not {chains!r}")
     flows = _flows(made, chains or {})
     cores = tuple(dict.fromkeys(each.core for each in made))
     return System(
         hardware=_hardware(cores),
-        os=Os(systems=(OperatingSystem(name="OS", schedulers=tuple(_scheduler(core, _POLICIES[policy]) for core in cores)),)),
+        os=Os(
+            systems=(OperatingSystem(name="OS", schedulers=tuple(_scheduler(core, _POLICIES[policy]) for core in cores)),),
+            semaphores=_resources(made),
+        ),
         stimuli=Stimuli(stimuli=tuple(map(_stimulus, made))),
         software=Software(tasks=tuple(_task(each, flows) for each in made), labels=tuple(map(_label, flows))),
         mapping=SystemMapping(tasks=tuple(_allocation(each, policy) for each in made)),
@@ -208,25 +286,61 @@ _URGENCY: Mapping[str, Callable[[TaskParameters], Time]] = {
 }
 
 
-def _pair(number: int, pair: PeriodAndWcet, unit: str | None) -> TaskParameters:
-    if not isinstance(pair, tuple | list) or len(pair) != 2:
-        raise TypeError(f"expected tasks made by task(), or pairs (period, wcet), not {pair!r}")
-    name, (period, wcet) = f"T{number}", pair
-    return task(name, period=_counted(name, period, unit, floor), wcet=_counted(name, wcet, unit, ceil))
+#: The parameters of a task in a mapping.
+_PARAMETERS = tuple(name for name in signature(task).parameters if name != "unit")
+_EXPECTED = "expected tasks made by task(), pairs (period, wcet), triples (period, wcet, deadline), or mappings of parameters"
 
 
-def _counted(name: str, value: str | float | Fraction, unit: str | None, rounding: Callable[[Fraction], int]) -> Duration:
-    """A number of units in picoseconds; texts have their own unit."""
-    if isinstance(value, str):
-        return value
-    if unit is None:
-        raise InvalidArgumentError(f"{name}: {value!r} has no unit; state the unit of all pairs, e.g. unit='ms'")
-    if unit not in TIME.units:
-        raise InvalidArgumentError(f"{unit!r} is not a unit of time; known units: {', '.join(TIME.units)}")
-    try:
-        return rounding(Fraction(value) * TIME.units[unit])
-    except (OverflowError, ValueError, TypeError):
-        raise InvalidArgumentError(f"{name}: expected a finite number, not {value!r}") from None
+def _items(tasks: Iterable[TaskLike] | pd.DataFrame) -> Iterable[object]:
+    """The tasks; those of a data frame are its rows."""
+    rows = getattr(tasks, "to_dict", None)
+    if rows is not None:
+        found: list[dict[Any, Any]] = rows("records")
+        return found
+    if isinstance(tasks, str | Mapping | TaskParameters) or not isinstance(tasks, Iterable):
+        raise TypeError(f"{_EXPECTED}, in a list; not {type(tasks).__name__}")
+    return tasks
+
+
+def _made(number: int, item: object, unit: str | None) -> TaskParameters:
+    if isinstance(item, TaskParameters):
+        return item
+    if isinstance(item, Mapping):
+        return _of_mapping(number, item, unit)
+    values = tuple(item) if isinstance(item, Iterable) and not isinstance(item, str) else ()
+    if len(values) not in (2, 3):
+        raise TypeError(f"{_EXPECTED}; not {item!r}")
+    return _with_unit(f"T{number}", dict(zip(("period", "wcet", "deadline"), values, strict=False)), unit)
+
+
+def _of_mapping(number: int, values: Mapping[Any, Any], unit: str | None) -> TaskParameters:
+    """The task of named parameters; what has no value is not stated."""
+    stated = {"name": f"T{number}"} | {key: value for key, value in values.items() if not _is_missing(value)}
+    name = stated["name"]
+    for key in stated:
+        if key not in _PARAMETERS:
+            advice = did_you_mean(str(key), _PARAMETERS) or f"known: {', '.join(_PARAMETERS)}"
+            raise InvalidArgumentError(f"{name}: unknown parameter {key!r}; {advice}")
+    if "wcet" not in stated:
+        raise InvalidArgumentError(f"{name}: the wcet is missing")
+    if isinstance(stated.get("priority"), float) and stated["priority"].is_integer():
+        stated["priority"] = int(stated["priority"])  # a column of a data frame in which some values are missing
+    return _with_unit(stated.pop("name"), stated, unit)
+
+
+def _with_unit(name: str, values: Mapping[str, Any], unit: str | None) -> TaskParameters:
+    """The task of values whose numbers must have a unit."""
+    for key in _ROUNDING.keys() & values.keys():
+        times = values[key].values() if key == "critical_sections" else (values[key],)
+        number = next((time for time in times if not isinstance(time, str)), None)
+        if unit is None and number is not None:
+            raise InvalidArgumentError(f"{name}: {number!r} has no unit; state the unit of all numbers, e.g. unit='ms'")
+    return task(name, **values, unit=unit)
+
+
+def _is_missing(value: object) -> bool:
+    """Whether a cell of a table is empty: None, NaN, or the NA of pandas, which cannot be compared."""
+    return value is None or type(value).__name__ == "NAType" or (isinstance(value, float | Decimal) and value != value)
 
 
 def _check_names(tasks: Sequence[TaskParameters]) -> None:
@@ -256,6 +370,17 @@ def _hardware(cores: Sequence[str]) -> Hardware:
 
 def _scheduler(core: str, policy: Policy) -> Scheduler:
     return Scheduler(name=_scheduler_name(core), policy=policy, cores=(core,), executing_core=core)
+
+
+def _resources(tasks: Sequence[TaskParameters]) -> tuple[Semaphore, ...]:
+    """The resources of the critical sections; a ceiling protects those of one core only."""
+    cores: dict[str, str] = {}
+    for each in tasks:
+        for name in each.critical_sections:
+            if cores.setdefault(name, each.core) != each.core:
+                message = f"the resource {name!r} is used on {cores[name]} and {each.core}; a ceiling protects one core only"
+                raise InvalidArgumentError(f"{each.name}: {message}")
+    return tuple(Semaphore(name=name, kind=SemaphoreKind.RESOURCE, ceiling=True) for name in cores)
 
 
 def _scheduler_name(core: str) -> str:
@@ -307,15 +432,28 @@ def _task(each: TaskParameters, flows: Iterable[tuple[str, str]]) -> Task:
             if flow[end] == each.name:
                 yield LabelAccess(label=_label_name(flow), kind=kind, communication=each.communication)
 
-    constant = each.bcet == each.wcet
-    demand = Demand(Constant(each.wcet) if constant else Boundaries(lower=each.bcet, upper=each.wcet))
     return Task(
         name=each.name,
         stimuli=(f"Activation_{each.name}",),
-        activities=(*accesses(AccessKind.READ, 1), Execute(demand=demand), *accesses(AccessKind.WRITE, 0)),
+        activities=(*accesses(AccessKind.READ, 1), *_execution(each), *accesses(AccessKind.WRITE, 0)),
         preemption=each.preemption,
         activation_limit=_NO_LIMIT,
     )
+
+
+def _execution(each: TaskParameters) -> Iterator[Activity]:
+    """The critical sections, and then the rest: a job that could not be preempted up to its end would respond earlier."""
+    is_constant = each.bcet == each.wcet
+    held = sum(each.critical_sections.values())
+    for name, time in each.critical_sections.items():
+        yield SemaphoreAccess(semaphore=name, operation=SemaphoreOperation.REQUEST)
+        yield _executed(time if is_constant else 0, time)
+        yield SemaphoreAccess(semaphore=name, operation=SemaphoreOperation.RELEASE)
+    yield _executed(max(0, each.bcet - held), each.wcet - held)
+
+
+def _executed(least: Time, most: Time) -> Execute:
+    return Execute(demand=Demand(Constant(most) if least == most else Boundaries(lower=least, upper=most)))
 
 
 def _events(chains: Mapping[str, Sequence[str]]) -> Events:

@@ -113,5 +113,7 @@ def as_changes(changes: Changes) -> tuple[Change, ...]:
     """
     if isinstance(changes, Mapping):
         return tuple(Change(*split_target(target, target, FORM, EXAMPLE), str(value)) for target, value in changes.items())
+    if not isinstance(changes, Iterable):
+        raise TypeError(f'expected changes such as {{"Task.period": "2 ms"}}, not {changes!r}')
     texts: Sequence[str | Change] = [changes] if isinstance(changes, str) else list(changes)
     return tuple(change if isinstance(change, Change) else parse_change(change) for change in texts)

@@ -426,8 +426,8 @@ class Simulation(Shown):
         """The values as one row of a table, such as `Task_5ms.response_time.max_ps`; times in whole picoseconds."""
         return dict(self._cells())
 
-    def to_records(self) -> list[Record]:
-        """The metrics of all processes and the latencies of all chains; times are picoseconds in columns `..._ps`."""
+    def to_records(self, *, full: bool = False) -> list[Record]:
+        """The metrics of all processes and the latencies of all chains, in a row each; times are picoseconds in columns `..._ps`."""
         return [
             {"object": name, "quantity": quantity, "count": found.count, **_times(found)}
             for name, quantity, found in self._observations()

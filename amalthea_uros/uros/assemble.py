@@ -10,6 +10,7 @@ from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Events
 from amalthea_uros.perf.mapping import Mapping
+from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.software import Isr, Software, Task
 from amalthea_uros.perf.stimuli import Stimuli
 from amalthea_uros.perf.system import System
@@ -41,7 +42,7 @@ from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Assembly:
+class Assembly(Brief):
     """A system, and the decisions and findings of its assembly.
 
     Attributes

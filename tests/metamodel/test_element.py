@@ -177,7 +177,7 @@ class TestLookup:
 
     def test_a_missing_name_suggests_near_ones(self, model):
         model.root.sw_model.tasks.append(Task(name="Executor_Task"))
-        with pytest.raises(KeyError, match="no Task named 'Executor_Tsk', did you mean 'Executor_Task'"):
+        with pytest.raises(KeyError, match="no Task named 'Executor_Tsk'; did you mean 'Executor_Task'"):
             model[Task, "Executor_Tsk"]
 
     def test_after_changes(self, model):

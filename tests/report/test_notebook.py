@@ -1,6 +1,8 @@
 """Results as records, data frames, text, and HTML."""
 
 import json
+import pickle
+from copy import deepcopy
 from html.parser import HTMLParser
 from io import StringIO
 
@@ -32,7 +34,7 @@ def written(result, name):
 
 def test_records_have_the_names_and_values_of_the_json_output(analysis):
     content = json.loads(written(amuros.analyze_files(YAML), "json"))
-    for record, process in zip(analysis.to_records(), content["processes"], strict=True):
+    for record, process in zip(analysis.to_records(full=True), content["processes"], strict=True):
         plain = {key: value for key, value in process.items() if not isinstance(value, dict)}
         assert record.items() >= plain.items()
         assert record["terms.own_ps"] == process["terms"]["own_ps"]
@@ -54,7 +56,51 @@ def test_a_chain_without_values_has_a_row_with_the_reason():
     assert row["reason"]
 
 
+def test_tables_are_small_unless_all_columns_are_asked_for(analysis, simulation):
+    for result in (analysis, analysis.processes[0], simulation.processes, simulation.chains):
+        small, full = result.to_records(), result.to_records(full=True)
+        assert len(small[0]) < 12 < len(full[0])
+        assert all(row.items() <= every.items() for row, every in zip(small, full, strict=True))
+
+
+def test_unknown_values_have_the_same_columns():
+    # A needs 6 ms every 5 ms.
+    rows = amuros.analyze(amuros.taskset([(1, 0.1), (5, 6)], unit="ms", priorities="rate monotonic")).to_records()
+    assert [list(row) for row in rows] == [list(rows[0])] * 2
+    assert [(row["wcrt_ps"], row["claim"]) for row in rows] == [(10**8, "bound"), (None, "bound")]
+
+
+def test_why_as_a_table(analysis):
+    # The parts add up to the value: thesis, section 6.1: 12 + 13 of the executor, 4 of its own
+    parts = amuros.explain(analysis, "Control_Function").to_records()
+    assert sum(part["time_ps"] for part in parts) == amuros.parse_time("29 us")
+    parts = amuros.explain(YAML, "factor-to-output").to_records()
+    assert sum(part["time_ps"] for part in parts) == amuros.parse_time("20.029 ms")
+    for quantity in ("max_data_age", "max_reaction_time"):
+        parts = amuros.explain(analysis, "factor-to-output", amuros.Quantity(quantity)).to_records()
+        assert sum(part["time_ps"] for part in parts) == analysis.chains[0].value(amuros.Quantity(quantity)).value
+
+
+def test_improvements_as_a_table(analysis):
+    rows = amuros.improvements(analysis, "factor-to-output").to_records()
+    assert rows
+    assert all(row["after_ps"] < row["before_ps"] == amuros.parse_time("20.029 ms") for row in rows)
+
+
+def test_what_cannot_be_explained(analysis):
+    for ask in (amuros.explain, amuros.improvements):
+        with pytest.raises(amuros.InvalidArgumentError, match=r"unknown .*'factor'"):
+            ask(analysis, "factor")
+        with pytest.raises(
+            amuros.InvalidArgumentError, match="cannot explain 'max_first_to_last'; expected one of max_reaction"
+        ):
+            ask(analysis, "factor-to-output", amuros.Quantity.MAX_FIRST_TO_LAST)
+
+
 def everything(analysis, simulation):
+    yield from (amuros.sensitivity(analysis), *amuros.propose_priorities(analysis), amuros.build(YAML))
+    yield from (amuros.explain(analysis, "Control_Function"), amuros.explain(analysis, "factor-to-output"))
+    yield from (amuros.improvements(analysis, "factor-to-output"), amuros.migrate(MODEL, "3.3.0"))
     yield from (analysis, analysis.processors, analysis.processes, analysis.callbacks, analysis.chains, analysis.requirements)
     yield from (analysis.processes[0], analysis.chains[0], amuros.analyze_files(YAML))
     yield from (simulation, simulation.processes, simulation.chains, simulation.cores, simulation.requirements)
@@ -120,6 +166,19 @@ def test_findings_are_shown():
     model[amuros.am.Task, "Message_Factor"].stimuli = [amuros.am.CustomStimulus(name="elsewhere")]
     analysis = amuros.analyze(model)
     assert analysis.findings[0].message in str(analysis)
+
+
+def test_settings_are_not_changes(analysis):
+    with pytest.raises(TypeError, match=r"expected Settings, not dict; changes of values are given as changes=\.\.\."):
+        amuros.analyze(YAML, {"Control_Function.period": "2 ms"})
+
+
+def test_results_of_other_processes():
+    # multiprocessing passes them on
+    analysis = amuros.analyze(amuros.taskset([(5, 1), (10, 2)], unit="ms", priorities="rate monotonic"))
+    for copy in (pickle.loads(pickle.dumps(analysis)), deepcopy(analysis)):
+        assert copy == analysis
+        assert str(copy) == str(analysis)
 
 
 def test_short_texts(analysis, simulation):

@@ -68,7 +68,7 @@ SYSTEM = System(
         stimuli=(
             stimuli.Periodic(name="tick", period=MS),
             stimuli.Periodic(name="own", period=5 * MS, offset=MS, jitter=distributions.Uniform(lower=-3, upper=7000)),
-            stimuli.RelativePeriodic(name="sporadic", distance=distributions.Constant(MS)),
+            stimuli.RelativePeriodic(name="sporadic", distance=distributions.Constant(MS), has_maximum=False),
             stimuli.Periodic(name="name.with.dots", period=MS),
         )
     ),

@@ -85,3 +85,21 @@ def test_decimals_are_exact_as_in_a_file():
 def test_anything_else_is_a_type_error_that_lists_what_is_accepted(function, subject):
     with pytest.raises(TypeError, match=r"the path of an app.yaml .* a Model, or a System such as taskset"):
         function(subject)
+
+
+@pytest.mark.parametrize("duration", [1.5, None], ids=repr)
+def test_wrong_durations(duration):
+    with pytest.raises(amuros.InvalidArgumentError, match="the duration must be a time such as '1 s'"):
+        amuros.simulate(YAML, duration)
+
+
+def test_tasks_are_no_system_yet():
+    with pytest.raises(TypeError, match=r"taskset\(\) makes a System of tasks"):
+        amuros.analyze([amuros.task("A", period="5 ms", wcet="1 ms")])
+
+
+def test_no_paths_and_no_changes():
+    with pytest.raises(amuros.InvalidArgumentError, match="no path given"):
+        amuros.analyze([])
+    with pytest.raises(TypeError, match="expected changes such as"):
+        amuros.what_if(YAML, None)

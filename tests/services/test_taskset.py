@@ -110,6 +110,66 @@ def test_a_task_set_can_be_simulated_and_built():
     assert worst(amuros.build_model(system)) == worst(system)
 
 
+ROWS = [{"name": "A", "period": 5, "wcet": 1, "priority": 2}, {"name": "B", "period": 10, "wcet": 2.5, "priority": 1}]
+
+
+def test_rows_of_tables():
+    # B waits for one job of A: 2.5 + 1. None and NaN are not stated.
+    rows = [row | {"jitter": None, "deadline": float("nan")} for row in ROWS]
+    assert worst(amuros.taskset(rows, unit="ms")) == [MS, 3.5 * MS]
+    assert amuros.analyze(amuros.taskset(rows, unit="ms"))["A"].deadline == 5 * MS
+
+
+def test_data_frames():
+    pandas = pytest.importorskip("pandas")
+    # Where a priority is missing, pandas makes numbers with a fraction of the others.
+    rows = [*ROWS, {"name": "C", "period": 20, "wcet": 1, "core": "other"}]
+    frame = pandas.DataFrame(rows).fillna({"core": "main"})
+    found = amuros.analyze(amuros.taskset(frame, unit="ms"))
+    assert [(each.wcrt, each.priority) for each in found.processes] == [(MS, 2), (3.5 * MS, 1), (MS, None)]
+
+
+def test_numbers_of_numpy():
+    numpy = pytest.importorskip("numpy")
+    pairs = numpy.array([[5, 1], [10, 2]])
+    assert worst(amuros.taskset(pairs, unit="ms", priorities="rate monotonic")) == [MS, 3 * MS]
+    a = amuros.task("A", period=numpy.int64(5 * MS), wcet=numpy.float32(1.5), priority=numpy.int64(3), unit="ps")
+    assert (type(a.period), a.period, a.wcet, type(a.priority)) == (int, 5 * MS, 2, int)
+
+
+def test_decimal_numbers_are_those_that_were_written():
+    # 1/10 has no finite binary fraction: rounded up, three times 0.1 of 0.3 would be more than all.
+    system = amuros.taskset([(0.3, 0.1), (0.3, 0.1), (0.3, 0.1)], unit="ms", priorities="rate monotonic")
+    assert worst(system) == [MS // 10, 2 * MS // 10, 3 * MS // 10]
+
+
+def test_deadlines_after_the_period():
+    # Lehoczky 1990, example 1: the worst response is 118, in the fifth job of the busy window
+    for deadline, expected in ((118, "yes"), (117, "unknown")):
+        system = amuros.taskset([(70, 26), (100, 62, deadline)], unit="ms", priorities="rate monotonic")
+        assert amuros.analyze(system).summary.schedulable == expected
+
+
+def test_critical_sections():
+    # Sha, Rajkumar and Lehoczky 1990: blocked at most once, by the longest section of lower priority whose ceiling is not lower.
+    # H: 2 + 3; M: 3 + H 2 + 3; L: 5 + 2 + 3. The resource Q of L does not delay H, which is above its ceiling.
+    rows = [
+        {"name": "H", "period": 10, "wcet": 2, "critical_sections": {"R": 1}},
+        {"name": "M", "period": 20, "wcet": 3, "critical_sections": {"Q": 1}},
+        {"name": "L", "period": 40, "wcet": 5, "critical_sections": {"R": 3, "Q": "2 ms"}},
+    ]
+    system = amuros.taskset(rows, unit="ms", priorities="rate monotonic")
+    for found, exact in zip(worst(system), (5, 8, 10), strict=True):
+        assert exact * MS - 1 <= found <= exact * MS  # blocking begins before the activation
+    assert worst(amuros.build_model(system)) == worst(system)
+
+
+def test_the_period_of_a_task_of_any_phase_can_change():
+    # 100 + 2 * 40 + 2 * 40 becomes 100 + 40 + 40
+    system = amuros.taskset([(100, 40), (150, 40), (350, 100)], unit="ms", priorities="rate monotonic")
+    assert amuros.what_if(system, {"T1.period": "300 ms", "T2.period": "300 ms"}).after["T3"].wcrt == 180 * MS
+
+
 def a_task(**values):
     return amuros.task("A", **({"wcet": "1 ms"} | values))
 
@@ -118,16 +178,33 @@ WRONG = {
     "no activation": (lambda: a_task(), "A: expected either a period, or the min_distance"),
     "two activations": (lambda: a_task(period="5 ms", min_distance="5 ms"), "either a period"),
     "no unit": (lambda: a_task(period="5"), "A: period: '5' has no unit"),
-    "a float": (lambda: a_task(period=5.0), "or whole picoseconds, not 5.0"),
+    "a float": (lambda: a_task(period=5.0), "or a number with its unit=, not 5.0"),
     "period 0": (lambda: a_task(period=0), "period: 0 s is not positive"),
     "a negative time": (lambda: a_task(period="5 ms", offset="-1 ms"), "offset: -1 ms is negative"),
     "bcet above wcet": (lambda: a_task(period="5 ms", bcet="2 ms"), "the bcet 2 ms exceeds the wcet 1 ms"),
     "a sporadic task with jitter": (lambda: a_task(min_distance="5 ms", jitter="1 ms"), "has no offset and no jitter"),
     "LET without offset": (lambda: a_task(period="5 ms", communication="LET"), "need an offset"),
     "an unknown preemption": (lambda: a_task(period="5 ms", preemption="never"), "expected one of preemptive, cooperative"),
-    "numbers without unit": (lambda: amuros.taskset([(5, 1)]), "state the unit of all pairs, e.g. unit='ms'"),
+    "numbers without unit": (lambda: amuros.taskset([(5, 1)]), "state the unit of all numbers, e.g. unit='ms'"),
     "an unknown unit": (lambda: amuros.taskset([(5, 1)], unit="msec"), "'msec' is not a unit of time; known units: ps"),
     "not a number": (lambda: amuros.taskset([(float("nan"), 1)], unit="ms"), "expected a finite number, not nan"),
+    "a priority that is a text": (lambda: a_task(period="5 ms", priority="high"), "the priority: expected a whole number"),
+    "a priority with a fraction": (lambda: a_task(period="5 ms", priority=1.5), "expected a whole number, not 1.5"),
+    "a name that is a number": (lambda: amuros.task(1, period="5 ms", wcet="1 ms"), "the name of a task must be a text"),
+    "a core that is a number": (lambda: a_task(period="5 ms", core=0), "A: the core must be a text, not 0"),
+    "sections above wcet": (
+        lambda: a_task(period="5 ms", critical_sections={"R": "2 ms"}),
+        "take 2 ms, more than the wcet 1 ms",
+    ),
+    "a resource of two cores": (
+        lambda: amuros.taskset(
+            [amuros.task(c, period="5 ms", wcet="1 ms", core=c, critical_sections={"R": "1 ms"}) for c in "XY"]
+        ),
+        "the resource 'R' is used on X and Y",
+    ),
+    "an unknown column": (lambda: amuros.taskset([{"perod": 5, "wcet": 1}], unit="ms"), "'perod'; did you mean 'period'?"),
+    "a column that is missing": (lambda: amuros.taskset([{"period": 5}], unit="ms"), "T1: the wcet is missing"),
+    "rows without unit": (lambda: amuros.taskset([{"period": 5, "wcet": 1}]), "has no unit; state the unit of all numbers"),
     "an unknown policy": (lambda: amuros.taskset([], policy="RM"), "expected one of fixed priority, EDF"),
     "unknown priorities": (lambda: amuros.taskset([], priorities="RM"), "expected one of rate monotonic, deadline mono"),
     "a name twice": (lambda: amuros.taskset([a_task(period="5 ms")] * 2), "duplicate task 'A'"),
@@ -154,3 +231,16 @@ def test_wrong_values(make, message):
 def test_other_objects_than_tasks():
     with pytest.raises(TypeError, match="made by task"):
         amuros.taskset([3])
+
+
+@pytest.mark.parametrize(
+    "given", [None, "ab", {"A": (5, 1)}, [(5,)], [5], amuros.task("A", period="5 ms", wcet="1 ms")], ids=repr
+)
+def test_what_is_no_task_set(given):
+    with pytest.raises(TypeError, match="expected tasks made by task"):
+        amuros.taskset(given, unit="ms")
+
+
+def test_chains_have_names():
+    with pytest.raises(TypeError, match="expected the names of chains"):
+        amuros.taskset([(5, 1), (6, 1)], unit="ms", chains=[["T1", "T2"]])

@@ -5,8 +5,9 @@ from support import DATA, ROOT
 
 import amalthea_uros as amuros
 from amalthea_uros import am
-from amalthea_uros.services.analyze import chain_detail, explain
+from amalthea_uros.services.analyze import chain_detail
 from amalthea_uros.services.chains import add_path, find_paths
+from amalthea_uros.services.explain import explain
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
 

@@ -34,9 +34,9 @@ def write(result: AnalysisResult, terminal: Terminal) -> None:
     if result.impact is not None:
         impact.write(result.impact, terminal)
     if result.sensitivity is not None:
-        from amalthea_uros.report.text.sensitivity import write_sensitivity
+        from amalthea_uros.report.text import sensitivity
 
-        write_sensitivity(terminal, result.sensitivity)
+        sensitivity.write(result.sensitivity, terminal)
     if result.proposals is not None:
         from amalthea_uros.report.text.proposals import write_proposals
 

@@ -8,7 +8,7 @@ from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
 from amalthea_uros.report.terminal import Terminal
 
 
-def write_sensitivity(terminal: Terminal, found: Sensitivity) -> None:
+def write(found: Sensitivity, terminal: Terminal) -> None:
     """Write a table of factors."""
     terminal.heading("Maximum factors on execution times")
     rows = [("all together", _factor(found.everything)), *((name, _factor(f)) for name, f in found.processes.items())]

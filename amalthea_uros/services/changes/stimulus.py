@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.perf.distributions import Distribution, Uniform, highest
+from amalthea_uros.perf.distributions import Constant, Distribution, Uniform, highest
 from amalthea_uros.perf.events import StimulusEvent
 from amalthea_uros.perf.software import Process, Task
 from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Stimulus, Synthetic
@@ -47,8 +47,10 @@ def _stimulus_key(field: str, parse: Callable[[str], Any], text: Callable[[Any],
         return _shown(configuration.system.stimuli_by_name[name], field, text)
 
     def with_value(configuration: Configuration, name: str, value: object) -> Configuration:
-        _check_holder(configuration.system.stimuli_by_name[name], field, f"the stimulus {name!r}")
-        return configuration._replace(system=STIMULI.with_fields(configuration.system, name, **{field: value}))
+        stimulus = configuration.system.stimuli_by_name[name]
+        _check_holder(stimulus, field, f"the stimulus {name!r}")
+        fields = _fields(stimulus, field, value)
+        return configuration._replace(system=STIMULI.with_fields(configuration.system, name, **fields))
 
     return Key(parse, show, with_value)
 
@@ -65,7 +67,21 @@ def _process_key(field: str, parse: Callable[[str], Any], text: Callable[[Any], 
 
 
 def _shown(stimulus: Stimulus, field: str, text: Callable[[Any], str]) -> str:
+    if field == "period" and isinstance(stimulus, RelativePeriodic) and isinstance(stimulus.distance, Constant):
+        return text(stimulus.distance.value) if stimulus.has_maximum else UNSET
     return text(getattr(stimulus, field)) if isinstance(stimulus, _HOLDERS[field]) else UNSET
+
+
+def _is_period_of_any_phase(stimulus: Stimulus) -> bool:
+    """Whether all distances are the same, so that they are the period, but nothing is known of the phase."""
+    return isinstance(stimulus, RelativePeriodic) and isinstance(stimulus.distance, Constant) and stimulus.has_maximum
+
+
+def _fields(stimulus: Stimulus, field: str, value: object) -> dict[str, Any]:
+    """The fields that a value replaces."""
+    if field == "period" and _is_period_of_any_phase(stimulus):
+        return {"distance": Constant(value)}
+    return {field: value}
 
 
 def _stimuli(process: Process, system: System) -> list[Stimulus]:
@@ -73,7 +89,7 @@ def _stimuli(process: Process, system: System) -> list[Stimulus]:
 
 
 def _check_holder(stimulus: Stimulus, field: str, what: str) -> None:
-    if not isinstance(stimulus, _HOLDERS[field]):
+    if not isinstance(stimulus, _HOLDERS[field]) and not (field == "period" and _is_period_of_any_phase(stimulus)):
         classes = ", ".join(holder.__name__ for holder in _HOLDERS[field])
         raise InvalidArgumentError(f"{what} is {type(stimulus).__name__}, which has no {field}; these have one: {classes}")
 
@@ -88,7 +104,7 @@ def _with_process_value(system: System, name: str, field: str, value: object) ->
         raise InvalidArgumentError(f"{name!r} {reason}")
     stimulus = found[0]
     _check_holder(stimulus, field, f"the stimulus {stimulus.name!r} of {name!r}")
-    fields: dict[str, Any] = {field: value}
+    fields = _fields(stimulus, field, value)
     if sum(stimulus.name in other.stimuli for other in system.processes.values()) == 1:
         return STIMULI.with_fields(system, stimulus.name, **fields)
     if any(isinstance(event, StimulusEvent) and event.stimulus == stimulus.name for event in system.events.events):

@@ -1,0 +1,44 @@
+"""Why a response time or a latency is so long."""
+
+from __future__ import annotations
+
+from amalthea_uros.analyze.callback_explanation import explain_callback
+from amalthea_uros.analyze.chains.explanation import explain_chain
+from amalthea_uros.analyze.explanation import explain_process
+from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.services.analyze import Analyzed, Explanation, analysis_result
+from amalthea_uros.services.improvements import check_explained, improvements_of
+from amalthea_uros.services.names import require
+from amalthea_uros.uros.application import body_name
+
+
+def explain(analyzed: Analyzed, name: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Explanation:
+    """Explain the response time of a process or callback, or a maximum latency of a chain: why is it so long?
+
+    >>> print(explain("app.yaml", "factor-to-output"))  # doctest: +SKIP
+
+    Parameters
+    ----------
+    analyzed : an analysis, or what `analyze` takes
+    name : a callback in an executor also by its name in the `app.yaml`
+    quantity : of a chain, one of `MAX_REACTION_TIME`, `MAX_REDUCED_REACTION_TIME`, `MAX_DATA_AGE` and `MAX_REDUCED_DATA_AGE`
+
+    Raises
+    ------
+    InvalidArgumentError : there is no such process, callback or chain, or another quantity.
+    """
+    result = analysis_result(analyzed)
+    system, analysis = result.system, result.analysis
+    check_explained(quantity)
+    known = dict.fromkeys((*system.processes, *(callback.name for callback in analysis.callbacks), *system.chains))
+    if name not in known and body_name(name) in known:
+        name = body_name(name)
+    require("process, callback or chain", [name], known)
+    chain = explain_chain(analysis, name, quantity) if name in system.chains else None
+    return Explanation(
+        name=name,
+        process=explain_process(analysis, name) if name in system.processes else None,
+        chain=chain,
+        callbacks=explain_callback(analysis, name),
+        improvements=None if chain is None else improvements_of(result, chain),
+    )

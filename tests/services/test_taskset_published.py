@@ -1,0 +1,82 @@
+"""Task sets with response times and latencies that other programs and papers give, made by `taskset` alone.
+
+The oracles: published examples that were derived again; pyCPA and response-time-analysis-rs for random task sets; the end-to-end
+analyses of TU Dortmund (2021) and E2EEvaluation (2025) for chains. Times in nanoseconds, priority 0 is the highest.
+"""
+
+import json
+
+import pytest
+from support import SHARED
+
+import amalthea_uros as amuros
+
+NS = 1000
+FOLDER = SHARED / "vectors"
+LATENCIES = {
+    "mrt": amuros.Quantity.MAX_REACTION_TIME,
+    "mda": amuros.Quantity.MAX_DATA_AGE,
+    "mrda": amuros.Quantity.MAX_REDUCED_DATA_AGE,
+    "mrrt": amuros.Quantity.MAX_REDUCED_REACTION_TIME,
+}
+
+
+def cases(file, count=None):
+    """Cases of a file, evenly chosen."""
+    path = FOLDER / file
+    found = json.loads(path.read_text())["cases"] if path.exists() else []
+    chosen = found[:: max(1, len(found) // count)] if count else found
+    return [pytest.param(case, id=case["id"]) for case in chosen]
+
+
+pytestmark = pytest.mark.skipif(not FOLDER.exists(), reason="the vectors are not at hand")
+
+
+def tasks(case):
+    def task(each):
+        known = {key: each[key] for key in ("period", "wcet", "deadline", "jitter", "offset", "bcet") if key in each}
+        return {"name": each["name"], "priority": -each["priority"]} | known
+
+    return [task(each) for each in case["tasks"]]
+
+
+def preemptive(found):
+    return [each for each in found if each.values[0]["scheduling"] == "fixed_priority_preemptive"]
+
+
+@pytest.mark.parametrize("case", preemptive(cases("textbook.json")) + preemptive(cases("rta_random.json")))
+def test_response_times(case):
+    analysis = amuros.analyze(amuros.taskset(tasks(case), unit="ns"))
+    assert [process.wcrt for process in analysis.processes] == [time * NS for time in case["expected_wcrt"]]
+
+
+def chain(case, settings=None):
+    system = amuros.taskset(tasks(case), chains={"chain": case["chain"]}, unit="ns")
+    return amuros.analyze(system, settings).chains["chain"]
+
+
+@pytest.mark.parametrize("case", [each for each in cases("chains.json", 40) if "exact" in each.values[0]])
+def test_latencies_of_known_schedules(case):
+    # Execution times are constant, and all releases are known.
+    found = chain(case)
+    for name, latency in case["exact"].items():
+        assert (found.value(LATENCIES[name]).value, found.value(LATENCIES[name]).claim) == (latency * NS, "exact")
+
+
+@pytest.mark.parametrize("case", [each for each in cases("chains.json", 40) if each.values[0]["kind"] == "bcet"])
+def test_latencies_with_varying_execution_times(case):
+    # What a schedule achieves is no more than the bound.
+    found = chain(case)
+    for achieved in case["achieved"].values():
+        for name, latency in achieved.items():
+            assert found.value(LATENCIES[name]).value >= latency * NS
+    for name, safe in (("mrt", "guenzel23_mrt"), ("mda", "guenzel23_mda"), ("mrda", "guenzel23_mrda")):
+        assert found.value(LATENCIES[name]).value <= case["safe_upper_bound"][safe] * NS
+
+
+@pytest.mark.parametrize("case", cases("chains.json", 40))
+def test_latencies_under_logical_execution_time(case):
+    # From the release of a job to the end of the period of another one.
+    found = chain(case, amuros.Settings(communication=amuros.Communication.LET))
+    for name, latency in case["let"].items():
+        assert found.value(LATENCIES[name]).value == latency * NS
