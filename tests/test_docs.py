@@ -49,6 +49,15 @@ def test_the_examples_of_a_page(page, samples):
         assert printed(command.removeprefix("$ ")) == expected
 
 
+def test_the_figures_that_the_readme_states_beside_commands(samples):
+    printed("amuros init --example bodas-test-advanced")
+    lines = re.findall(r"^(amuros (?:analyze|report|simulate) .*?) +# (.*)$", (ROOT / "README.md").read_text(), re.MULTILINE)
+    assert lines
+    for command, comment in lines:
+        output = printed(command)
+        assert [figure for figure in re.findall(r"[\d.]+(?: [mu]s|%)", comment) if figure not in output] == [], command
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_the_links_of_a_page(page):
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text()):
