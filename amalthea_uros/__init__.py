@@ -109,8 +109,8 @@ if TYPE_CHECKING:
     from amalthea_uros.services.simulate import simulate as simulate
     from amalthea_uros.services.simulate import simulate_campaign as simulate_campaign
     from amalthea_uros.services.simulate import simulate_files as simulate_files
-    from amalthea_uros.services.taskset import TaskParameters as TaskParameters
-    from amalthea_uros.services.taskset import task as task
+    from amalthea_uros.services.task_parameters import TaskParameters as TaskParameters
+    from amalthea_uros.services.task_parameters import task as task
     from amalthea_uros.services.taskset import taskset as taskset
     from amalthea_uros.services.what_if import WhatIf as WhatIf
     from amalthea_uros.services.what_if import what_if as what_if
@@ -172,7 +172,8 @@ _NAMES = {
     "services.migrate": ("MigrationResult", "migrate"),
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
-    "services.taskset": ("TaskParameters", "task", "taskset"),
+    "services.task_parameters": ("TaskParameters", "task"),
+    "services.taskset": ("taskset",),
     "services.what_if": ("WhatIf", "what_if"),
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),

@@ -24,7 +24,7 @@ from amalthea_uros.cli.output import (
     shows_text,
     write_outputs,
 )
-from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
+from amalthea_uros.cli.settings_options import analysis_options, set_option
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail
 from amalthea_uros.services.changed_model import write_changed
@@ -43,15 +43,7 @@ from amalthea_uros.timing.settings import Settings
     metavar="FILE.amxmi",
     help="With --set: write the changed model; only the changed values differ from the given one.",
 )
-@settings_options
-@click.option(
-    "--mode",
-    "modes",
-    multiple=True,
-    type=Assignment("LABEL=VALUE", str),
-    help="Constant value of a mode label; may be repeated.",
-)
-@click.option("--bus", "with_bus", is_flag=True, help="Also analyze the messages on the CAN bus of an app.yaml.")
+@analysis_options
 @click.option("--chain", metavar="CHAIN", help="Show all values of one event chain, and the links between its events.")
 @click.option(
     "--method",
@@ -88,7 +80,6 @@ def command(
     changes: tuple[Change, ...],
     target: Path | None,
     settings: Settings,
-    modes: tuple[tuple[str, str], ...],
     with_bus: bool,
     chain: str | None,
     method: str,
@@ -107,7 +98,6 @@ def command(
     are met; the exit code is 1 if one of them is missed, an activation is lost, or a core is overloaded. With --set the system is
     changed first, and a table compares the results before and after.
     """
-    settings = replace(settings, modes=dict(modes))
     outputs = _with_target(outputs, target, changes)
     result = analyze_files(
         paths,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -20,7 +19,7 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.parsed import Parsed
-from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
+from amalthea_uros.cli.settings_options import analysis_options, set_option
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.suffixes import FORMATS, format_of
 from amalthea_uros.services.changes.change import Change
@@ -48,15 +47,7 @@ _SUFFIXES = ", ".join(FORMATS)
     "--date", default="", help="Date, or any other text, shown below the title; without it the output is reproducible."
 )
 @set_option
-@settings_options
-@click.option(
-    "--mode",
-    "modes",
-    multiple=True,
-    type=Assignment("LABEL=VALUE", str),
-    help="Constant value of a mode label; may be repeated.",
-)
-@click.option("--bus", "with_bus", is_flag=True, help="Also analyze the messages on the CAN bus of an app.yaml.")
+@analysis_options
 @click.option(
     "--duration",
     type=Parsed("TIME", parse_duration),
@@ -73,7 +64,6 @@ def command(
     date: str,
     changes: tuple[Change, ...],
     settings: Settings,
-    modes: tuple[tuple[str, str], ...],
     with_bus: bool,
     duration: Time | None,
     seed: int,
@@ -89,7 +79,7 @@ def command(
     outputs = _outputs(files, standard_format)
     content = compile_report(
         paths,
-        replace(settings, modes=dict(modes)),
+        settings,
         changes=changes,
         with_bus=with_bus,
         with_simulation=not no_simulation,

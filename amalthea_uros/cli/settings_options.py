@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from functools import reduce, wraps
 from typing import Any, TypeVar
@@ -127,3 +128,21 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         function(settings=settings, **others)
 
     return reduce(lambda decorated, option: option(decorated), reversed(_OPTIONS), with_settings)
+
+
+def analysis_options(function: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of all analyses; it receives them as its parameters `settings` and `with_bus`."""
+
+    @wraps(function)
+    def with_modes(*, settings: Settings, modes: tuple[tuple[str, str], ...], **others: Any) -> None:
+        function(settings=replace(settings, modes=dict(modes)), **others)
+
+    mode = click.option(
+        "--mode",
+        "modes",
+        multiple=True,
+        type=Assignment("LABEL=VALUE", str),
+        help="Constant value of a mode label; may be repeated.",
+    )
+    bus = click.option("--bus", "with_bus", is_flag=True, help="Also analyze the messages on the CAN bus of an app.yaml.")
+    return settings_options(mode(bus(with_modes)))

@@ -35,7 +35,7 @@ class Worker:
                 continue
             try:
                 result, error = job(), None
-            except Exception as raised:  # whoever waits for the job is told
+            except Exception as raised:  # passed on to the caller that waits for the job
                 result, error = None, raised
             with suppress(RuntimeError):  # the server has ended meanwhile
                 future.get_loop().call_soon_threadsafe(_settle, future, result, error)

@@ -25,7 +25,7 @@ _ACCEPTED = (
 def open_subject(subject: Subject) -> SystemInput:
     """The system of files, of a description as text or dict, of an AMALTHEA model, or the given one, with the findings about it.
 
-    A text is told from a path by its line breaks.
+    A text with a line break is the content of an `app.yaml`; any other text is a path.
 
     Raises
     ------
