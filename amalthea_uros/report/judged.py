@@ -50,8 +50,17 @@ def judged_rows(analysis: Analysis) -> list[JudgedRow]:
         if each.verdict is not None and (each.is_implicit or _is_worse(each.verdict, stated.get((each.name, each.deadline))))
     )
     items: list[Judged] = [*processes, *analysis.requirements]
-    claims = {each.name: _claim(each) for each in analysis.processes}
+    claims = _claims(analysis)
     return [_row(item, claims) for item in sorted(items, key=_rank)]
+
+
+def _claims(analysis: Analysis) -> Mapping[tuple[str, str], str]:
+    """The claims of the results that requirements may limit, by object and quantity."""
+    values = ((chain.name, name, chain.value(quantity)) for chain in analysis.chains for name, quantity in LIMITED.items())
+    return {
+        **{(each.name, "response time"): _claim(each) for each in analysis.processes},
+        **{(chain, name): str(value.claim) for chain, name, value in values if value is not None},
+    }
 
 
 def _is_worse(verdict: Verdict, stated: Verdict | None) -> bool:
@@ -71,7 +80,7 @@ def _rank(item: Judged) -> _Rank:
     return badness, -Fraction(part, whole) if whole else -inf
 
 
-def _row(item: Judged, claims: Mapping[str, str]) -> JudgedRow:
+def _row(item: Judged, claims: Mapping[tuple[str, str], str]) -> JudgedRow:
     if isinstance(item, ProcessResult):
         what = "response time, period" if item.is_implicit else "response time, deadline"
         value = item.response.worst if item.response is not None else None
@@ -130,12 +139,12 @@ def _claim(process: ProcessResult) -> str:
     return str(process.response.claim) if process.response is not None and process.response.worst is not None else ""
 
 
-def _requirement_claim(requirement: RequirementResult, claims: Mapping[str, str]) -> str:
-    """That of the value; a worst-case response time has the same claim as in the results of its process."""
+def _requirement_claim(requirement: RequirementResult, claims: Mapping[tuple[str, str], str]) -> str:
+    """That of the value; a worst-case response time or latency has the same claim as in the results of its process or chain."""
     if requirement.value is None:
         return ""
-    if requirement.is_upper and requirement.quantity == "response time" and requirement.object in claims:
-        return claims[requirement.object]
+    if requirement.is_upper and (requirement.object, requirement.quantity) in claims:
+        return claims[requirement.object, requirement.quantity]
     return str(Claim.EXACT if requirement.lower == requirement.upper else Claim.BOUND)
 
 

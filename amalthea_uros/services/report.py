@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros._internal.files import STANDARD_INPUT
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.diagnostics import Finding
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.activities import Call, walk
@@ -75,6 +75,11 @@ class ReportContent:
     check: Presentation | None = None
     findings: tuple[Finding, ...] = ()
     assembly: Assembly | None = None
+
+    @property
+    def warnings(self) -> tuple[Finding, ...]:
+        """The findings that the verdict is subject to: it may not be that of the real system."""
+        return tuple(each for each in self.findings if each.severity is not Severity.INFO)
 
 
 def compile_report(

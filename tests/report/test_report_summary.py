@@ -2,6 +2,7 @@
 
 from support import ROOT
 
+import amalthea_uros as amuros
 from amalthea_uros import am, load, report, save
 
 #: What GitHub accepts.
@@ -23,3 +24,14 @@ def test_names_are_no_markup(tmp_path):
     shown = report(tmp_path / "names.amxmi", with_simulation=False).markdown
     (line,) = (line for line in shown.splitlines() if line.startswith("| a"))
     assert line.startswith(r"| a\|b \<i\>\`c\`\n# d |")
+
+
+def test_a_summary_says_what_its_verdict_is_subject_to(tmp_path):
+    # No data flow leads from the callback to the control function: the latency is that of a connection that nobody modelled.
+    text = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text().replace("reads: [memory_2, input]", "reads: [input]")
+    (tmp_path / "gap.yaml").write_text(text)
+    found = amuros.report(tmp_path / "gap.yaml").markdown
+    verdict, requirements = found.index("Schedulable: "), found.index("### 4 requirements")
+    assert verdict < found.index("- CHN002 warning: ") < requirements
+    (row,) = [line for line in found.splitlines() if line.startswith("| factor-to-output_reaction")]
+    assert "| bound |" in row

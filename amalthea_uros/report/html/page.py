@@ -129,5 +129,6 @@ def _verdict(content: ReportContent) -> Opening:
     overloads = [(core.name, "the core is overloaded") for core in summary.overloaded]
     rows = (row.item for row in judged_rows(content.analysis) if row.item.verdict is not Verdict.MET)
     others = [(item.name, ": ".join(filter(None, (verdict_badge(item).word, why(item))))) for item in rows]
-    reasons = list(dict.fromkeys((*overloads, *others)))
+    warnings = [(each.rule, each.message) for each in content.warnings]
+    reasons = list(dict.fromkeys((*overloads, *others, *warnings)))
     return Opening(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))

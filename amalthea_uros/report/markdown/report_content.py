@@ -21,7 +21,7 @@ from amalthea_uros.services.report import ReportContent
 #: GitHub accepts 65,536 characters in a comment; names may be long.
 _MOST_CHARACTERS = 60_000
 _MOST_ROWS, _MOST_CHANGES = 10, 40
-_MOST_NAME = 80
+_MOST_NAME, _MOST_MESSAGE = 80, 300
 _ICONS = {
     Schedulable.YES: "\N{WHITE HEAVY CHECK MARK}",
     Schedulable.NO: "\N{CROSS MARK}",
@@ -46,12 +46,23 @@ def _all_lines(content: ReportContent) -> Iterator[str]:
     if content.date:
         yield from ("", escaped(content.date))
     yield from ("", escaped(closing_line(summary)))
+    yield from _warnings(content)
     yield from _changes(content)
     yield from _requirements(content)
     yield from _chains(content)
     if content.simulation is not None:
         line = observed_line(content.simulation.simulation).removesuffix(REMINDER).rstrip()
         yield from ("", f"{escaped(line)} Observed values are no bounds.")
+
+
+def _warnings(content: ReportContent) -> Iterator[str]:
+    found = content.warnings
+    if not found:
+        return
+    yield from ("", "The verdict is subject to these findings:", "")
+    yield from (f"- {each.rule} {each.severity}: {escaped(_short(each.message, _MOST_MESSAGE))}" for each in found[:_MOST_ROWS])
+    if len(found) > _MOST_ROWS:
+        yield f"- {counted(len(found) - _MOST_ROWS, 'more finding')}"
 
 
 def _changes(content: ReportContent) -> Iterator[str]:
@@ -110,6 +121,6 @@ def _table(headings: Sequence[str], rows: Sequence[Sequence[object]], right: Seq
     return table([headings[number] for number in kept], shown, [index for index, number in enumerate(kept) if number in right])
 
 
-def _short(text: str) -> str:
+def _short(text: str, most: int = _MOST_NAME) -> str:
     """The text, or its start if it is long: a name may be of any length."""
-    return text if len(text) <= _MOST_NAME else f"{text[:_MOST_NAME]}\N{HORIZONTAL ELLIPSIS}"
+    return text if len(text) <= most else f"{text[:most]}\N{HORIZONTAL ELLIPSIS}"
