@@ -63,6 +63,10 @@ if TYPE_CHECKING:
     from amalthea_uros.bridge.build import build_model as build_model
     from amalthea_uros.bridge.extract import Extraction as Extraction
     from amalthea_uros.bridge.extract import extract as extract
+    from amalthea_uros.changes.change import Change as Change
+    from amalthea_uros.changes.change import parse_change as parse_change
+    from amalthea_uros.changes.sweep import Sweep as Sweep
+    from amalthea_uros.changes.sweep import parse_sweep as parse_sweep
     from amalthea_uros.diagnostics import Finding as Finding
     from amalthea_uros.diagnostics import Location as Location
     from amalthea_uros.diagnostics import Severity as Severity
@@ -88,10 +92,6 @@ if TYPE_CHECKING:
     from amalthea_uros.services.campaign.run import Outcome as Outcome
     from amalthea_uros.services.campaign.run import Run as Run
     from amalthea_uros.services.campaign.tables import write_table as write_table
-    from amalthea_uros.services.changes.change import Change as Change
-    from amalthea_uros.services.changes.change import parse_change as parse_change
-    from amalthea_uros.services.changes.sweep import Sweep as Sweep
-    from amalthea_uros.services.changes.sweep import parse_sweep as parse_sweep
     from amalthea_uros.services.check import CheckResult as CheckResult
     from amalthea_uros.services.check import check as check
     from amalthea_uros.services.check import check_files as check_files
@@ -163,8 +163,8 @@ _NAMES = {
     "services.build": ("BuildResult", "build", "describe"),
     "services.campaign.run": ("Outcome", "Run"),
     "services.campaign.tables": ("write_table",),
-    "services.changes.change": ("Change", "parse_change"),
-    "services.changes.sweep": ("Sweep", "parse_sweep"),
+    "changes.change": ("Change", "parse_change"),
+    "changes.sweep": ("Sweep", "parse_sweep"),
     "services.check": ("CheckResult", "check", "check_files"),
     "services.diff": ("DiffResult", "diff"),
     "services.explain": ("explain",),

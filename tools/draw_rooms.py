@@ -21,7 +21,7 @@ PACKAGE = "amalthea_uros"
 PAGE = ROOT / "docs" / "architecture.md"
 
 #: What every room may import.
-BASE = ("_internal", "_version", "diagnostics", "errors", "units")
+BASE = ("_internal", "_version", "diagnostics", "errors", "names", "units")
 
 #: No rooms: the public interface, and the module that starts the command line.
 _ENTRANCES = ("__init__", "__main__")

@@ -28,8 +28,8 @@ from amalthea_uros.report.display import is_brief
 from amalthea_uros.report.terminal import Terminal
 
 if TYPE_CHECKING:
+    from amalthea_uros.changes.apply import Difference
     from amalthea_uros.metamodel.model import Model
-    from amalthea_uros.services.changes.apply import Difference
 
 
 #: Names in `sys`: these streams are written as text, in colour on a terminal.

@@ -57,8 +57,8 @@ class Pictures:
         self._check_choice()
         if not self.paths:
             return
+        from amalthea_uros.names import require
         from amalthea_uros.report.simulation_pictures import check_window_of, quantity_of
-        from amalthea_uros.services.names import require
 
         require("process", (process for process, _ in self.timelines), plan.system.processes)
         require("process", [self.gantt_of] if self.gantt_of is not None else [], plan.system.processes)

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from amalthea_uros._internal.files import STANDARD_OUTPUT, is_standard_output
+from amalthea_uros.changes.change import Change
 from amalthea_uros.cli.failing import FAILING, fail_on_option
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
 from amalthea_uros.cli.output import (
@@ -22,7 +23,6 @@ from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import analysis_options, set_option
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.suffixes import FORMATS, format_of
-from amalthea_uros.services.changes.change import Change
 from amalthea_uros.services.report import compile_report
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time, parse_duration

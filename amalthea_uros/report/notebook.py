@@ -12,6 +12,7 @@ from amalthea_uros._internal.shown import Cell, Record
 from amalthea_uros.analyze.assignment import Proposal
 from amalthea_uros.analyze.impact import Impact
 from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.report.by_result import module_for, rendered_in
 from amalthea_uros.report.escape import visible
@@ -19,7 +20,6 @@ from amalthea_uros.report.records import all_records, lean_records
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import analysis_result, impact, proposals, simulation_result
 from amalthea_uros.services import analyze as services_analyze
-from amalthea_uros.services.changes.apply import Difference
 from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.units import time_text

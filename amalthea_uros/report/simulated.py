@@ -8,8 +8,8 @@ from typing import Protocol
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import Impact
+from amalthea_uros.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.services.changes.apply import Difference
 from amalthea_uros.simulate.results import Judged, ProcessObservation, RequirementObservation, Simulation
 from amalthea_uros.units import SECOND, Rounding, Time, number_text, rounded_time_text, time_text
 

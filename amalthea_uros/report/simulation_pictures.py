@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.pictures.chain_ways import ChainWay
 from amalthea_uros.report.pictures.from_events import chain_way, jobs_of
@@ -20,7 +21,6 @@ from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind
 from amalthea_uros.report.pictures.jobs import CoreRows, ProcessRow
 from amalthea_uros.report.pictures.state_timeline import StateTimeline, state_timeline
 from amalthea_uros.report.pictures.windows import default_window
-from amalthea_uros.services.names import require
 from amalthea_uros.services.recording import record_events
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.options import Options

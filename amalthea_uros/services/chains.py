@@ -10,8 +10,8 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.names import require
 from amalthea_uros.services.inputs import open_system
-from amalthea_uros.services.names import require
 from amalthea_uros.services.paths import StrPath, is_description
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.paths import Path as ProcessPath

@@ -9,12 +9,12 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.changes.apply import apply
+from amalthea_uros.changes.change import Change
+from amalthea_uros.changes.key import CLOCKS
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.perf.hardware import Clock, Structure
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.apply import apply
-from amalthea_uros.services.changes.change import Change
-from amalthea_uros.services.changes.key import CLOCKS
 from amalthea_uros.services.paths import StrPath, is_description
 from amalthea_uros.services.subject import Subject, paths_of, system_of
 from amalthea_uros.timing.phases import with_stated_phases

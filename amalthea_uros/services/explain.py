@@ -6,9 +6,9 @@ from amalthea_uros.analyze.callback_explanation import explain_callback
 from amalthea_uros.analyze.chains.explanation import explain_chain
 from amalthea_uros.analyze.explanation import explain_process
 from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.names import require
 from amalthea_uros.services.analyze import Analyzed, Explanation, analysis_result
 from amalthea_uros.services.improvements import check_explained, improvements_of
-from amalthea_uros.services.names import require
 from amalthea_uros.uros.application import body_name
 
 

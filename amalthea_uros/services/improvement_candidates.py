@@ -11,11 +11,11 @@ from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.explanation import ChainExplanation
 from amalthea_uros.analyze.chains.hop_causes import CauseKind
 from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.changes.change import Change
+from amalthea_uros.changes.key import Configuration
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.change import Change
-from amalthea_uros.services.changes.key import Configuration
 from amalthea_uros.timing.phases import unknown_phases
 from amalthea_uros.units import Time, frequency_text, time_text
 

@@ -12,6 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.shown import Shown
+from amalthea_uros.changes.apply import Difference, apply
+from amalthea_uros.changes.change import Change, parse_change
+from amalthea_uros.changes.key import Configuration
+from amalthea_uros.changes.sweep import Sweep
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
@@ -19,10 +23,6 @@ from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.campaign.run import Outcome, Record, Run, plan_runs
 from amalthea_uros.services.campaign.sending import system_bytes, system_from
-from amalthea_uros.services.changes.apply import Difference, apply
-from amalthea_uros.services.changes.change import Change, parse_change
-from amalthea_uros.services.changes.key import Configuration
-from amalthea_uros.services.changes.sweep import Sweep
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.names import require_labels, require_settings
 from amalthea_uros.services.paths import StrPath, as_paths

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
+from amalthea_uros.changes.apply import Difference, apply, describe
+from amalthea_uros.changes.change import Change
+from amalthea_uros.changes.key import UNSET, Configuration, Kind
+from amalthea_uros.changes.kinds import KINDS
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.apply import Difference, apply, describe
-from amalthea_uros.services.changes.change import Change
-from amalthea_uros.services.changes.key import UNSET, Configuration, Kind
-from amalthea_uros.services.changes.kinds import KINDS
 from amalthea_uros.timing.settings import Settings
 
 

@@ -10,11 +10,11 @@ from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.changes.apply import Difference, apply
+from amalthea_uros.changes.change import EXAMPLE, FORM, Change, parse_change, split_target
+from amalthea_uros.changes.key import Configuration
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.changed_model import write_changed
-from amalthea_uros.services.changes.apply import Difference, apply
-from amalthea_uros.services.changes.change import EXAMPLE, FORM, Change, parse_change, split_target
-from amalthea_uros.services.changes.key import Configuration
 from amalthea_uros.services.impact_text import HEADINGS, cells, plain_table, unchanged_text
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.paths import StrPath

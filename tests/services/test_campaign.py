@@ -14,13 +14,13 @@ import campaign_jobs
 import pytest
 from support import ROOT
 
+from amalthea_uros.changes.change import Change
+from amalthea_uros.changes.sweep import parse_sweep
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.services.campaign.campaign import run_campaign
 from amalthea_uros.services.campaign.executors import cluster, processes, serial
 from amalthea_uros.services.campaign.run import Outcome, Run, plan_runs
 from amalthea_uros.services.campaign.tables import table_format, write_table
-from amalthea_uros.services.changes.change import Change
-from amalthea_uros.services.changes.sweep import parse_sweep
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.simulate import SimulationJob
 from amalthea_uros.simulate.options import Options

@@ -7,8 +7,8 @@ from support import MODEL, ROOT
 
 import amalthea_uros as amuros
 from amalthea_uros.analyze.impact import figures
+from amalthea_uros.changes.kinds import KINDS
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.changes.kinds import KINDS
 from amalthea_uros.timing.settings import Settings
 
 SAMPLES = ROOT / "samples"

@@ -7,11 +7,11 @@ from support import ROOT
 
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.changes.apply import apply
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.constraints import Bound, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.services import improvements as improvements_module
 from amalthea_uros.services.analyze import analyze_files
-from amalthea_uros.services.changes.apply import apply
 from amalthea_uros.services.explain import explain
 from amalthea_uros.services.improvements import improvements
 from amalthea_uros.timing.settings import Settings

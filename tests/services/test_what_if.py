@@ -8,9 +8,9 @@ from support import ROOT
 import amalthea_uros as amuros
 from amalthea_uros.analyze.impact import Effect, Part, figures
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.changes.apply import apply
+from amalthea_uros.changes.change import Change, parse_change
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.changes.apply import apply
-from amalthea_uros.services.changes.change import Change, parse_change
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.timing.settings import Settings
 

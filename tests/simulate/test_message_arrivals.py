@@ -12,10 +12,10 @@ from support import ROOT
 
 from amalthea_uros import analyze_system, describe
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.changes.apply import apply
+from amalthea_uros.changes.apply import describe as describe_changes
+from amalthea_uros.changes.change import parse_change
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.changes.apply import apply
-from amalthea_uros.services.changes.apply import describe as describe_changes
-from amalthea_uros.services.changes.change import parse_change
 from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.program.messages import QUEUE_LENGTH

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from amalthea_uros.changes.apply import Difference
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.services.changes.apply import Difference
 from amalthea_uros.services.timing_changes import Happening, TimingChange
 
 #: The mark and the colour of what is added and removed.

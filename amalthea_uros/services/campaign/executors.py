@@ -12,6 +12,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
+from importlib import import_module
 from multiprocessing import active_children, get_context
 from typing import Any, TypeAlias
 
@@ -170,13 +171,13 @@ def cluster(address: str) -> Executor:
 def _connected(address: str) -> Any:
     """A client of the cluster."""
     try:
-        from distributed import Client
+        client: Any = import_module("distributed").Client
     except ImportError:
         raise InvalidArgumentError(
             "a cluster needs the package 'distributed'; install it with: pip install amuros[cluster]"
         ) from None
     try:
-        return Client(address, timeout=10)
+        return client(address, timeout=10)
     except (OSError, ValueError) as error:
         raise InvalidArgumentError(
             f"no Dask scheduler answers at {address!r}: {error}; start one with 'dask scheduler'"

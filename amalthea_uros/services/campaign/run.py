@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
+from amalthea_uros.changes.change import Change
+from amalthea_uros.changes.sweep import Sweep, count_variants, variants
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.changes.change import Change
-from amalthea_uros.services.changes.sweep import Sweep, count_variants, variants
 from amalthea_uros.units import parse_frequency, parse_time
 
 Value: TypeAlias = int | float | str | None

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
 
+from amalthea_uros.changes.key import OPERATING_SYSTEMS, UNSET, Configuration, Key
+from amalthea_uros.changes.values import duration, positive_duration, whole_number
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.os import SERVERS, Duration, Parameter, Parent, Scheduler
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.key import OPERATING_SYSTEMS, UNSET, Configuration, Key
-from amalthea_uros.services.changes.values import duration, positive_duration, whole_number
 from amalthea_uros.timing.scheduling import CAPACITY, PERIOD, standard_policy
 from amalthea_uros.units import Time, time_text
 

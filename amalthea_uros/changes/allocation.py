@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from amalthea_uros.changes.key import ISR_ALLOCATIONS, TASK_ALLOCATIONS, UNSET, Configuration, Key, Place
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.key import ISR_ALLOCATIONS, TASK_ALLOCATIONS, UNSET, Configuration, Key, Place
-from amalthea_uros.services.names import require
 from amalthea_uros.timing.allocation import allocated_cores, scheduler_cores
 
 

@@ -6,14 +6,14 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from amalthea_uros.changes.key import ISRS, RUNNABLES, TASKS, UNSET, Configuration, Key, Place
+from amalthea_uros.changes.values import duration
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.names import listed
 from amalthea_uros.perf.activities import Activity, Call, Demand, Execute, ExecutionNeed, transformed, walk
 from amalthea_uros.perf.distributions import Boundaries, Constant, Distribution, Sampling, highest, lowest
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.key import ISRS, RUNNABLES, TASKS, UNSET, Configuration, Key, Place
-from amalthea_uros.services.changes.values import duration
-from amalthea_uros.services.names import listed
 from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.clocks import frequency_of
 from amalthea_uros.timing.stretches import executed

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from amalthea_uros.changes.change import Change
+from amalthea_uros.changes.sweep import MAX_VARIANTS, Sweep, parse_sweep, variants
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.changes.change import Change
-from amalthea_uros.services.changes.sweep import MAX_VARIANTS, Sweep, parse_sweep, variants
 from amalthea_uros.units import TIME, parse, parse_frequency, parse_time
 
 VALUES = {

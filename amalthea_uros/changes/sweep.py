@@ -10,8 +10,8 @@ from itertools import product
 from math import prod
 from typing import NamedTuple
 
+from amalthea_uros.changes.change import Change, split_assignment, split_target
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.changes.change import Change, split_assignment, split_target
 from amalthea_uros.units import FREQUENCY, TIME, parse
 
 FORM, EXAMPLE = "OBJECT.KEY=FROM..TO/STEP or OBJECT.KEY=A,B,C", "Executor_Task.period=1ms..10ms/1ms"

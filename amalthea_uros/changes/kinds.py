@@ -7,10 +7,8 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.perf.software import Preemption
-from amalthea_uros.services.changes import allocation, execution_time, message, scheduler, stimulus
-from amalthea_uros.services.changes.key import (
+from amalthea_uros.changes import allocation, execution_time, message, scheduler, stimulus
+from amalthea_uros.changes.key import (
     CLOCKS,
     ISR_ALLOCATIONS,
     MODE_LABELS,
@@ -22,7 +20,9 @@ from amalthea_uros.services.changes.key import (
     Kind,
     field_key,
 )
-from amalthea_uros.services.changes.values import duration, one_of, positive_frequency, positive_number, whole_number
+from amalthea_uros.changes.values import duration, one_of, positive_frequency, positive_number, whole_number
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.clocks import frequency_of
 from amalthea_uros.timing.phases import sources
 from amalthea_uros.units import Frequency, frequency_text, time_text

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from amalthea_uros.changes.key import UNSET, Configuration, Key
+from amalthea_uros.changes.values import duration, positive_duration
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Counter
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.key import UNSET, Configuration, Key
-from amalthea_uros.services.changes.values import duration, positive_duration
 from amalthea_uros.timing.arrivals import nominal_period
 from amalthea_uros.timing.phases import counters, first_time, with_counters
 from amalthea_uros.units import Time, time_text

@@ -8,12 +8,12 @@ from functools import reduce
 from typing import Any
 
 from amalthea_uros._internal.similar import similar
+from amalthea_uros.changes.change import Change
+from amalthea_uros.changes.key import UNSET, Configuration, Key
+from amalthea_uros.changes.kinds import FIRST_KEYS, KINDS
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.change import Change
-from amalthea_uros.services.changes.key import UNSET, Configuration, Key
-from amalthea_uros.services.changes.kinds import FIRST_KEYS, KINDS
-from amalthea_uros.services.names import require
 from amalthea_uros.timing.settings import Settings
 
 

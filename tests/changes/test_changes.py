@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from support import ROOT
 
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.changes.apply import apply, describe
+from amalthea_uros.changes.change import Change, parse_change
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf import activities, distributions, events, hardware, mapping, os, software, stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.apply import apply, describe
-from amalthea_uros.services.changes.change import Change, parse_change
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.timing.settings import Settings
 

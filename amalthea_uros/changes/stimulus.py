@@ -6,14 +6,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from amalthea_uros.changes.key import ISRS, STIMULI, TASKS, UNSET, Configuration, Key
+from amalthea_uros.changes.values import duration, positive_duration
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.distributions import Constant, Distribution, Uniform, highest
 from amalthea_uros.perf.events import StimulusEvent
 from amalthea_uros.perf.software import Process, Task
 from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Stimulus, Synthetic
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.changes.key import ISRS, STIMULI, TASKS, UNSET, Configuration, Key
-from amalthea_uros.services.changes.values import duration, positive_duration
 from amalthea_uros.units import time_text
 
 #: The classes of stimuli that have each key.

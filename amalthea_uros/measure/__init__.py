@@ -1,0 +1,1 @@
+"""Times measured in traces: pairing of events, baselines, statistics."""

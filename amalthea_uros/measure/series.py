@@ -1,0 +1,97 @@
+"""What was measured of an object: the values of one quantity, with the events that could not be used."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from amalthea_uros._internal.shown import Shown
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.units import Time
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+class Kind(StrEnum):
+    """What times belong to; an interval is one between two markers of which nothing else is known."""
+
+    PROCESS = "process"
+    RUNNABLE = "runnable"
+    CHAIN = "chain"
+    INTERVAL = "interval"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Counts:
+    """What became of the events of a series that gave no value.
+
+    Attributes
+    ----------
+    incomplete : intervals without a start or without an end, for example at the edges of the log
+    lost : values that gaps in the log, or in numbers that count up, prove to be missing
+    duplicated : events that are there more than once
+    reordered : events that stand before an earlier one
+    """
+
+    incomplete: int = 0
+    lost: int = 0
+    duplicated: int = 0
+    reordered: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Series:
+    """The measured values of one quantity of one object.
+
+    Attributes
+    ----------
+    quantity : by the names of `JobMetric` for processes and runnables, of `ChainQuantity` for chains, `duration` for intervals
+    statistics : None if there is no value
+    values : picoseconds, in the order of their occurrence; None if the trace has only their statistics
+    times : when each value was complete, in picoseconds from the start of the trace; None if that is not known
+    method : how it was measured, in words
+    baseline : what was subtracted from the values, None if nothing was
+    """
+
+    kind: Kind
+    name: str
+    quantity: str
+    statistics: Statistics | None
+    values: NDArray[np.int64] | None = field(default=None, repr=False, compare=False)
+    times: NDArray[np.int64] | None = field(default=None, repr=False, compare=False)
+    counts: Counts = Counts()
+    method: str = ""
+    baseline: Statistics | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Measurement(Shown):
+    """All that was measured in a trace.
+
+    Attributes
+    ----------
+    source : the file, or what the values come from
+    format : of the trace, such as "candump" or "BTF"
+    digest : SHA-256 of the files, as hexadecimal digits; "" if there are none
+    duration : from the first to the last event
+    resolution : smallest step of the time stamps; None if it is not known
+    """
+
+    source: str
+    format: str
+    digest: str
+    duration: Time
+    resolution: Time | None
+    series: tuple[Series, ...]
+    findings: tuple[Finding, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<Measurement of {self.source}: {len(self.series)} series>"
+
+    def find(self, name: str, quantity: str) -> Series | None:
+        """The series of a quantity of an object, None if it was not measured."""
+        return next((each for each in self.series if (each.name, each.quantity) == (name, quantity)), None)

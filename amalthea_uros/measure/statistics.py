@@ -1,0 +1,84 @@
+"""Statistics of measured times.
+
+Percentiles are values that occurred (nearest rank); the standard deviation is that of the values themselves, not an estimate for
+others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import ceil, sqrt
+from typing import TYPE_CHECKING
+
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.units import Time
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+#: The percentiles that are computed where all values are known.
+PERCENTILES = (Fraction(1, 2), Fraction(9, 10), Fraction(95, 100), Fraction(99, 100), Fraction(999, 1000))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Statistics:
+    """Statistics of some values, in picoseconds.
+
+    Attributes
+    ----------
+    count : number of values, at least 1
+    variance : mean squared deviation from the mean, in square picoseconds; None if it is not known
+    percentiles : share of the values -> least value that so many do not exceed; only where there are more than 1 / (1 - share) values
+    """
+
+    count: int
+    min: Time
+    mean: Fraction
+    max: Time
+    variance: Fraction | None
+    percentiles: Mapping[Fraction, Time] = field(default_factory=dict)
+
+    @property
+    def std(self) -> float | None:
+        """The standard deviation."""
+        return None if self.variance is None else sqrt(self.variance)
+
+    @property
+    def peak_to_peak(self) -> Time:
+        """The jitter as difference between maximum and minimum."""
+        return self.max - self.min
+
+
+def statistics_of(values: NDArray[np.int64]) -> Statistics:
+    """The statistics of values in picoseconds.
+
+    Raises
+    ------
+    InvalidArgumentError : there are none.
+    """
+    import numpy as np
+
+    if not len(values):
+        raise InvalidArgumentError("there are no values, so they have no statistics")
+    ordered = np.sort(values)
+    count = len(ordered)
+    # Exact sums: squares of picoseconds exceed 64 bits.
+    listed = ordered.tolist()
+    total = sum(listed)
+    squares = sum(value * value for value in listed)
+    percentiles = {
+        share: int(ordered[ceil(share * count) - 1])
+        for share in PERCENTILES
+        if share == Fraction(1, 2) or count * (1 - share) > 1
+    }
+    return Statistics(
+        count=count,
+        min=int(ordered[0]),
+        mean=Fraction(total, count),
+        max=int(ordered[-1]),
+        variance=Fraction(squares * count - total * total, count * count),
+        percentiles=percentiles,
+    )

@@ -1,0 +1,1 @@
+"""The search for better designs: what may change, what must hold, what is better."""
