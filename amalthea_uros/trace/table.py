@@ -49,7 +49,8 @@ class EventKind(IntEnum):
     Transitions of tasks and ISRs come first, then those of runnables, accesses to data, semaphores, OS events. The states of counting
     semaphores (from `INCREMENT` on) are in traces of other tools. `CHAIN_STEP` is where
     the effect of an occurrence of a chain's stimulus passes a process: the source is the process, the target the chain, the target
-    instance the number of that occurrence, and the note the number of the step, from 0.
+    instance the number of that occurrence, and the note the number of the step, from 0. `GAP` is where a recorder lost events: of its
+    source, or of everything if that is no core; the note is their number, if it is known.
     """
 
     ACTIVATE = 0
@@ -94,6 +95,7 @@ class EventKind(IntEnum):
     FULL = 86
     UNLOCK_FULL = 87
     FREE = 88
+    GAP = 90
 
 
 #: In the column of the note: there is none.
