@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import closing, suppress
 from itertools import islice
 
 from amalthea_uros.services.campaign.executors import Executor, serial
@@ -29,6 +30,24 @@ def run_campaign(job: Job, runs: Sequence[Run], executor: Executor = serial) -> 
                 return
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
                 yield from _outcomes(future, pending.pop(future))
+
+
+def finished_runs(
+    job: Job, runs: Sequence[Run], executor: Executor, on_outcome: Callable[[Outcome], None] | None = None
+) -> tuple[Outcome, ...]:
+    """Execute the runs; their outcomes in the order of the runs. Ctrl-C ends it early, with the runs that are finished.
+
+    Parameters
+    ----------
+    on_outcome : called after each run
+    """
+    outcomes: list[Outcome] = []
+    with suppress(KeyboardInterrupt), closing(run_campaign(job, runs, executor)) as finished:
+        for outcome in finished:
+            outcomes.append(outcome)
+            if on_outcome is not None:
+                on_outcome(outcome)
+    return tuple(sorted(outcomes, key=lambda outcome: outcome.run.number))
 
 
 def _chunks(runs: Sequence[Run], workers: int) -> Iterator[Sequence[Run]]:
