@@ -62,6 +62,9 @@ typealias integer { size = 8; align = 8; signed = false; } := uint8_t;
 typealias integer { size = 16; align = 8; signed = false; } := uint16_t;
 typealias integer { size = 32; align = 8; signed = false; } := uint32_t;
 typealias integer { size = 64; align = 8; signed = false; } := uint64_t;
+typealias integer { size = 64; align = 8; signed = true; } := int64_t;
+typealias integer { size = 32; align = 8; signed = true; } := int32_t;
+typealias integer { size = 8; align = 8; signed = false; encoding = UTF8; } := letter_t;
 trace {
     major = 1; minor = 8; byte_order = ORDER; uuid = "2a6422d0-6cee-11e0-8c08-cb07d7b3a564";
     packet.header := struct { uint32_t magic; uint8_t uuid[16]; uint32_t stream_id; };
@@ -118,16 +121,23 @@ class PacketWriter:
             head = struct.pack(">I", number << 27 | time % 2**27)
         head += struct.pack(f"{order}II17s", thread[0], thread[1], thread[2].encode())
         for code, value in zip(self.forms[name], values, strict=True):
-            head += str(value).encode() + b"\0" if code == "S" else struct.pack(order + code, value)
+            head += _packed(order, code, value)
         return head
 
     def packet(
-        self, begin: int, events: list[bytes], sequence: int = 0, discarded: int = 0, core: int = 0, spare: int = 0
+        self,
+        begin: int,
+        events: list[bytes],
+        sequence: int = 0,
+        discarded: int = 0,
+        core: int = 0,
+        spare: int = 0,
+        length: int = 10**6,
     ) -> bytes:
         content = b"".join(events)
         bits = (_HEAD_SIZE + len(content)) * 8
         head = struct.pack(f"{self.order}I16sI", 0xC1FC1FC1, bytes.fromhex("2a6422d06cee11e08c08cb07d7b3a564"), 0)
-        head += struct.pack(f"{self.order}6QI", begin, begin + 10**8, bits, bits + spare * 8, sequence, discarded, core)
+        head += struct.pack(f"{self.order}6QI", begin, begin + length, bits, bits + spare * 8, sequence, discarded, core)
         return head + content + bytes(spare)
 
     def write(self, folder: Path, *streams: list[bytes]) -> Path:
@@ -136,3 +146,36 @@ class PacketWriter:
         for number, packets in enumerate(streams):
             (folder / f"channel0_{number}").write_bytes(b"".join(packets))
         return folder
+
+
+def ros2_writer(order: str = "<") -> PacketWriter:
+    """A writer with the events of ros2_tracing that are used, and of the scheduler of Linux."""
+    writer, address, text = PacketWriter(order), "uint64_t", "string"
+    writer.define("ros2:rcl_node_init", "QQSS", node_handle=address, rmw_handle=address, node_name=text, namespace=text)
+    handles = {"node_handle": address, "topic_name": text, "queue_depth": address}
+    writer.define("ros2:rcl_publisher_init", "QQQSQ", publisher_handle=address, rmw_publisher_handle=address, **handles)
+    writer.define(
+        "ros2:rcl_subscription_init", "QQQSQ", subscription_handle=address, rmw_subscription_handle=address, **handles
+    )
+    writer.define("ros2:rclcpp_subscription_init", "QQ", subscription_handle=address, subscription=address)
+    writer.define("ros2:rclcpp_subscription_callback_added", "QQ", subscription=address, callback=address)
+    writer.define("ros2:rcl_timer_init", "Qq", timer_handle=address, period="int64_t")
+    writer.define("ros2:rclcpp_timer_callback_added", "QQ", timer_handle=address, callback=address)
+    writer.define("ros2:rclcpp_timer_link_node", "QQ", timer_handle=address, node_handle=address)
+    writer.define("ros2:rclcpp_callback_register", "QS", callback=address, symbol=text)
+    writer.define("ros2:callback_start", "QB", callback=address, is_intra_process="uint8_t")
+    writer.define("ros2:callback_end", "Q", callback=address)
+    writer.define("ros2:rmw_publish", "QQQ", rmw_publisher_handle=address, message=address, timestamp=address)
+    writer.define(
+        "ros2:rmw_take", "QQqB", rmw_subscription_handle=address, message=address, source_timestamp="int64_t", taken="uint8_t"
+    )
+    thread = "letter_t _{0}comm[16]; int32_t _{0}tid; int32_t _{0}prio;"
+    writer.define("sched_switch", "CiiqCii", all=f"{thread.format('prev_')} int64_t _prev_state; {thread.format('next_')}")
+    return writer
+
+
+def _packed(order: str, code: str, value: object) -> bytes:
+    if code in "SC":
+        text = str(value).encode()
+        return text + b"\0" if code == "S" else text.ljust(16, b"\0")
+    return struct.pack(order + code, value)

@@ -1,6 +1,7 @@
 """Checks whether a trace obeys the state charts and the order rules of BTF 2.3.0.
 
-At the begin of a trace, and after a loss of events, everything may be in any state. After a wrong event, the check goes on as if it were right.
+At the begin of a trace, and after a loss of events, everything may be in any state. After a wrong event, the check goes on as if
+it were right.
 """
 
 from __future__ import annotations

@@ -102,13 +102,6 @@ KINDS = (
         remedy="Write the event with which a process leaves the core before that with which the next one enters it.",
     ),
     FindingKind(
-        id="TRC101",
-        title="trace that cannot be written",
-        severity=Severity.ERROR,
-        rationale="The place does not exist, is full, or may not be written to. A former file is untouched.",
-        remedy="Check the path, the permissions and the free space.",
-    ),
-    FindingKind(
         id="TRC020",
         title="damaged part of a CTF trace",
         severity=Severity.ERROR,
@@ -155,5 +148,12 @@ KINDS = (
         rationale="A publication is matched with its callback by the topic and the source stamp. Where one is missing, callbacks are "
         "measured, but not the latency of the message.",
         remedy="Start the recording before the nodes, and record `rmw_publish` and `rmw_take` of all processes.",
+    ),
+    FindingKind(
+        id="TRC101",
+        title="trace that cannot be written",
+        severity=Severity.ERROR,
+        rationale="The place does not exist, is full, or may not be written to. A former file is untouched.",
+        remedy="Check the path, the permissions and the free space.",
     ),
 )

@@ -17,6 +17,7 @@ _MAGIC = 0xC1FC1FC1
 #: A pause of a short clock at its overflow is doubtful if it is so many times the longest one before, and long at all.
 _DOUBTFUL = 2
 _SHORT_PAUSE = 10**10
+_LARGER = "Record into a larger buffer, or fewer kinds of events."
 
 
 class CtfEvent(NamedTuple):
@@ -56,7 +57,7 @@ class Stream:
         self._clock = Clock()
         self._longest = 0
         self._has_times_in_packets = False
-        self._discarded: int | None = None
+        self._discarded = 0
         self._sequence: int | None = None
         self._core: int | None = None
 
@@ -82,10 +83,14 @@ class Stream:
                 yield from self._loss(None)
                 place = self._next_packet(data, place)
                 continue
-            losses = list(self._losses(context))
-            yield from losses
+            lost = self._lost(context)
+            if lost:
+                yield from self._loss(max(lost, 0) or None)
+            if self._misses_packets(context):
+                yield from self._loss(None)
             yield from self._events(decoder, kind, packet)
-            if losses:
+            if lost:
+                # Some recorders count events that are lost before a packet, others those after it, so neither is crossed.
                 yield from self._loss(0)
             place = packet.end
 
@@ -126,25 +131,26 @@ class Stream:
         decoder.end = min(place + content, size)
         return _Packet(min(place + total, size), decoder.end, place + content <= size)
 
-    def _losses(self, context: Fields) -> Iterator[CtfEvent]:
-        """What the counters of a packet say about lost events and packets.
+    def _lost(self, context: Fields) -> int:
+        """How many events more than at the packet before are lost by the count of the recorder; negative if it has started again."""
+        discarded = context.get("events_discarded")
+        if not isinstance(discarded, int):
+            return 0
+        lost, self._discarded = discarded - self._discarded, discarded
+        if lost:
+            self._problems.add("TRC022", Severity.WARNING, "the recorder has lost events", advice=_LARGER)
+        return lost
 
-        Some recorders count events that are lost before a packet, others those after it, so neither end is crossed.
-        """
-        discarded, sequence = context.get("events_discarded"), context.get("packet_seq_num")
-        if isinstance(discarded, int):
-            lost = discarded - (self._discarded or 0)
-            self._discarded = discarded
-            if lost:
-                self._problems.add(
-                    "TRC022", Severity.WARNING, "the recorder has lost events", advice="Record into a larger buffer."
-                )
-                yield from self._loss(max(lost, 0) or None)
-        if isinstance(sequence, int):
-            if self._sequence is not None and sequence != self._sequence + 1:
-                self._problems.add("TRC022", Severity.WARNING, "packets are missing", advice="Record into a larger buffer.")
-                yield from self._loss(None)
-            self._sequence = sequence
+    def _misses_packets(self, context: Fields) -> bool:
+        """Whether packets are missing before one, by their numbers."""
+        sequence = context.get("packet_seq_num")
+        if not isinstance(sequence, int):
+            return False
+        misses = self._sequence is not None and sequence != self._sequence + 1
+        self._sequence = sequence
+        if misses:
+            self._problems.add("TRC022", Severity.WARNING, "packets are missing", advice=_LARGER)
+        return misses
 
     def _events(self, decoder: Decoder, kind: StreamType, packet: _Packet) -> Iterator[CtfEvent]:
         header_type, context_type = kind.event_header, kind.event_context
