@@ -159,7 +159,7 @@ class ThreadStates:
             return
         thread = self._thread(entity)
         if core.thread is not thread and (core.thread is not None or thread.state not in (State.UNKNOWN, State.READY)):
-            self.lose("another thread than that on the core leaves it")
+            self.lose("another thread than the one on the core leaves it")
         self._leave(core, thread, leaving)
 
     def enter_interrupt(self, core_entity: int, entity: int) -> None:
@@ -246,7 +246,7 @@ class ThreadStates:
 
     def _start(self, thread: _Thread, runnable: int) -> None:
         if any(runnable == each for each, _ in thread.runnables):
-            self._report("a runnable that begins again before its end")
+            self.lose("a runnable begins again before its end")
         instance = self._executions[runnable] = self._executions.get(runnable, -1) + 1
         thread.runnables.append((runnable, instance))
         self._rows.add(EventKind.RUNNABLE_START, thread.entity, thread.instance, runnable, instance)
@@ -260,7 +260,7 @@ class ThreadStates:
             if runnable in (None, inner):
                 self._rows.add(EventKind.RUNNABLE_TERMINATE, thread.entity, thread.instance, inner, instance)
                 return True
-            self._report("a runnable that does not end before that in which it began")
+            self._report("a runnable that does not end before the one in which it began", "; it is dropped")
 
     def lose(self, reason: str = "", lost: int = NO_NOTE) -> None:
         """Events have been lost: nothing that is open goes on.
@@ -281,8 +281,8 @@ class ThreadStates:
             core.interrupts.clear()
         self._undecided.clear()
 
-    def _report(self, what: str, effect: str = "") -> None:
-        message = f"{what}{effect}: events are missing"
+    def _report(self, what: str, effect: str = "; it is ignored") -> None:
+        message = f"{what}{effect}"
         self._problems.add(
             "TRC021", Severity.WARNING, message, Place(), "Record with a larger buffer, or fewer kinds of events."
         )

@@ -48,6 +48,7 @@ class Decoder:
 
     Attributes
     ----------
+    data : the file
     position, end : in bits of the file
     stamps : values that clocks show, with their types, since the list was cleared
     """
@@ -55,7 +56,7 @@ class Decoder:
     def __init__(self, data: mmap | bytes) -> None:
         self.position = self.end = 0
         self.stamps: list[tuple[int, Integer]] = []
-        self._data = data
+        self.data = data
         self._start = 0
         self._scopes: list[Fields] = []
         self._steps = 0
@@ -96,7 +97,7 @@ class Decoder:
         end = self.position + plan.layout.size * 8
         if end > self.end:
             raise PacketEndError("the packet ends within an event")
-        values: Sequence[Value] = plan.layout.unpack_from(self._data, self.position >> 3)
+        values: Sequence[Value] = plan.layout.unpack_from(self.data, self.position >> 3)
         self.position = end
         if plan.texts:
             values = list(values)
@@ -136,7 +137,7 @@ class Decoder:
         if last > self.end:
             raise PacketEndError("the packet ends within an event")
         self.position = last
-        octets = self._data[first >> 3 : (last + 7) >> 3]
+        octets = self.data[first >> 3 : (last + 7) >> 3]
         value = int.from_bytes(octets, "big" if kind.is_big_endian else "little")
         value >>= len(octets) * 8 - (first & 7) - size if kind.is_big_endian else first & 7
         value &= (1 << size) - 1
@@ -153,7 +154,7 @@ class Decoder:
         if number > (self.end >> 3) - first:
             raise PacketEndError("the packet ends within an event")
         self.position += number * 8
-        return bytes(self._data[first : first + number])
+        return bytes(self.data[first : first + number])
 
     def _float(self, kind: Float) -> float:
         self._align(kind.align)
@@ -165,7 +166,7 @@ class Decoder:
     def _string(self) -> str:
         self._align(8)
         first = self.position >> 3
-        last = self._data.find(b"\0", first, self.end >> 3)
+        last = self.data.find(b"\0", first, self.end >> 3)
         if last < 0:
             raise PacketEndError("the packet ends within a text")
         text = self._octets(last + 1 - first)

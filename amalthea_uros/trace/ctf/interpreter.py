@@ -30,6 +30,7 @@ class Interpreter(ABC):
 
     def __init__(self, rows: EventRows, states: ThreadStates, problems: Problems, names: UniqueNames) -> None:
         self._rows, self._states, self._problems, self._names = rows, states, problems, names
+        self._entities: dict[tuple[EntityKind, str], int] = {}
 
     @classmethod
     def events(cls, names: Iterable[str]) -> list[str]:
@@ -53,4 +54,7 @@ class Interpreter(ABC):
         return self._entity(EntityKind.CORE, f"Core {number if isinstance(number, int) else 0}")
 
     def _entity(self, kind: EntityKind, name: str) -> int:
-        return self._rows.index.index(kind, name)
+        found = self._entities.get((kind, name))
+        if found is None:
+            found = self._entities[kind, name] = self._rows.index.index(kind, name)
+        return found

@@ -17,6 +17,7 @@ _MAGIC = 0xC1FC1FC1
 #: A pause of a short clock at its overflow is doubtful if it is so many times the longest one before, and long at all.
 _DOUBTFUL = 2
 _SHORT_PAUSE = 10**10
+_WORD = 64
 _LARGER = "Record into a larger buffer, or fewer kinds of events."
 
 
@@ -57,6 +58,7 @@ class Stream:
         self._clock = Clock()
         self._longest = 0
         self._has_times_in_packets = False
+        self._latest: int | None = None
         self._discarded = 0
         self._sequence: int | None = None
         self._core: int | None = None
@@ -117,16 +119,16 @@ class Stream:
         ):
             raise DecodingError("the sizes of a packet are wrong")
         if place + total > size:
+            if self._next_packet(decoder.data, place) < size:
+                raise DecodingError("the sizes of a packet are wrong")
             self._report("the file ends within a packet; the events before that are used")
-        if "timestamp_begin" in context:
-            self._has_times_in_packets = True
+        begin, end = context.get("timestamp_begin"), context.get("timestamp_end")
+        self._has_times_in_packets = isinstance(begin, int)
+        self._latest = end if isinstance(begin, int) and isinstance(end, int) and end >= begin else None
         if decoder.stamps:
             stamp, kind = decoder.stamps[0]
             self._clock = self._metadata.clocks.get(kind.clock, Clock())
-            if kind.size == 64:
-                self._set(stamp)
-            else:
-                self._move(stamp, kind)
+            self._set(self._whole(stamp, kind))
         self._core = context.get("cpu_id", self._core)
         decoder.end = min(place + content, size)
         return _Packet(min(place + total, size), decoder.end, place + content <= size)
@@ -194,29 +196,34 @@ class Stream:
             raise DecodingError("events have no times")
         stamp, kind = stamps[0]
         self._clock = self._metadata.clocks.get(kind.clock, self._clock)
-        if kind.size < 64:
-            return self._move(stamp, kind)
-        self._set(stamp)
-        return False
+        before, whole = self._stamp, self._whole(stamp, kind)
+        if self._latest is not None and whole > self._latest:
+            raise DecodingError("an event is later than the end of its packet")
+        self._set(whole)
+        return not self._has_times_in_packets and kind.size < _WORD and self._is_doubtful(before, whole, kind)
+
+    def _whole(self, stamp: int, kind: Integer) -> int:
+        """A stamp with the bits that a short clock does not show: it has overflown once at most since the last one."""
+        if kind.size == _WORD:
+            return stamp
+        size = 1 << kind.size
+        whole = (self._stamp & -size) | stamp
+        return whole if whole >= self._stamp else whole + size
 
     def _set(self, stamp: int) -> None:
         self._stamp = stamp
         self._time = self._clock.time(stamp)
 
-    def _move(self, stamp: int, kind: Integer) -> bool:
-        """Go on to a stamp of a short clock, which overflows; whether the pause at an overflow is doubtful."""
-        before, size = self._stamp, 1 << kind.size
-        time = (before & -size) | stamp
-        has_overflown = time < before
-        self._set(time + size if has_overflown else time)
-        pause = self._clock.time(self._stamp) - self._clock.time(before)
-        is_doubtful = has_overflown and not self._has_times_in_packets and pause > max(_DOUBTFUL * self._longest, _SHORT_PAUSE)
-        if is_doubtful:
+    def _is_doubtful(self, before: int, after: int, kind: Integer) -> bool:
+        """Whether a clock has overflown and the pause is much longer than all before."""
+        pause = self._clock.time(after) - self._clock.time(before)
+        if before >> kind.size != after >> kind.size and pause > max(_DOUBTFUL * self._longest, _SHORT_PAUSE):
             message = "the clock has overflown early, or there is an unusually long pause; nothing is paired over it"
             self._problems.add("TRC023", Severity.WARNING, message, advice="Record with stamps of 64 bits.")
-        elif before:
+            return True
+        if before:
             self._longest = max(self._longest, pause)
-        return is_doubtful
+        return False
 
     def _loss(self, lost: int | None) -> Iterator[CtfEvent]:
         """A loss at the present time; none before the first event, where nothing can be open."""
