@@ -131,6 +131,17 @@ def test_threads_of_the_same_name_and_without_one(read):
     assert [line.split(" ", 2)[2] for line in lines] == ["A#0", "A (0x2)#0", "thread 0x3#0", "thread 0x4#0"]
 
 
+def test_a_thread_that_is_created_has_not_executed_before(read):
+    """It gets its name after its creation; without the creation the first job would go on with an unknown start."""
+    events = [zephyr_event(1, "thread_create", (1, "unknown")), zephyr_event(2, "thread_switched_in", (1, "A"))]
+    assert read(events)[0] == ["2 start A#0"]
+
+
+def test_another_thread_at_the_same_address(read):
+    lines, _ = read([zephyr_event(time, "thread_ready", (1, name)) for time, name in [(1, "A"), (2, "B")]])
+    assert lines == ["1 activate A#0", "2 activate B#0"]
+
+
 def test_a_clock_that_overflows(read):
     """Every ms an event: stamps of 32 bits overflow after 4.295 s, which is no finding."""
     times = range(0, 9 * 10**9, 10**7)

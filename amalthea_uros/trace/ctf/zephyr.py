@@ -11,15 +11,22 @@ from typing import ClassVar
 
 from amalthea_uros.trace.ctf.interpreter import Handler, Interpreter
 from amalthea_uros.trace.ctf.streams import CtfEvent
+from amalthea_uros.trace.event_rows import EventRows
+from amalthea_uros.trace.problems import Problems
 from amalthea_uros.trace.table import EntityKind
 from amalthea_uros.trace.thread_log import add_mark
-from amalthea_uros.trace.thread_states import Leaving
+from amalthea_uros.trace.thread_states import Leaving, ThreadStates
+from amalthea_uros.trace.unique_names import UniqueNames
 
 _IDLE = re.compile(r"idle(?: ?[0-9]{1,3})?", re.IGNORECASE)
 
 
 class Zephyr(Interpreter):
     """Takes the events of Zephyr."""
+
+    def __init__(self, rows: EventRows, states: ThreadStates, problems: Problems, names: UniqueNames) -> None:
+        super().__init__(rows, states, problems, names)
+        self._created_threads: set[int] = set()
 
     def finish(self) -> None:
         """Nothing: all is known when it happens."""
@@ -37,9 +44,8 @@ class Zephyr(Interpreter):
             self._states.switch_out(self._core_of(event), thread)
 
     def _created(self, event: CtfEvent) -> None:
-        thread = self._thread(event)
-        if thread is not None:
-            self._states.make_known(thread)
+        """A thread gets its name after its creation, so it is known by the next event that has one."""
+        self._created_threads.add(event.fields.get("thread_id", 0))
 
     def _ready(self, event: CtfEvent) -> None:
         thread = self._thread(event)
@@ -78,7 +84,12 @@ class Zephyr(Interpreter):
         if _IDLE.fullmatch(name):
             return None
         known = "" if name == "unknown" else name
-        return self._entity(EntityKind.TASK, self._names.name(number, known, f"{number:#x}", "thread"))
+        # The number is an address, at which there can be another thread later.
+        thread = self._entity(EntityKind.TASK, self._names.name((number, known), known, f"{number:#x}", "thread"))
+        if number in self._created_threads:
+            self._created_threads.remove(number)
+            self._states.make_known(thread)
+        return thread
 
     handlers: ClassVar[dict[str, Handler]] = {
         "thread_switched_in": _switched_in,
@@ -86,6 +97,7 @@ class Zephyr(Interpreter):
         "thread_create": _created,
         "thread_ready": _ready,
         "thread_pending": _pending,
+        "thread_suspend": _pending,
         "thread_abort": _aborted,
         "isr_enter": _isr_enter,
         "isr_exit": _isr_exit,
