@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Protocol, cast
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.ctf.folders import has_metadata
+from amalthea_uros.trace.file_heads import first_characters
 from amalthea_uros.trace.table import Entity, EventTable
-from amalthea_uros.trace.text_lines import first_characters
 
 if TYPE_CHECKING:
     import numpy as np

@@ -44,18 +44,6 @@ def opened_text(path: Path, problems: Problems) -> Iterator[Iterator[str]]:
         raise _not_readable(path, f"the file cannot be read: {error.strerror or error}") from None
 
 
-def first_characters(path: Path, number: int) -> str:
-    """The begin of a file, nothing of one that cannot be read; pipes are left alone, since they can be read only once."""
-    if not path.is_file():
-        return ""
-    opening = gzip.open if path.name.lower().endswith(".gz") else open
-    try:
-        with opening(path, "rt", encoding="utf-8-sig", errors="replace") as stream:
-            return stream.read(number)
-    except (OSError, *_DAMAGED):
-        return ""
-
-
 class _LineTooLongError(Exception):
     def __init__(self, line: int) -> None:
         self.line = line

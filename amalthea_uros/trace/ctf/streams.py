@@ -230,7 +230,7 @@ class Stream:
         if self._time:
             yield CtfEvent(self._time, "", self._core, {}, {}, lost)
 
-    def _next_packet(self, data: mmap.mmap, place: int) -> int:
+    def _next_packet(self, data: mmap.mmap | bytes, place: int) -> int:
         """Where the next magic number is, or the end of the file."""
         header = self._metadata.packet_header
         magic = dict(header.fields).get("magic") if header is not None else None
