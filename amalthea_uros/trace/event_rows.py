@@ -31,6 +31,8 @@ class EventRows:
         self._patterns: list[Pattern] = []
         self._numbers: dict[Pattern, int] = {}
         self._rows: list[list[int]] = []
+        self._last: list[int] | None = None
+        self._gap: list[int] | None = None
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -60,17 +62,20 @@ class EventRows:
         """Add an event at the present time; its row can be changed until it is taken."""
         row = [self.time, self._pattern(kind, source, target), source_instance, instance, note, self._line]
         self._rows.append(row)
+        self._last = row
         return row
 
     def add_gap(self, lost: int = NO_NOTE) -> None:
-        """Add the place of a loss of events of all sources.
+        """Add the place of a loss of events of all sources, once where several are lost; before the first event nothing can be.
 
         Parameters
         ----------
         lost : number of events
         """
+        if self._origin is None or (lost == NO_NOTE and self._gap is not None and self._gap is self._last):
+            return
         recorder = self.index.index(EntityKind.SCHEDULER, "recorder")
-        self.add(EventKind.GAP, recorder, 0, recorder, 0, lost)
+        self._gap = self.add(EventKind.GAP, recorder, 0, recorder, 0, lost)
 
     def change_kind(self, row: list[int], kind: EventKind) -> None:
         """Let an event that has not been taken be one of another kind."""

@@ -61,10 +61,16 @@ class ThreadLogReader(LineReader):
         return self._index.index(EntityKind.RUNNABLE, name)
 
     def _move_to(self, time: int, number: int, text: str) -> bool:
-        return self._rows.move_to(time, number, Place(number, 1, text))
+        """Whether an event can be at a time; without it, what is open cannot go on."""
+        is_in_order = self._rows.move_to(time, number, Place(number, 1, text))
+        if not is_in_order:
+            self._states.lose()
+        return is_in_order
 
     def _reject(self, message: str, number: int, text: str) -> None:
+        """Report a line that may have been an event; without it, what is open cannot go on."""
         self._problems.add("TRC002", Severity.ERROR, f"{message}; this line is ignored", Place(number, 1, text))
+        self._states.lose()
 
     def _leave_out(self, message: str, number: int, text: str) -> None:
         self._problems.add("TRC003", Severity.WARNING, f"{message}; it is ignored", Place(number, 1, text))

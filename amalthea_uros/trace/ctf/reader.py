@@ -78,8 +78,12 @@ class Reader:
                 self._states.lose(lost=NO_NOTE if event.lost is None else event.lost)
             return
         interpreter = interpreters.get(event.name)
-        if interpreter is not None and self._rows.move_to(event.time, number, Place()):
+        if interpreter is None:
+            return
+        if self._rows.move_to(event.time, number, Place()):
             interpreter.add(event)
+        else:
+            self._states.lose()
 
     def _traces(self) -> Iterator[tuple[Path, Metadata]]:
         for folder in trace_folders(self._path):

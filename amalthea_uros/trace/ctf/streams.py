@@ -129,7 +129,11 @@ class Stream:
             stamp, kind = decoder.stamps[0]
             self._clock = self._metadata.clocks.get(kind.clock, Clock())
             self._set(self._whole(stamp, kind))
-        self._core = context.get("cpu_id", self._core)
+        core = context.get("cpu_id", self._core)
+        if self._core not in (None, core):
+            message = "a file has packets of several cores, of which the times are not in order"
+            self._problems.add("TRC020", Severity.ERROR, message, advice="Split it, e.g. with split_ctf_streams.py of Zephyr.")
+        self._core = core
         decoder.end = min(place + content, size)
         return _Packet(min(place + total, size), decoder.end, place + content <= size)
 
