@@ -160,3 +160,14 @@ class Walk:
 def random_trace(random: Random, steps: int = 60, **options) -> EventTable:
     walk = Walk(random, **options)
     return table(walk.entities, walk.rows_of(steps))
+
+
+def told(tables: Iterable[EventTable]) -> list[str]:
+    """The events as short texts: time in ns, kind, job and, unless it is a core or the same, its source."""
+    lines = []
+    for time, kind, source, job, target, instance, note in said(tables):
+        cause = "" if source == target or source.kind is EntityKind.CORE else f" by {source.name}#{job}"
+        step = f" step {note}" if kind == EventKind.CHAIN_STEP else ""
+        what = "" if kind == EventKind.GAP else f" {target.name}#{instance}"
+        lines.append(f"{time / 1000:.12g} {EventKind(kind).name.lower()}{what}{cause}{step}")
+    return lines

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Protocol, cast
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.trace.ctf.folders import has_metadata
+from amalthea_uros.trace.file_heads import first_characters
 from amalthea_uros.trace.table import Entity, EventTable
 
 if TYPE_CHECKING:
@@ -17,6 +19,18 @@ if TYPE_CHECKING:
 
 #: The modules that read a format, by the ends of file names. `.gz` may follow each of them.
 READERS = {".btf": "btf_reader", ".csv": "csv_reader"}
+#: The modules of text formats that are recognised by the first lines, whatever the file is called, and what they are called.
+RECOGNISED = {
+    "task_events": "TRACE32 task events",
+    "ftrace_text": "ftrace text (NuttX)",
+    "systemview_csv": "SystemView CSV",
+    "tracealyzer_csv": "Tracealyzer CSV",
+}
+#: The names of formats by the modules that read them.
+FORMATS = {"btf_reader": "BTF", "csv_reader": "CSV", **RECOGNISED, "ctf.reader": "CTF"}
+#: The ends of names of files whose contents are looked at, and so many characters of them.
+_AMBIGUOUS = (".csv", ".txt", ".log", ".trace", ".ftrace")
+_HEAD = 1 << 16
 
 
 class TraceReader(Protocol):
@@ -43,19 +57,32 @@ class TraceReader(Protocol):
         """The same, with the number of the line of each event."""
 
 
+def format_of(path: Path) -> str | None:
+    """The module that reads a trace, a key of `FORMATS`, by the name and the first lines of the file; None if no one does."""
+    if path.is_dir() and has_metadata(path):
+        return "ctf.reader"
+    name = path.name.lower().removesuffix(".gz")
+    if name.endswith(_AMBIGUOUS):
+        head = first_characters(path, _HEAD)
+        for module in RECOGNISED:
+            if import_module(f"amalthea_uros.trace.{module}").matches(head):
+                return module
+    return next((module for suffix, module in READERS.items() if name.endswith(suffix)), None)
+
+
 def open_trace(path: Path) -> TraceReader:
-    """A reader for a file, by the end of its name.
+    """A reader for a file or a folder, by its name and content.
 
     Raises
     ------
     InvalidArgumentError : no reader is known for it.
     ReadError : when events are read, if the file cannot be.
     """
-    name = path.name.lower().removesuffix(".gz")
-    module = next((module for suffix, module in READERS.items() if name.endswith(suffix)), None)
+    module = format_of(path)
     if module is None:
         raise InvalidArgumentError(
             f"the format of the trace {path.name!r} is not known; the name of the file must end in one of {', '.join(READERS)}, "
-            "and may be followed by .gz, e.g. run.btf.gz"
+            "and may be followed by .gz, e.g. run.btf.gz; or it is a folder with a CTF trace, or a text file of one of: "
+            f"{', '.join(RECOGNISED.values())}"
         )
     return cast("Callable[[Path], TraceReader]", import_module(f"amalthea_uros.trace.{module}").Reader)(path)

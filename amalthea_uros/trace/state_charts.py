@@ -1,6 +1,7 @@
 """Checks whether a trace obeys the state charts and the order rules of BTF 2.3.0.
 
-At the begin of a trace, everything may be in any state. After a wrong event, the check goes on as if it were right.
+At the begin of a trace, and after a loss of events, everything may be in any state. After a wrong event, the check goes on as if
+it were right.
 """
 
 from __future__ import annotations
@@ -117,6 +118,9 @@ class StateCharts:
         if event.time < self._last_time:
             self._problems.add("TRC004", Severity.ERROR, "the time is less than that of an event before", event.place)
         self._last_time = event.time
+        if event.kind is EventKind.GAP:
+            self._forget()
+            return
         self._check_instance(event)
         self._check_source(event)
         if event.kind in PROCESS:
@@ -127,6 +131,20 @@ class StateCharts:
             self._check_semaphore(event)
         elif event.kind in ACCESS:
             self._check_access(event)
+
+    def _forget(self) -> None:
+        """Take all states as unknown."""
+        for known in (
+            self._last_instances,
+            self._triggers,
+            self._jobs,
+            self._first_jobs,
+            self._last_ended,
+            self._cores,
+            self._semaphores,
+            self._accesses,
+        ):
+            known.clear()
 
     def _check_instance(self, event: _Event) -> None:
         if event.kind in _COUNTED:

@@ -90,18 +90,25 @@ class Timeline:
                 self._start_runnable(time, source, source_instance, target)
             elif kind == EventKind.RUNNABLE_TERMINATE:
                 self._end_runnable(time, source, source_instance, target)
+            elif kind == EventKind.GAP:
+                self._end_all(time)
             elif kind == EventKind.CHAIN_STEP:
                 self._marks.append(Mark(time, source, Change.STEP, "", target, _flow(target, instance), note))
         return self._taken()
 
     def finish(self) -> list[Mark]:
         """The ends of the slices that are still open after the last event."""
-        for track in self._executing:
-            self._marks.append(Mark(self._last, track, Change.END))
-        for process in list(self._depths):
-            self._hide(self._last, process)
-        self._executing.clear()
+        self._end_all(self._last)
         return self._taken()
+
+    def _end_all(self, time: int) -> None:
+        """End all slices; how the jobs go on is not known."""
+        for track in self._executing:
+            self._marks.append(Mark(time, track, Change.END))
+        for process in list(self._depths):
+            self._hide(time, process)
+        self._executing.clear()
+        self._jobs.clear()
 
     def _taken(self) -> list[Mark]:
         """The marks that have been made, which are no longer kept."""

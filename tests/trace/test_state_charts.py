@@ -247,3 +247,10 @@ def test_findings_have_the_line_of_the_file(tmp_path):
         ("TRC010", 13),  # Task_A is resumed, but has not been preempted
     ]
     assert "illegal transition of 'Task_A': resume in state running" in findings[1].message
+
+
+def test_after_a_loss_of_events_anything_can_be_in_any_state():
+    charts = StateCharts()
+    lost = [(0, K.ACTIVATE, TASK_A, 0, TASK_A, 0), (1, K.START, CORE, 0, TASK_A, 0), (2, K.GAP, SEM, 0, SEM, 0)]
+    charts.check(table(ENTITIES, [*lost, (3, K.RESUME, CORE, 0, TASK_A, 4), (4, K.TERMINATE, CORE, 0, TASK_A, 4)]))
+    assert charts.findings == ()

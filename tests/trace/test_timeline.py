@@ -106,3 +106,9 @@ def test_without_the_suspensions_of_runnables_the_picture_is_the_same(random):
     trace = random_trace(random, steps=150)
     without = trace.where((trace.kind != K.RUNNABLE_SUSPEND) & (trace.kind != K.RUNNABLE_RESUME))
     assert list(Timeline().marks(without)) == list(Timeline().marks(trace))
+
+
+def test_what_is_open_ends_where_events_are_lost():
+    shown = marks([(0, K.ACTIVATE, STI_A, 0, TASK_A, 0), (1, K.START, CORE, 0, TASK_A, 0), (5, K.GAP, STI_A, 0, STI_A, 0)])
+    assert slices(shown, CORE) == [(1, 5, 0, TASK_A)]
+    assert slices(shown, TASK_A) == [(0, 1, 0, "active"), (1, 5, 0, "running")]

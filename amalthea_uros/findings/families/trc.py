@@ -24,7 +24,8 @@ KINDS = (
         id="TRC003",
         title="unknown event",
         severity=Severity.WARNING,
-        rationale="BTF does not define the event for entities of this type, so it is ignored.",
+        rationale="The format does not define the event for entities of this type, or the event is not about scheduling, interrupts, "
+        "runnables or data. It is ignored.",
         remedy="Check the spelling; if the event is an extension of another tool, nothing needs to be done.",
     ),
     FindingKind(
@@ -99,6 +100,54 @@ KINDS = (
         severity=Severity.ERROR,
         rationale="A core executes one process at a time, which leaves it on the same core.",
         remedy="Write the event with which a process leaves the core before that with which the next one enters it.",
+    ),
+    FindingKind(
+        id="TRC020",
+        title="damaged part of a CTF trace",
+        severity=Severity.ERROR,
+        rationale="The bytes do not fit the metadata, or the file ends within a packet. Events are left out up to the next packet, and "
+        "intervals that are open there are dropped.",
+        remedy="Check that the files were copied completely, and that `metadata` is of the build that was recorded.",
+    ),
+    FindingKind(
+        id="TRC021",
+        title="event that does not follow from those before",
+        severity=Severity.WARNING,
+        rationale="A thread leaves a core on which it was not, or an interval ends that has not begun: events between are missing. "
+        "At the begin of a recording this is normal.",
+        remedy="Record into a larger buffer, or fewer kinds of events.",
+    ),
+    FindingKind(
+        id="TRC022",
+        title="events that the recorder has lost",
+        severity=Severity.WARNING,
+        rationale="The recorder says itself that events or packets are missing. Intervals that are open there are dropped, so maxima "
+        "may be missing.",
+        remedy="Record into a larger buffer, or fewer kinds of events.",
+    ),
+    FindingKind(
+        id="TRC023",
+        title="doubtful overflow of the clock",
+        severity=Severity.WARNING,
+        rationale="A stamp of less than 64 bits is less than the one before, and the pause that this means is much longer than all "
+        "pauses before. In older releases of Zephyr stamps start again whenever the cycle counter does. Intervals that are open "
+        "there are dropped; times after it may be too late by a constant.",
+        remedy="Record with stamps of 64 bits.",
+    ),
+    FindingKind(
+        id="TRC024",
+        title="metadata of a CTF trace that cannot be understood",
+        severity=Severity.ERROR,
+        rationale="The file `metadata` says what the bytes of the events mean; without it nothing can be read.",
+        remedy="Copy `metadata` from the build that was recorded.",
+    ),
+    FindingKind(
+        id="TRC025",
+        title="messages of ROS 2 that cannot be followed",
+        severity=Severity.INFO,
+        rationale="A publication is matched with its callback by the topic and the source stamp. Where one is missing, callbacks are "
+        "measured, but not the latency of the message.",
+        remedy="Start the recording before the nodes, and record `rmw_publish` and `rmw_take` of all processes.",
     ),
     FindingKind(
         id="TRC101",

@@ -1,0 +1,125 @@
+"""Reads CTF traces: the events of all streams in the order of time, for what understands them (Zephyr, Linux, ROS 2)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from heapq import merge
+from pathlib import Path
+
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.errors import ReadError
+from amalthea_uros.trace.ctf.folders import METADATA, stream_files, trace_folders
+from amalthea_uros.trace.ctf.interpreter import Interpreter
+from amalthea_uros.trace.ctf.linux import LinuxScheduler
+from amalthea_uros.trace.ctf.metadata import Metadata, read_metadata
+from amalthea_uros.trace.ctf.ros2 import Ros2
+from amalthea_uros.trace.ctf.streams import CtfEvent, Stream
+from amalthea_uros.trace.ctf.tokens import MetadataError
+from amalthea_uros.trace.ctf.zephyr import Zephyr
+from amalthea_uros.trace.entity_index import EntityIndex
+from amalthea_uros.trace.event_rows import EventRows
+from amalthea_uros.trace.problems import Place, Problems
+from amalthea_uros.trace.row_tables import BLOCK, NumberedTable
+from amalthea_uros.trace.table import NO_NOTE, Entity, EventTable
+from amalthea_uros.trace.thread_states import ThreadStates
+from amalthea_uros.trace.unique_names import UniqueNames
+
+
+class Reader:
+    """Gives the events of the traces in a folder; `amalthea_uros.trace.readers.TraceReader` tells how it is used."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._problems = Problems(path)
+        self._of_files: list[Problems] = []
+        self._index = EntityIndex()
+        self._rows = EventRows(self._index, self._problems)
+        self._states = ThreadStates(self._rows, self._problems)
+
+    @property
+    def entities(self) -> Sequence[Entity]:
+        """The entities so far."""
+        return self._index.entities
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """The problems so far."""
+        return tuple(finding for problems in (*self._of_files, self._problems) for finding in problems.findings)
+
+    def __iter__(self) -> Iterator[EventTable]:
+        return (table for table, _ in self.numbered())
+
+    def numbered(self) -> Iterator[NumberedTable]:
+        """The events, with the number of each in the order of the trace in the place of the line.
+
+        Raises
+        ------
+        ReadError : no metadata can be read.
+        """
+        traces = list(self._traces())
+        if not traces:
+            raise ReadError(self.findings)
+        interpreters = _interpreters(self._rows, self._states, self._problems, [metadata for _, metadata in traces])
+        streams = [
+            Stream(path, metadata, self._problems_of(path)) for folder, metadata in traces for path in stream_files(folder)
+        ]
+        for number, event in enumerate(merge(*streams, key=lambda each: each.time), 1):
+            self._add(event, number, interpreters)
+            if number % BLOCK == 0 and (table := self._states.take()) is not None:
+                yield table
+        for interpreter in interpreters.values():
+            interpreter.finish()
+        if (table := self._states.take(is_end=True)) is not None:
+            yield table
+
+    def _add(self, event: CtfEvent, number: int, interpreters: dict[str, Interpreter]) -> None:
+        if not event.name:
+            if self._rows.move_to(event.time, number, Place()):
+                self._states.lose(lost=NO_NOTE if event.lost is None else event.lost)
+            return
+        interpreter = interpreters.get(event.name)
+        if interpreter is None:
+            return
+        if self._rows.move_to(event.time, number, Place()):
+            interpreter.add(event)
+        else:
+            self._states.lose()
+
+    def _traces(self) -> Iterator[tuple[Path, Metadata]]:
+        for folder in trace_folders(self._path):
+            path = folder / METADATA
+            try:
+                yield folder, read_metadata(path)
+            except MetadataError as error:
+                advice = "Use the metadata of the very build that was recorded."
+                self._problems_of(path).add(
+                    "TRC024", Severity.ERROR, f"the metadata are wrong: {error}", Place(error.line), advice
+                )
+            except OSError as error:
+                self._problems_of(path).add("TRC001", Severity.ERROR, f"the file cannot be read: {error.strerror or error}")
+
+    def _problems_of(self, path: Path) -> Problems:
+        self._of_files.append(Problems(path))
+        return self._of_files[-1]
+
+
+def _interpreters(
+    rows: EventRows, states: ThreadStates, problems: Problems, traces: Sequence[Metadata]
+) -> dict[str, Interpreter]:
+    """What understands the events of some traces, by the names of the events."""
+    names = {event.name for metadata in traces for stream in metadata.streams.values() for event in stream.events.values()}
+    makers, unique = (Zephyr, LinuxScheduler, Ros2), UniqueNames()
+    found: dict[str, Interpreter] = {}
+    for maker in makers:
+        known = maker.events(names)
+        if known:
+            found |= dict.fromkeys(known, maker(rows, states, problems, unique))
+    if not found:
+        message = "the trace has no events of Zephyr, of the scheduler of Linux, or of ros2_tracing"
+        problems.add(
+            "TRC003",
+            Severity.WARNING,
+            f"{message}; its events are ignored",
+            advice="Convert it to CSV.",
+        )
+    return found
