@@ -12,8 +12,9 @@ from amalthea_uros.analyze.results import CallbackResult, JobMetric, Metric, Pro
 from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
 from amalthea_uros.perf.constraints import Bound, JitterLimit, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.jitter import is_deviation_from_period, jitter_name, jitter_of, nominal_period
+from amalthea_uros.timing.jitter import is_deviation_from_period, jitter_name, jitter_of
 from amalthea_uros.timing.notes import Notes
+from amalthea_uros.timing.releases import activation_period
 from amalthea_uros.units import Time
 
 #: What the analysis computes; a running time is bounded by the net execution time, and each kind of waiting by all waiting.
@@ -108,7 +109,7 @@ def _judged_jitter(
         ends, spread = _peak_to_peak(holders, limit.metric)
     else:
         process = system.processes.get(requirement.process or "")
-        period = None if process is None else nominal_period(process, system)
+        period = None if process is None else activation_period(process, system)
         ends = Ends() if period is None else _deviation(holders, limit.metric, period)
         if holders and period is None:
             name = requirement.process or requirement.runnable

@@ -41,8 +41,8 @@ from amalthea_uros.simulate.results import (
 )
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.deadlines import implicit_deadline
-from amalthea_uros.timing.jitter import jitter_name, nominal_period
-from amalthea_uros.timing.releases import response_time_limits
+from amalthea_uros.timing.jitter import jitter_name
+from amalthea_uros.timing.releases import activation_period, response_time_limits
 from amalthea_uros.units import Time, time_text
 
 #: A constraint that is about occurrences.
@@ -126,7 +126,7 @@ def _requirement(
     process = next((each for each in processes if each.name == requirement.process), None)
     runnable = next((each for each in runnables if each.name == requirement.runnable), None)
     if process is not None:
-        period = nominal_period(system.processes[process.name], system)
+        period = activation_period(system.processes[process.name], system)
         values = limited_values(limit, process, duration, period)
     elif runnable is not None:
         values = limited_values_of_runnable(limit, runnable)

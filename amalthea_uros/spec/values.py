@@ -42,6 +42,10 @@ def _quantity(parse: Callable[[str], Any], dimension: units.Dimension) -> Callab
     return convert
 
 
+def _with_unit(value: Any) -> Any:
+    return "0 s" if value == 0 and isinstance(value, int) and not isinstance(value, bool) else value
+
+
 def _positive(value: Any) -> Any:
     if value <= 0:
         raise unexpected("must be greater than zero")
@@ -138,6 +142,14 @@ _BIT_RATE = BeforeValidator(_quantity(units.parse_bit_rate, units.BIT_RATE))
 Duration: TypeAlias = Annotated[int, _TIME, AfterValidator(_positive), _text_schema(units.TIME)]
 #: A time of zero or more, in picoseconds.
 Offset: TypeAlias = Annotated[int, _TIME, AfterValidator(_not_negative), _text_schema(units.TIME, zero=True)]
+#: The same, or the number 0, which needs no unit.
+OffsetOrNumberZero: TypeAlias = Annotated[
+    int,
+    _TIME,
+    BeforeValidator(_with_unit),
+    AfterValidator(_not_negative),
+    _text_schema(units.TIME, zero=True),
+]
 #: A frequency above zero, in hertz.
 Rate: TypeAlias = Annotated[Any, _FREQUENCY, AfterValidator(_positive), _text_schema(units.FREQUENCY)]
 #: A data size above zero, in bits.

@@ -11,9 +11,6 @@ from fractions import Fraction
 from typing import TypeVar
 
 from amalthea_uros.perf.constraints import TimeMetric
-from amalthea_uros.perf.software import Process
-from amalthea_uros.perf.stimuli import Periodic
-from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
 
 Number = TypeVar("Number", int, Fraction)
@@ -40,11 +37,3 @@ def jitter_of(minimum: Number, maximum: Number, period: Time | None = None) -> N
     period : the nominal one, for a jitter that is the deviation from it
     """
     return maximum - minimum if period is None else max(maximum - period, period - minimum)
-
-
-def nominal_period(process: Process, system: System) -> Time | None:
-    """The period of the only stimulus of a process, with or without jitter; None if it has none."""
-    match [system.stimuli_by_name.get(name) for name in process.stimuli]:
-        case [Periodic(period=period)] if period > 0:
-            return period
-    return None
