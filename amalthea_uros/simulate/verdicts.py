@@ -126,8 +126,8 @@ def _requirement(
     process = next((each for each in processes if each.name == requirement.process), None)
     runnable = next((each for each in runnables if each.name == requirement.runnable), None)
     if process is not None:
-        period = activation_period(system.processes[process.name], system)
-        values = limited_values(limit, process, duration, period)
+        model = system.processes.get(process.name)
+        values = limited_values(limit, process, duration, None if model is None else activation_period(model, system))
     elif runnable is not None:
         values = limited_values_of_runnable(limit, runnable)
     else:

@@ -108,8 +108,7 @@ class Jitter(Shorthand):
         Literal["response_time", "start_delay", "net_execution_time", "gross_execution_time", "start_to_start", "end_to_end"],
         _JITTERS,
     ] = "response_time"
-    """Time whose jitter is limited: of a time that each job has, its maximum minus its minimum; of the time between two starts or two
-    ends, its largest deviation from the period."""
+    """Time whose jitter is limited."""
     max: Duration
     """Maximum that is allowed."""
 

@@ -64,19 +64,22 @@ _ZERO_OR_MORE = r"(?!-[0.]*[1-9])[-+]?"
 _DIGITS = r"([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][-+]?[0-9]{1,3})?"
 
 
-def _text_schema(dimension: units.Dimension, *, zero: bool = False) -> WithJsonSchema:
+def _text_schema(dimension: units.Dimension, *, zero: bool = False, number_zero: bool = False) -> WithJsonSchema:
     """How editors check a quantity.
 
     Parameters
     ----------
     zero : whether it may be zero
+    number_zero : whether it may be the number 0
     """
     pattern = f"^\\s*{_ZERO_OR_MORE if zero else _ABOVE_ZERO}{_DIGITS}\\s*({'|'.join(dimension.units)})\\s*$"
     bound = "of zero or more" if zero else "above zero"
     known = ", ".join(unit for unit in dimension.units if unit.isascii())
+    number: dict[str, Any] = {"type": ["string", "integer"], "minimum": 0, "maximum": 0} if number_zero else {}
     return editor_schema(
         f"expected {dimension.article} {bound} with a unit such as {dimension.example!r}; units: {known}",
-        type=["string"],  # of a single type, yaml-language-server would replace the message where a mapping is allowed, too
+        # With the list of one type, because yaml-language-server would replace the message where a mapping is allowed, too.
+        **({"type": ["string"]} | number),
         pattern=pattern,
         examples=[dimension.example],
     )
@@ -148,7 +151,7 @@ OffsetOrNumberZero: TypeAlias = Annotated[
     _TIME,
     BeforeValidator(_with_unit),
     AfterValidator(_not_negative),
-    _text_schema(units.TIME, zero=True),
+    _text_schema(units.TIME, zero=True, number_zero=True),
 ]
 #: A frequency above zero, in hertz.
 Rate: TypeAlias = Annotated[Any, _FREQUENCY, AfterValidator(_positive), _text_schema(units.FREQUENCY)]

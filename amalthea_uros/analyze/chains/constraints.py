@@ -200,7 +200,8 @@ class ConstraintEvaluator:
             ends = Ends(shortest, shortest if isinstance(activations, Periodic) else None)
             yield _result(constraint, constraint.event, "repetition", constraint.lower, _moved(ends, moves), is_upper=False)
         if constraint.jitter is not None:
-            yield _result(constraint, constraint.event, "jitter", constraint.jitter, _jitter(constraint, activations, moves))
+            jitter, reason = _jitter(constraint, activations, moves)
+            yield _result(constraint, constraint.event, "jitter", constraint.jitter, jitter, reason)
 
     # Order
 
@@ -322,26 +323,21 @@ def _moved(distance: Ends, by: Time) -> Ends:
     return Ends(None if lower is None else max(0, lower - by), None if upper is None else upper + by)
 
 
-def _jitter(constraint: RepetitionConstraint, activations: EventModel, moves: Time) -> Ends:
-    """Between which ends the jitter of an event lies that follows strictly periodic activations.
-
-    Raises
-    ------
-    UnknownError : the ideal points of the constraint are not those of the activations.
-    """
+def _jitter(constraint: RepetitionConstraint, activations: EventModel, moves: Time) -> tuple[Ends, str]:
+    """Between which ends the jitter of an event lies that follows strictly periodic activations, or why that is unknown."""
     if not isinstance(activations, Periodic) or not is_strictly_periodic(activations):
-        raise UnknownError("its activations are not strictly periodic, so their jitter is unknown")
-    period, span = activations.period, max(1, constraint.span)
+        return Ends(), "its activations are not strictly periodic"
+    period, distance = activations.period, max(1, constraint.span) * activations.period
     if constraint.period not in (None, period):
-        raise UnknownError(
-            f"the event occurs every {time_text(period)}, not every {time_text(constraint.period)}, so no jitter bounds its deviation"
+        return (
+            Ends(),
+            f"the event occurs every {time_text(period)}, not in the stated period, so that no jitter bounds its deviation",
         )
-    distance = span * period
     if distance < (constraint.lower or 0) or (constraint.upper is not None and distance > constraint.upper):
-        raise UnknownError(f"its limits exclude the mean distance of {time_text(distance)}, so no jitter bounds its deviation")
-    # Ideal points between the limits can follow the events; only those of a stated period cannot.
+        return Ends(), f"the limits exclude the mean distance of {time_text(distance)}, so that no jitter bounds its deviation"
+    # Ideal points between limits can follow the events; those of a stated period cannot.
     lower = max(0, activations.jitter - moves) if constraint.period is not None else 0
-    return Ends(lower, activations.jitter + moves)
+    return Ends(lower, activations.jitter + moves), ""
 
 
 def _cycles(time: Time | None, cycles: int | None, period: Time | None) -> Time | None:
