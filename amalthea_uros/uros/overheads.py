@@ -58,7 +58,7 @@ def _activities(process: PlannedTask | PlannedIsr, times: _Times, context: Assem
 def _add_interrupt(task: PlannedTask, time: OverheadTime | None, priority: int, context: AssemblyContext) -> None:
     """Add the interrupt that activates a task."""
     name = _activation_name(task.name)
-    calls = _calls(f"{name}_Runnable", time, task.core, task.origin, context)
+    calls = _calls(name, time, task.core, task.origin, context)
     if not calls:
         return
     processes: tuple[PlannedTask | PlannedIsr, ...] = (*context.tasks, *context.isrs)

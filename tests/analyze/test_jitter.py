@@ -68,7 +68,6 @@ class TestOfTheThesis:
         assert judged(system(text.replace("jitter: 19 ms", "jitter: 20 ms")))[1] == (0, 19_013, "met")
 
     def test_that_of_a_known_phase_is_exact(self, system):
-        # With reaction: the same limits of the same constraint.
         known = ADVANCED.replace("execution_time: 2 us,", "execution_time: 2 us, phase: 0 ms,")
         assert judged(system(known.replace("reaction: 25 ms", "jitter: 1 us")))[1] == (0, 0, "met")
 
@@ -148,28 +147,3 @@ def test_no_run_has_a_greater_jitter_than_the_bound(tmp_path_factory, tasks, lim
             if bound.upper is not None and observed.value is not None:
                 assert observed.value <= bound.upper, bound.name
             assert (bound.verdict, observed.verdict) != (Verdict.MET, ObservedVerdict.MISSED)
-
-
-def repetition(period=None, **limits):
-    """The verdict on the jitter of the starts of a task that is activated every 2 ms with a jitter of 100 us."""
-    from amalthea_uros.analyze.chains.constraints import _jitter
-    from amalthea_uros.perf.constraints import RepetitionConstraint
-    from amalthea_uros.timing.event_models import Periodic
-
-    constraint = RepetitionConstraint(name="R", event="E", period=period, jitter=1, **limits)
-    ends, reason = _jitter(constraint, Periodic(2 * MS, 100 * US), 10 * US)
-    return (ends.lower, ends.upper) if not reason else reason
-
-
-class TestOfARepetitionConstraint:
-    """RepetitionConstraint of AMALTHEA, with the meaning of TADL2: deviation from ideal points."""
-
-    def test_events_follow_their_activations(self):
-        assert repetition(period=2 * MS) == (90 * US, 110 * US)
-
-    def test_ideal_points_without_a_period_can_follow_the_events(self):
-        assert repetition(lower=MS, upper=3 * MS) == (0, 110 * US)
-
-    def test_of_another_period_no_jitter_bounds_the_deviation(self):
-        assert "every 2 ms" in repetition(period=MS)
-        assert "exclude the mean distance" in repetition(lower=MS, upper=MS)
