@@ -192,7 +192,9 @@ def _build_limit(limit: perf.Limit, context: Building, element: am.Requirement) 
     """Set the limit of a requirement: for a jitter one that is always kept, on the same time, and a property with the jitter."""
     if isinstance(limit, perf.JitterLimit):
         element.custom_properties += _JITTER.build(limit.value, context)
-        limit = perf.TimeLimit(metric=limit.metric, value=0, bound=perf.Bound.LOWER)
+        # Every response takes time, and checkers of models refuse a limit of zero.
+        least = 1 if limit.metric is perf.TimeMetric.RESPONSE_TIME else 0
+        limit = perf.TimeLimit(metric=limit.metric, value=least, bound=perf.Bound.LOWER)
     element.limit = _LIMIT.build(limit, context)
 
 
