@@ -188,21 +188,25 @@ _LIMITS = Table(
 _LIMIT = part(_LIMITS)
 
 
+def _always_kept(metric: perf.TimeMetric) -> perf.TimeLimit:
+    """A limit of a time that no job misses: every response takes time, and checkers of models refuse a limit of zero for it."""
+    least = 1 if metric is perf.TimeMetric.RESPONSE_TIME else 0
+    return perf.TimeLimit(metric=metric, value=least, bound=perf.Bound.LOWER)
+
+
 def _build_limit(limit: perf.Limit, context: Building, element: am.Requirement) -> None:
     """Set the limit of a requirement: for a jitter one that is always kept, on the same time, and a property with the jitter."""
     if isinstance(limit, perf.JitterLimit):
         element.custom_properties += _JITTER.build(limit.value, context)
-        # Every response takes time, and checkers of models refuse a limit of zero.
-        least = 1 if limit.metric is perf.TimeMetric.RESPONSE_TIME else 0
-        limit = perf.TimeLimit(metric=limit.metric, value=least, bound=perf.Bound.LOWER)
+        limit = _always_kept(limit.metric)
     element.limit = _LIMIT.build(limit, context)
 
 
 def _extract_limit(element: am.Requirement, context: Extracting) -> perf.Limit | None:
-    """The way back; None if there is none, or it is incomplete."""
+    """The way back; None if there is none, or it is incomplete. A limit that somebody else states is not replaced by a jitter."""
     limit: perf.Limit | None = None if element.limit is None else _LIMIT.extract(element.limit, context, element)
     jitter = _JITTER.extract(element.custom_properties, context, element)
-    if isinstance(limit, perf.TimeLimit) and jitter is not None:
+    if isinstance(limit, perf.TimeLimit) and jitter is not None and limit == _always_kept(limit.metric):
         return perf.JitterLimit(metric=limit.metric, value=jitter)
     return limit
 
