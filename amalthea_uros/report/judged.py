@@ -11,6 +11,7 @@ from typing import TypeAlias
 from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessResult, Quantity, RequirementResult
 from amalthea_uros.analyze.summary import FAILURES, Judged
 from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.timing.jitter import jitter_name
 from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
 
 _BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET)
@@ -18,6 +19,8 @@ _BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET)
 _Rank: TypeAlias = tuple[int, Fraction | float]
 #: The quantities of chains that limits of these names limit.
 LIMITED = {"reaction": Quantity.MAX_REDUCED_REACTION_TIME, "data age": Quantity.MAX_REDUCED_DATA_AGE}
+#: With those whose jitter is limited.
+_CONCERNED = LIMITED | {jitter_name(name): quantity for name, quantity in LIMITED.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,11 +177,11 @@ def _reaction(chain: ChainResult) -> float:
 
 
 def requirements_of(chain: str, analysis: Analysis) -> Sequence[RequirementResult]:
-    """The requirements on the latencies of a chain, the worst first."""
-    return sorted((each for each in analysis.requirements if each.object == chain and each.quantity in LIMITED), key=_rank)
+    """The requirements on the latencies of a chain and on their jitter, the worst first."""
+    return sorted((each for each in analysis.requirements if each.object == chain and each.quantity in _CONCERNED), key=_rank)
 
 
 def decisive_quantity(chain: str, analysis: Analysis) -> Quantity:
     """The latency of a chain with the worst requirement; without one, its reaction time."""
     requirements = requirements_of(chain, analysis)
-    return LIMITED[requirements[0].quantity] if requirements else Quantity.MAX_REDUCED_REACTION_TIME
+    return _CONCERNED[requirements[0].quantity] if requirements else Quantity.MAX_REDUCED_REACTION_TIME

@@ -13,6 +13,7 @@ from amalthea_uros.perf.constraints import (
     CountLimit,
     CountMetric,
     DelayConstraint,
+    JitterLimit,
     LatencyConstraint,
     LatencyKind,
     LoadLimit,
@@ -210,6 +211,19 @@ def limited(limit, **changes):
             NOT_OBSERVED,
             None,
         ),
+        (JitterLimit(metric=TimeMetric.RESPONSE_TIME, value=13 * US), {}, OK, 13 * US),
+        (JitterLimit(metric=TimeMetric.RESPONSE_TIME, value=12 * US), {}, MISSED, 13 * US),
+        # A job that has not ended yet has taken 2 ms more than the shortest one already.
+        (
+            JitterLimit(metric=TimeMetric.RESPONSE_TIME, value=MS),
+            {"longest_unfinished": Fraction(2 * MS + 16 * US)},
+            MISSED,
+            2 * MS,
+        ),
+        (JitterLimit(metric=TimeMetric.RESPONSE_TIME, value=MS), {"jobs": 1}, NOT_OBSERVED, None),
+        # The period is not known.
+        (JitterLimit(metric=TimeMetric.START_TO_START, value=MS), {}, NOT_OBSERVED, None),
+        (JitterLimit(metric=TimeMetric.OS_OVERHEAD, value=MS), {}, NOT_OBSERVED, None),
         (CountLimit(metric=CountMetric.PREEMPTIONS, value=2), {}, OK, 2),
         (CountLimit(metric=CountMetric.PREEMPTIONS, value=1), {}, MISSED, 2),
         (CountLimit(metric=CountMetric.LOST_ACTIVATIONS, value=0), {}, OK, 0),
@@ -301,6 +315,15 @@ def test_latencies_that_are_too_long_to_be_kept_forbid_a_good_verdict():
     (found,) = latency(with_route(not_evaluated=2), maximum=25 * MS)
     assert (found.verdict, found.reason) == (NOT_OBSERVED, "2 latencies are longer than those that can be observed")
     assert [found.verdict for found in latency(with_route(not_evaluated=2), maximum=MS)] == [MISSED]
+
+
+def test_the_jitter_of_a_chain():
+    # From 1 to 20 ms; a stimulus without a response for 26 ms has a reaction that is longer than the least one by 25 ms at least.
+    assert [found.verdict for found in latency(jitter=19 * MS)] == [OK]
+    (found,) = latency(jitter=18 * MS)
+    assert (found.verdict, found.value, found.quantity) == (MISSED, 19 * MS, "reaction jitter")
+    (found,) = latency(with_route(longest_unanswered=Fraction(26 * MS)), jitter=20 * MS)
+    assert (found.verdict, found.value) == (MISSED, 25 * MS)
 
 
 def test_a_chain_that_could_not_be_followed_says_why():

@@ -43,6 +43,7 @@ PLACE = {
     "runs_in": st.sampled_from(["own-task", "executor"]),
     "priority": st.integers(0, 20),
     "deadline": PERIODS,
+    "overhead": st.sampled_from([0, "3 us", {"activation": {"min": "2 us", "max": "5 us"}, "termination": "1 us"}]),
 }
 SUBSCRIPTIONS = optional(section(topic=st.just("t"), interval=PERIODS, message_size=SIZES, **CALLBACK), **PLACE)
 TIMERS = optional(section(period=PERIODS, **CALLBACK), publishes=st.just(["out"]), **PLACE)

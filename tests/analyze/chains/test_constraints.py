@@ -76,6 +76,17 @@ def test_repetition():
 
 
 @pytest.mark.parametrize(
+    ("period", "lower", "upper", "value", "verdict"),
+    # The consumer is activated every 20 and starts up to 5 later: after ideal points every 20, or within limits that allow 40 for two.
+    [(20, None, None, 5, "met"), (None, 35, 45, 5, "met"), (10, None, None, None, "unknown"), (None, 41, 45, None, "unknown")],
+)
+def test_ideal_points_at_another_distance_are_left_further_and_further_behind(period, lower, upper, value, verdict):
+    limits = {name: each and each * US for name, each in {"period": period, "lower": lower, "upper": upper}.items()}
+    repetition = RepetitionConstraint(name="R", event=EVENTS[2].name, span=2, jitter=5 * US, **limits)
+    assert evaluate(repetition)[-1] == ("jitter", value, verdict)
+
+
+@pytest.mark.parametrize(
     ("lower", "upper", "verdict"),
     # Two periods are 40, and starts move by up to 5: the true value, 40, is between 35 and 45.
     [(None, 44, "unknown"), (None, 35, "unknown"), (None, 34, "missed"), (36, None, "unknown"), (46, None, "missed")],

@@ -62,7 +62,9 @@ def _blocks(explanation: ChainExplanation, limit: Time | None, name: str) -> lis
 
 def _limit(chain: str, quantity: Quantity, content: ReportContent) -> Time | None:
     """The tightest limit of a latency."""
-    limits = (each for each in requirements_of(chain, content.analysis) if each.is_upper and LIMITED[each.quantity] is quantity)
+    limits = (
+        each for each in requirements_of(chain, content.analysis) if each.is_upper and LIMITED.get(each.quantity) is quantity
+    )
     return min((each.limit for each in limits if each.limit is not None), default=None)
 
 
