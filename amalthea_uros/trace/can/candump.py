@@ -124,7 +124,7 @@ class CandumpLog(LogReader):
                 if is_receive_overflow(line.identifier, line.data):
                     line = replace(line, identifier=0, kind=FrameKind.GAP)
             elif line.kind is FrameKind.GAP:
-                report_lost(self._problems, line.channel, place)
+                report_lost(self._problems, place)
             found[number] = line
         return found
 
