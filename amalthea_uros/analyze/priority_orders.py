@@ -132,10 +132,10 @@ class PriorityOrders:
         """
         analysis = self._analysis(order)
         response, deadline = analysis.solution.responses.get(name), self._deadline(name)
-        late = response.worst - deadline if response is not None and response.worst is not None else 0
-        if response is not None and late > 0:
-            if response.claim is Claim.EXACT or (certain_response(name, analysis.solution) or 0) > deadline:
-                return late
+        if response is not None and response.worst is not None and response.worst > deadline:
+            is_exact = response.claim is Claim.EXACT
+            if is_exact or (certain_response(name, analysis.solution) or 0) > deadline:
+                return response.worst - deadline
         return 0 if analysis.processes[name].verdict in FAILURES else None
 
     def numbers(self, order: Order) -> Mapping[str, int]:

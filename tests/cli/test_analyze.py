@@ -187,8 +187,8 @@ def test_proposed_priorities(tmp_path):
         (
             "0 ms",
             "4 ms",
-            "  no proposal: no assignment of distinct priorities meets all deadlines: at the lowest priority, none of the other tasks meets its "
-            "deadline: 'A' by 4 ms, 'B' by 4 ms\n",
+            "  no proposal: no assignment of distinct priorities meets all deadlines: at the lowest priority, each task misses its "
+            "deadline: 'A' by up to 4 ms, 'B' by up to 4 ms\n",
         ),
     ],
 )
