@@ -2,16 +2,27 @@
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 
 from support import SHARED
 
-from amalthea_uros.perf.activities import Demand, Execute, SemaphoreAccess, SemaphoreOperation
+from amalthea_uros.perf.activities import (
+    AccessKind,
+    Demand,
+    Execute,
+    LabelAccess,
+    SemaphoreAccess,
+    SemaphoreOperation,
+)
 from amalthea_uros.perf.distributions import Boundaries, Constant
+from amalthea_uros.perf.events import EventChain, Events, ProcessChange, ProcessEvent, Segment
+from amalthea_uros.perf.events import Sequence as EventSequence
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler, Semaphore
-from amalthea_uros.perf.software import Preemption, Software, Task
+from amalthea_uros.perf.software import Label, Preemption, Software, Task
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import MICROSECOND as US
@@ -79,6 +90,23 @@ def system_of(
         ),
         **more,
     )
+
+
+def with_chain(system: System, names: Sequence[str]) -> System:
+    """The system with a chain through tasks, each of which reads what the one before it writes."""
+    bodies = {task.name: task.activities for task in system.software.tasks}
+    for number, name in enumerate(names):
+        read = LabelAccess(label=f"label {number}", kind=AccessKind.READ)
+        write = LabelAccess(label=f"label {number + 1}", kind=AccessKind.WRITE)
+        bodies[name] = (read, *bodies[name], write)
+    events = [ProcessEvent(name=f"{names[0]} starts", process=names[0], change=ProcessChange.START)]
+    events += [ProcessEvent(name=f"{name} ends", process=name, change=ProcessChange.TERMINATE) for name in names[1:]]
+    segments = tuple(Segment(stimulus=one.name, response=then.name) for one, then in pairwise(events))
+    chain = EventChain(name="chain", stimulus=events[0].name, response=events[-1].name, items=EventSequence(segments))
+    labels = tuple(Label(name=f"label {number}") for number in range(len(names) + 1))
+    tasks = tuple(replace(task, activities=bodies[task.name]) for task in system.software.tasks)
+    software = replace(system.software, labels=labels, tasks=tasks)
+    return replace(system, software=software, events=Events(events=tuple(events), chains=(chain,)))
 
 
 def _stimulus(task: dict) -> Periodic | RelativePeriodic:

@@ -76,11 +76,15 @@ class PriorityOrders:
     ----------
     tasks : whose priorities may change; others keep theirs
     analysis : of the system with its present priorities
+    levels : the priorities that the tasks share out; empty: the present ones if they are distinct
+    is_certain : whether each task that was found not to fit misses its deadline for certain
     """
 
     core: str
     tasks: Sequence[ScheduledProcess]
     analysis: Analysis
+    levels: Sequence[int] = ()
+    is_certain: bool = True
     _analyses: dict[tuple[str, ...], Analysis] = field(default_factory=dict)
 
     @property
@@ -139,8 +143,8 @@ class PriorityOrders:
         return 0 if analysis.processes[name].verdict in FAILURES else None
 
     def numbers(self, order: Order) -> Mapping[str, int]:
-        """Priorities for an order: the present numbers if they are distinct."""
-        numbers = sorted({item.priority for item in self.tasks if item.priority is not None})
+        """Priorities for an order."""
+        numbers = sorted(self.levels or {item.priority for item in self.tasks if item.priority is not None})
         if len(numbers) < len(order):
             numbers = list(range(1, len(order) + 1))
         return dict(zip(order, numbers, strict=True))
@@ -172,7 +176,10 @@ class PriorityOrders:
         return [*order, name, *(other for other in self.monotonic() if other not in order and other != name)]
 
     def _fits(self, name: str, order: Order) -> bool:
-        return self.is_met(name, self._placed(name, order))
+        placed = self._placed(name, order)
+        is_met = self.is_met(name, placed)
+        self.is_certain = self.is_certain and (is_met or self.missed_by(name, placed) is not None)
+        return is_met
 
     def _analysis(self, order: Order) -> Analysis:
         key = tuple(order)
