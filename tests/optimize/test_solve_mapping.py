@@ -1,15 +1,14 @@
 """Mappings of tasks to cores, against all mappings."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from importlib.util import find_spec
 
 import pytest
-from design_search import problem_of
-from design_systems import DESIGN, system_of
+from design_search import cores_of, mapping_problem
+from design_systems import DESIGN
 
-from amalthea_uros.optimize.problem import Conclusion, Feasibility, Goal, Problem
+from amalthea_uros.optimize.problem import Conclusion, Feasibility, Problem
 from amalthea_uros.optimize.solvers.integer_program import solve_program
 from amalthea_uros.optimize.solvers.mapping import BranchAndBound, solve_mapping
 from amalthea_uros.optimize.solvers.partition import Partition
@@ -17,19 +16,6 @@ from amalthea_uros.optimize.space import Choice, Kind, Space
 
 CASES = DESIGN.get("mapping_problems", ())
 needs_ortools = pytest.mark.skipif(not find_spec("ortools"), reason="OR-tools is not installed")
-
-
-def mapping_problem(tasks: Sequence[dict], cores: Sequence[str], goal: str = "load", **more) -> Problem:
-    """Tasks that may be on any core, all on the first one at present, with deadline-monotonic priorities."""
-    order = [task["name"] for task in sorted(tasks, key=lambda task: task["D"])]
-    choices = tuple(Choice(object=task["name"], key="core", kind=Kind.CORE, options=tuple(cores)) for task in tasks)
-    measure = (lambda analysis: max(core.worst for core in analysis.processors)) if goal == "load" else None
-    problem = problem_of(system_of(tasks, order, cores=cores, **more), Space(choices=choices), measure)
-    return replace(problem, goals=(Goal(name=goal),))
-
-
-def cores_of(case: dict) -> list[str]:
-    return [f"core {number}" for number in range(case["cores"])]
 
 
 def check_result(found, case):

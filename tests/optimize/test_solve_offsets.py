@@ -4,43 +4,13 @@ from itertools import combinations
 from math import lcm, prod
 
 import pytest
-from design_search import problem_of
-from design_systems import DESIGN, system_of, with_chain
+from design_search import offset_problem, offsets, problem_of
+from design_systems import DESIGN, system_of
 
-from amalthea_uros.analyze.results import Quantity
-from amalthea_uros.optimize.problem import Conclusion, Problem
+from amalthea_uros.optimize.problem import Conclusion
 from amalthea_uros.optimize.solvers.offsets import offset_classes, solve_offsets
 from amalthea_uros.optimize.space import Choice, Kind, Space
-from amalthea_uros.perf.activities import Communication
-from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
-
-QUANTITIES = {
-    "mrt": Quantity.MAX_REACTION_TIME,
-    "mrrt": Quantity.MAX_REDUCED_REACTION_TIME,
-    "mrda": Quantity.MAX_REDUCED_DATA_AGE,
-}
-
-
-def offsets(tasks):
-    """All offsets of all tasks but the first."""
-    return Space(
-        choices=tuple(
-            Choice(object=task["name"], key="offset", kind=Kind.OFFSET, options=tuple(f"{n} us" for n in range(task["T"])))
-            for task in tasks
-        )
-    )
-
-
-def offset_problem(case: dict) -> Problem:
-    system = system_of([task | {"O": 0} for task in case["tasks"]], case["priority_order"])
-    settings = Settings(communication=Communication.LET) if case["communication"] == "LET" else None
-    space = offsets(case["tasks"][1:])
-    if "chain" not in case:
-        return problem_of(system, space, lambda analysis: analysis[case["target"]].wcrt)
-    quantity = QUANTITIES[case["metric"]]
-    built = with_chain(system, case["chain"])
-    return problem_of(built, space, lambda analysis: analysis.chains["chain"].value(quantity).value, settings)
 
 
 @pytest.mark.parametrize("case", DESIGN.get("offset_problems", ()), ids=lambda case: case["id"])
