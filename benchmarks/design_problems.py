@@ -46,7 +46,8 @@ def orders(case: dict[str, Any]) -> str:
     found = solve_priorities(problem)
     assert found is not None
     known = set(map(tuple, case.get("all_feasible_orders", ())))
-    assert orders_of(problem, found) <= known and (found.conclusion is not Conclusion.NONE or not known)
+    if not orders_of(problem, found) <= known:
+        return "WRONG"
     return answer(found, bool(known), orders_of(problem, found) == known)
 
 
