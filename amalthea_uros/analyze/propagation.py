@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from amalthea_uros.analyze.response_times.constant_schedule import constant_responses
 from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_offsets import tightened
 from amalthea_uros.analyze.results import Response
@@ -34,7 +35,7 @@ def solve(context: TimingContext) -> Solution:
         changing = _iterate(solution, diverging)
         if not changing:
             for core in context.system.cores:
-                solution.responses |= tightened(core, solution)
+                solution.responses |= constant_responses(core, solution) or tightened(core, solution)
             return solution
         # Without the diverging processes and those that depend on them, the others can converge.
         diverging |= changing

@@ -253,12 +253,12 @@ def test_a_process_that_keeps_others_off_can_end_before_they_delay_it():
 
 class TestOffsets:
     def test_count_among_non_preemptive_tasks(self):
-        # The released jobs never meet: 0..3 and 5..8 in each period of 10 (Palencia, González Harbour 1998).
+        # The released jobs never meet: 0..3 and 5..8 in each period of 10.
         found = analyse(
             process("A", 2, 10, execute(3), preemption="non-preemptive"),
             process("B", 1, 10, execute(3), offset=5, preemption="non-preemptive"),
         )
-        assert found == {"A": (3, 3, "bound"), "B": (3, 3, "bound")}
+        assert found == {"A": (3, 3, "exact"), "B": (3, 3, "exact")}
 
     def test_count_beside_a_sporadic_process(self):
         sporadic = process("S", 3, 10, execute(1)) | {"arrival": {"sporadic": {"least": 10, "most": 20, "offset": 0}}}
