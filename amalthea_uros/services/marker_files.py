@@ -223,10 +223,12 @@ class _Reader:
         return str(value.value)
 
     def _marker(self, name: str, node: Mapping, key: str) -> Marker:
-        return self._parsed(name, node, key, parse_marker)
+        found: Marker = self._parsed(name, node, key, parse_marker)
+        return found
 
     def _place(self, name: str, node: Mapping, key: str) -> Value:
-        return self._parsed(name, node, key, self.signals.value)
+        found: Value = self._parsed(name, node, key, self.signals.value)
+        return found
 
     def _counter(self, name: str, node: Mapping) -> Counter | None:
         if "counter" not in node.items:

@@ -25,8 +25,8 @@ KINDS = (
         id="MEA003",
         title="value that a frame does not have",
         severity=Severity.WARNING,
-        rationale="The payload is shorter than the bytes that should be in it, or its statistics contradict themselves. The frame is not "
-        "used.",
+        rationale="The payload is shorter than the bytes that should be in it, or its statistics contradict themselves. The frame is "
+        "not used.",
         remedy="Check the bytes or the signal, and that the DBC file belongs to the controller.",
     ),
     FindingKind(
@@ -55,7 +55,7 @@ KINDS = (
         id="MEA007",
         title="times of few steps of the clock",
         severity=Severity.WARNING,
-        rationale="A single time is wrong by up to a step of the clock. The mean of many is better, if they begin at any phase of a step.",
+        rationale="A single time is wrong by up to a step of the clock. The mean of many is better, if their phases vary.",
         remedy="Use a finer clock, or the mean of many values.",
     ),
     FindingKind(
