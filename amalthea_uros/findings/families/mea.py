@@ -79,4 +79,11 @@ KINDS = (
         rationale="The file cannot be read, or an object in it has no markers or keys that are not known.",
         remedy="Correct the place; an example: `Task: {start: 0x18000001, end: 0x18000002}`.",
     ),
+    FindingKind(
+        id="MEA011",
+        title="chain with several routes",
+        severity=Severity.WARNING,
+        rationale="The stimuli of each route are numbered on their own, so that it is not known which of them a response shows.",
+        remedy="Measure the chain between markers at its start and its end.",
+    ),
 )
