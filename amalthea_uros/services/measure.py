@@ -11,7 +11,7 @@ from amalthea_uros._internal.files import is_stream
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import WITH_COST, without
 from amalthea_uros.measure.findings import judged
-from amalthea_uros.measure.markers import Marker, MarkerChain, MarkerPair, Measurable, parse_marker
+from amalthea_uros.measure.markers import Marker, MarkerChain, MarkerPair, Measurable, parse_marker, refuse_overlap
 from amalthea_uros.measure.series import Measurement, Series
 from amalthea_uros.measure.window import Window
 from amalthea_uros.names import require
@@ -64,6 +64,11 @@ class MeasureOptions:
         if (self.start is None) != (self.end is None):
             missing, given = ("end", "start") if self.end is None else ("start", "end")
             raise InvalidArgumentError(f"an interval needs two markers; add --{missing} to --{given}")
+        if self.start is not None and self.end is not None:
+            try:
+                refuse_overlap(self.start, self.end)
+            except ValueError as error:
+                raise InvalidArgumentError(str(error)) from None
         if self.counter is not None and self.start is None:
             raise InvalidArgumentError(
                 "a counter belongs to a start and an end; add --start and --end, or state it in the markers"
