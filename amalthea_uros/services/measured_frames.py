@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.markers import Marker, Measurable
@@ -17,6 +18,8 @@ from amalthea_uros.names import listed
 if TYPE_CHECKING:
     from amalthea_uros.measure.occurrences import Collector, Occurrences
 
+#: With fewer than 1 in so many of the frames of the busiest bus, frames are strays of a damaged log.
+_STRAY = 100
 _ADVICE = (
     "a CAN log has no names of tasks; add --start ID and --end ID of the frames at the start and at the end, or --markers FILE with "
     "those of several objects"
@@ -74,7 +77,11 @@ def _measured_object(
     own = replace(own, marker=(own.marker == numbers[-1]).astype(np.int64) if len(numbers) > 1 else np.zeros_like(own.marker))
     present = set(own.marker.tolist())
     findings = [_missing(item, marker, log, place) for number, marker in enumerate(wanted) if number not in present]
-    buses = np.unique(own.channel).tolist()
+    found_on, numbers_on = np.unique(own.channel, return_counts=True)
+    is_stray = numbers_on * _STRAY < numbers_on.max(initial=0)
+    if is_stray.any():
+        findings.append(_stray(item, int(numbers_on[is_stray].sum()), int(np.count_nonzero(is_stray)), place))
+    buses = found_on[~is_stray].tolist()
     parts: list[MeasuredObject] = []
     for bus in buses:
         measured = measure_object(item, own.where(own.channel == bus))
@@ -98,6 +105,12 @@ def _missing(item: Measurable, marker: Marker, log: Collector, place: Location) 
     else:
         help_ = f"Check the identifier; the log has {known}." if known else "The log has no frames in this part."
     return Finding("MEA001", Severity.ERROR, f"no frame {marker} of {item.name!r} in the log", place, help_, item.name)
+
+
+def _stray(item: Measurable, number: int, buses: int, place: Location) -> Finding:
+    what = f"{counted(number, 'frame')} of {item.name!r} on {counted(buses, 'bus')}"
+    message = f"{what} with less than 1 in {_STRAY} of those of the busiest; these are not measured"
+    return Finding("MEA002", Severity.WARNING, message, place, "Choose the bus: --channel NAME.", item.name)
 
 
 def _several_buses(item: Measurable, names: Sequence[str], place: Location) -> Finding:

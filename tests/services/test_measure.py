@@ -90,6 +90,15 @@ def test_the_same_identifiers_on_two_buses_are_never_mixed(tmp_path):
     assert "MEA002" not in rules(only)
 
 
+def test_a_damaged_name_of_a_bus_is_no_second_bus(tmp_path):
+    frames = [(1000 * job + time, marker) for job in range(100) for time, marker in ((0, "101"), (40, "102"))]
+    frames[50] = (*frames[50], "c\x07n0")
+    found = amuros.measure(log(tmp_path, *frames), start="101", end="102", name="Task")
+    assert {series.name for series in found.series} == {"Task"}
+    (finding,) = (finding for finding in found.findings if finding.rule == "MEA002")
+    assert "1 frame of 'Task' on 1 bus" in finding.message
+
+
 def test_a_frame_that_is_logged_twice_counts_once(tmp_path):
     path = log(tmp_path, (0, "101#01"), (0, "101#01"), (30, "102#01"), (30, "102#01"))
     found = amuros.measure(path, start="101", end="102").series[0]
@@ -292,6 +301,12 @@ def test_the_command_refuses_an_unknown_histogram_before_it_writes(tmp_path):
     assert run.returncode == 2
     assert "did you mean 'Executor_Task'" in run.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_the_command_measures_what_candump_pipes_into_it():
+    run = command("measure", "-", "--start", "18000001", "--end", "18000002", given=LOG.read_text())
+    assert run.returncode == 0, run.stderr
+    assert "interval  duration        200  52 us" in run.stdout
 
 
 def test_the_exit_code_says_that_nothing_was_measured():
