@@ -57,6 +57,7 @@ class Collector:
     channels : names of the buses
     origin : time of the first frame of the log, in picoseconds as the log states it; None: there is none
     first, last : times of the first and the latest frame in the window, from `origin` on; None: there is none
+    doubtful : for each marker the number of its frames at a step back of the clock, which are not used: one of the two stamps is wrong
     seen : how often identifiers occur on which bus: (channel, identifier) -> number
     """
 
@@ -68,6 +69,7 @@ class Collector:
     origin: int | None = None
     first: int | None = None
     last: int | None = None
+    doubtful: dict[int, int] = field(default_factory=dict)
     seen: dict[tuple[int, int], int] = field(default_factory=dict)
     _parts: list[Occurrences] = field(default_factory=list)
 
@@ -95,7 +97,13 @@ class Collector:
             self.first = int(inside[0]) if self.first is None else self.first
             self.last = max(int(inside.max()), self.last or 0)
         self._count(table, is_frame)
-        found = [self._found(table, is_frame, marker) for marker in self.markers]
+        is_doubtful = _at_steps_back(table)
+        found = []
+        for number, marker in enumerate(self.markers):
+            places = self._found(table, is_frame, marker)
+            is_used = ~is_doubtful[places]
+            self.doubtful[number] = self.doubtful.get(number, 0) + int(np.count_nonzero(~is_used))
+            found.append(places[is_used])
         rows = np.concatenate([np.empty(0, np.int64), *found])
         which = np.repeat(np.arange(len(found)), [len(each) for each in found])
         order = np.argsort(rows, kind="stable")
@@ -130,3 +138,16 @@ class Collector:
             np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "marker", "channel", "segment")
         )
         return Occurrences(time, marker, channel, segment, [data for part in parts for data in part.data])
+
+
+def _at_steps_back(table: FrameTable) -> NDArray[np.bool_]:
+    """Which frames are directly before or after a gap over which the time of their bus steps back."""
+    found = np.zeros(len(table), bool)
+    is_gap = table.kind == FrameKind.GAP
+    for channel in np.unique(table.channel[is_gap]).tolist():
+        places = np.flatnonzero(table.channel == channel)
+        gaps = np.flatnonzero(is_gap[places][1:-1]) + 1
+        before, after = places[gaps - 1], places[gaps + 1]
+        is_back = table.time[before] > table.time[after]
+        found[before[is_back]] = found[after[is_back]] = True
+    return found

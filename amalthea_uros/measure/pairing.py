@@ -85,7 +85,8 @@ def paired_by_number(time: Numbers, segment: Numbers, is_end: Flags, counter: Nu
     begin, end = time[~is_end][starts[first]], time[is_end][ends[second]]
     is_right = end >= begin
     numbers, segments = number[~is_end][starts[first]], segment[~is_end][starts[first]]
-    follows = (np.diff(common, prepend=common[:1] - 2) == 1) & is_right & np.concatenate([[True], is_right])[:-1]
+    is_rising = np.diff(begin, prepend=begin[:1]) >= 0
+    follows = is_rising & (np.diff(common, prepend=common[:1] - 2) == 1) & is_right & np.concatenate([[True], is_right])[:-1]
     lost = lost_numbers(number, run)
     repeated = len(time) - len(start_keys) - len(end_keys)
     incomplete = len(start_keys) + len(end_keys) - 2 * int(np.count_nonzero(is_right))

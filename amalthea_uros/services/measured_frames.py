@@ -90,7 +90,13 @@ def _measured_object(
     if len(buses) > 1:
         findings.append(_several_buses(item, [log.channels[bus] for bus in buses], place))
     findings += (_undecoded(item, part.undecoded, place) for part in parts if part.undecoded)
-    return [series for part in parts for series in part.series], findings
+    doubtful = sum(log.doubtful.get(number, 0) for number in numbers)
+    return [_with_doubtful(series, doubtful) for part in parts for series in part.series], findings
+
+
+def _with_doubtful(series: Series, number: int) -> Series:
+    """A series that also counts the frames at steps back of the clock."""
+    return replace(series, counts=replace(series.counts, reordered=series.counts.reordered + number))
 
 
 def _missing(item: Measurable, marker: Marker, log: Collector, place: Location) -> Finding:

@@ -99,6 +99,21 @@ def test_a_damaged_name_of_a_bus_is_no_second_bus(tmp_path):
     assert "1 frame of 'Task' on 1 bus" in finding.message
 
 
+@pytest.mark.parametrize("wrong", [900_000, 5])
+@pytest.mark.parametrize("options", [{}, {"counter": "byte 0"}])
+@pytest.mark.parametrize("place", [50, 51])
+def test_a_damaged_stamp_makes_no_time_longer(wrong, options, place, tmp_path):
+    """A frame that seems to be late or early: both sides of the step back are left out."""
+    frames = [(1000 * job + time, f"{marker}#{job:02X}") for job in range(1, 100) for time, marker in ((0, "101"), (40, "102"))]
+    frames[place] = (wrong, frames[place][1])
+    found = amuros.measure(log(tmp_path, *frames), start="101", end="102", **options)
+    duration, distance = found.series
+    assert set(microseconds(duration)) == {40}
+    assert duration.statistics.count >= 97
+    assert duration.counts.reordered == 2
+    assert set(microseconds(distance)) == {1000}
+
+
 def test_a_frame_that_is_logged_twice_counts_once(tmp_path):
     path = log(tmp_path, (0, "101#01"), (0, "101#01"), (30, "102#01"), (30, "102#01"))
     found = amuros.measure(path, start="101", end="102").series[0]
