@@ -34,7 +34,6 @@ from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Source, read_
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time, parse_duration, parse_time
 
-_RULE = "MEA010"
 _COMMON = ("kind", "quantity", "baseline")
 #: The keys of each form of object, that which tells the form first.
 _FORMS = {
@@ -63,7 +62,7 @@ def read_markers(path: Path, signals: Signals) -> tuple[Measurable, ...]:
     try:
         text = read_text(path, DESCRIPTION_SIZE)
     except FileError as error:
-        raise ReadError([Finding(_RULE, Severity.ERROR, error.reason, Location(path), error.advice)]) from None
+        raise ReadError([Finding("MEA010", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
     node, source, findings = read_nodes(path, text)
     reader = _Reader(source, signals, [*findings])
     objects = reader.objects(node)
@@ -108,7 +107,7 @@ class _Reader:
 
     def _add(self, error: _WrongError) -> None:
         location = self.source.location(error.place)
-        self.findings.append(Finding(_RULE, Severity.ERROR, error.message, location, error.advice))
+        self.findings.append(Finding("MEA010", Severity.ERROR, error.message, location, error.advice))
 
     def _object(self, name: str, node: Node) -> Measurable:
         if not isinstance(node, Mapping):
