@@ -79,3 +79,11 @@ def test_a_gap_is_wherever_the_clock_steps_back(tmp_path_factory, steps):
     # A step of one microsecond is within the resolution.
     expected = sum(later < earlier - 1 for earlier, later in pairwise(times))
     assert sum(kind is GAP for _, _, _, kind, _ in frames) == expected
+
+
+def test_damaged_names_of_channels_are_bounded(tmp_path):
+    frames, log = read(tmp_path / "run.log", "".join(f"(1436509052.000000) can{number} 123#\n" for number in range(40_000)))
+    assert len(frames) == 256
+    assert unread(log) == 40_000 - 256
+    # Of the channels with the most frames only a few pairs are compared.
+    assert len(log.findings) <= 7

@@ -57,7 +57,10 @@ class AscLog(TextLog):
     def _leave_out(self, line: str, place: Place) -> None:
         match = _STAMP.match(line)
         if match and _OVERRUN.search(line):
-            report_lost(self._problems, match[3], place)
+            report_lost(self._problems, place)
+            if self._channel(match[3]) < 0:
+                self._report_channel(place)
+                return
             self._gap = Row(self._time, match[3], 0, FrameKind.GAP, place.line or 0, b"")
         elif not _REMARK.match(line):
             super()._leave_out(line, place)

@@ -15,6 +15,8 @@ from amalthea_uros.trace.problems import Problems
 _TOLERANCE = 10**9
 #: From this share on, equal frames of two channels are no coincidence.
 _SHARE = 0.5
+#: Only so many channels are compared, those with the most frames: damaged names look like further channels.
+_COMPARED = 4
 
 
 class BusWatch:
@@ -38,7 +40,8 @@ class BusWatch:
         identifiers: dict[int, Counter[int]] = {}
         for (channel, identifier), count in self._frames.items():
             identifiers.setdefault(channel, Counter())[identifier] = count
-        for first, second in combinations(sorted(identifiers), 2):
+        largest = sorted(identifiers, key=lambda channel: -identifiers[channel].total())[:_COMPARED]
+        for first, second in combinations(sorted(largest), 2):
             common = identifiers[first].keys() & identifiers[second].keys()
             frames = min(sum(identifiers[channel][one] for one in common) for channel in (first, second))
             if common:

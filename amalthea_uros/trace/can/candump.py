@@ -86,8 +86,12 @@ class CandumpLog(LogReader):
             if abs(stamp.time - self.origin) > _RANGE:
                 self._report_range(self._place(_line(block, lines, number), number))
                 continue
+            channel = self._channel(line.channel)
+            if channel < 0:
+                self._report_channel(self._place(_line(block, lines, number), number))
+                continue
             is_kept[number], kind[number], time[number] = True, line.kind, stamp.time - self.origin
-            lines.channel[number], lines.identifier[number] = self._channel(line.channel), line.identifier
+            lines.channel[number], lines.identifier[number] = channel, line.identifier
             data[number] = line.data
         self._note_resolution(lines, others)
         numbers = np.arange(self._line, self._line + len(time))
@@ -120,7 +124,7 @@ class CandumpLog(LogReader):
                 if is_receive_overflow(line.identifier, line.data):
                     line = replace(line, identifier=0, kind=FrameKind.GAP)
             elif line.kind is FrameKind.GAP:
-                report_lost(self._problems, line.channel, place)
+                report_lost(self._problems, place)
             found[number] = line
         return found
 

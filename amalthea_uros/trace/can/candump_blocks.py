@@ -165,7 +165,8 @@ def _channels(
         is_same = is_open & (end - start == len(word))
         for place, character in enumerate(word):
             is_same &= _at(text, start + place) == character
-        channel[is_same] = channel_index(word.decode(errors="replace"))
-        is_known |= is_same
+        index = channel_index(word.decode(errors="replace"))
+        channel[is_same] = index
+        is_known |= is_same & (index >= 0)
         is_open &= ~is_same
     return channel, is_known

@@ -43,9 +43,9 @@ def report_error(problems: Problems, classes: int, data: bytes, place: Place) ->
     )
 
 
-def report_lost(problems: Problems, channel: str, place: Place) -> None:
+def report_lost(problems: Problems, place: Place) -> None:
     """Report frames that the recorder has lost."""
-    message = f"frames of {channel!r} were dropped while recording; nothing is known of that time"
+    message = "frames were dropped while recording; nothing is known of that time"
     problems.add("CAN003", Severity.WARNING, message, place, _LOST_ADVICE)
 
 

@@ -18,6 +18,10 @@ from amalthea_uros.trace.problems import Place, Problems
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+#: A computer has a few buses.
+_MOST_CHANNELS = 256
+_SHOWN = 16
+
 
 class LogReader(ABC):
     """Gives the frames of a log; `amalthea_uros.trace.can.frames.CanLog` tells how it is used.
@@ -31,6 +35,7 @@ class LogReader(ABC):
         self._path, self._wanted = path, channel
         self._problems = Problems(path)
         self._channels: list[str] = []
+        self._indices: dict[str, int] = {}
         self._resolution: int | None = None
         self._origin: int | None = None
 
@@ -65,19 +70,26 @@ class LogReader(ABC):
         """The frames of all channels, as the file has them."""
 
     def _channel(self, name: str) -> int:
-        """The index of a channel, which gets one with its first frame."""
-        if name not in self._channels:
+        """The index of a channel, which gets one with its first frame; -1 if there are too many: then the names are damaged."""
+        index = self._indices.get(name)
+        if index is None:
+            if len(self._channels) == _MOST_CHANNELS:
+                return -1
+            index = self._indices[name] = len(self._channels)
             self._channels.append(name)
-        return self._channels.index(name)
+        return index
+
+    def _report_channel(self, place: Place) -> None:
+        message = f"the log has more than {_MOST_CHANNELS} channels; a frame of another one is ignored"
+        self._problems.add("CAN001", Severity.ERROR, message, place, "Check that the log is not damaged.")
 
     def _selected(self, table: FrameTable) -> FrameTable:
         if self._wanted is None:
             return table
-        wanted = self._channels.index(self._wanted) if self._wanted in self._channels else -1
-        places: NDArray[np.int64] = np.flatnonzero(table.channel == wanted)
+        places: NDArray[np.int64] = np.flatnonzero(table.channel == self._indices.get(self._wanted, -1))
         return table if len(places) == len(table) else table.take(places)
 
     def _report_missing_channel(self, channel: str) -> None:
-        known = ", ".join(self._channels) or "none"
+        known = ", ".join(self._channels[:_SHOWN]) or "none"
         message = f"the log has no channel {channel!r}; the channels of the log: {known}"
         self._problems.add("CAN007", Severity.ERROR, message, Place(), "Name one of these channels.")

@@ -77,6 +77,9 @@ class PythonCanLog(LogReader):
         if not (0 <= message.arbitration_id <= largest and len(data) <= _MAX_BYTES and abs(time) <= _MAX_TIME):
             self._report_damage("an identifier, a length or a time is too large; the frame is ignored", place)
             return None
+        if self._channel(channel) < 0:
+            self._report_channel(place)
+            return None
         if message.is_error_frame:
             report_error(self._problems, 0, b"", place)
             return Row(time, channel, 0, FrameKind.ERROR, place.line or 0, data)
