@@ -49,6 +49,11 @@ RUNS = {
         ("sweep", ADVANCED, "--sweep", "Control_Function.execution_time=4us,2ms", "--set", "Control_Function.period=2ms"),
         ("sweep", "unknown.amxmi", "--sweep", "Control_Function.execution_time=4us,5us", "--sample", "1"),
     ),
+    "amuros measure": (
+        ("measure", "bodas-test-measured.log", "--markers", "bodas-test-measured.markers.yml"),
+        ("measure", "bodas-test-measured.log", "--start", "18000001", "--end", "18000002", "--from", "10ms"),
+        ("measure", "bodas-test-measured.log", "--start", "18000001", "--end", "1"),
+    ),
     "amuros check": (("check", ADVANCED, "--profile", "inchron,ta"),),
     "amuros build": (
         ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),
@@ -65,6 +70,7 @@ SHARED = {
     "finding": "amuros check",
     "metric": "amuros analyze",
     "observation": "amuros simulate",
+    "statistics": "amuros measure",
     "change": "amuros analyze",
     "impact": "amuros analyze",
 }

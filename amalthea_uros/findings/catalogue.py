@@ -21,6 +21,7 @@ FAMILIES = {
     "CHN": "Analysing event chains",
     "CAN": "Reading logs of CAN buses",
     "TRC": "Reading, checking and writing traces",
+    "MEA": "Measuring times in traces",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",
 }

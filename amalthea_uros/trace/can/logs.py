@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import cast
 
+from amalthea_uros._internal.files import STANDARD_INPUT
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.frames import CanLog
 
@@ -21,6 +22,8 @@ _READERS = {
 #: The ends of the names of files. `.gz` may follow them, apart from .mf4.
 SUFFIXES = tuple(_READERS)
 _NEVER_PACKED = ".mf4"
+#: What comes from standard input: candump writes to a pipe.
+_PIPED = ".log"
 
 
 def is_can_log(path: Path) -> bool:
@@ -52,6 +55,8 @@ def open_can_log(path: Path, *, channel: str | None = None) -> CanLog:
 
 
 def _suffix(path: Path) -> str | None:
+    if path == STANDARD_INPUT:
+        return _PIPED
     name = path.name.lower()
     plain = name.removesuffix(".gz")
     return next((end for end in SUFFIXES if (name if end == _NEVER_PACKED else plain).endswith(end)), None)
