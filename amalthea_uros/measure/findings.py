@@ -39,7 +39,9 @@ def _uncounted(series: Series, place: Location) -> Iterator[Finding]:
     told = ", ".join(f"{number:,} {what}" for what, number in problems.items() if number)
     if told:
         severity = Severity.WARNING if counts.lost or counts.reordered else Severity.INFO
-        yield Finding("MEA006", severity, f"events of {series.name!r}: {told}; they are not measured", place, object=series.name)
+        yield Finding(
+            "MEA006", severity, f"events of {series.name!r}: {told}; they are not measured", place, object=series.name
+        )
 
 
 def _coarse(series: Series, resolution: Time, place: Location) -> Iterator[Finding]:

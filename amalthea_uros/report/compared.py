@@ -7,17 +7,18 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.measure.series import Measurement
+from amalthea_uros.measure.series import Kind, Measurement
 from amalthea_uros.report.simulated import duration_text
 from amalthea_uros.services.comparison.results import (
     Agreement,
     Comparison,
     ComparisonRow,
+    DistributionRow,
     MeasuredLimit,
     Statistic,
     is_bound,
 )
-from amalthea_uros.simulate.results import ChainQuantity
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Rounding, rounded_time_text, time_text
 
@@ -41,14 +42,12 @@ class BoundTest:
     verdict : the worse one of both
     """
 
-    object: str
-    quantity: str
     lower: ComparisonRow | None
     upper: ComparisonRow | None
 
     @property
     def rows(self) -> list[ComparisonRow]:
-        """The tests."""
+        """The tests, at least one."""
         return [row for row in (self.lower, self.upper) if row is not None]
 
     @property
@@ -62,37 +61,70 @@ class BoundTest:
         return "; ".join(filter(None, (row.reason for row in self.rows)))
 
 
-def predicted_rows(result: Comparison) -> list[ComparisonRow]:
-    """The rows with a tolerance that are shown."""
-    rows = (row for row in result.compared if not is_bound(row.claim, row.statistic))
-    return [row for row in rows if result.with_all or row.verdict is not Agreement.WITHIN or _is_important(row)]
+@dataclass(frozen=True, slots=True)
+class PredictionGroup:
+    """The predictions of a quantity that have a tolerance.
+
+    Attributes
+    ----------
+    distance : of the distributions; None if it is not known
+    """
+
+    rows: tuple[ComparisonRow, ...]
+    distance: DistributionRow | None
+
+    @property
+    def verdict(self) -> Agreement:
+        """Whether all of them agree."""
+        return Agreement.OUTSIDE if any(row.verdict is Agreement.OUTSIDE for row in self.rows) else Agreement.WITHIN
+
+    @property
+    def worst(self) -> ComparisonRow:
+        """The row with the largest deviation, of those that do not agree if there are any."""
+        return max(self.rows, key=lambda row: (row.verdict is Agreement.OUTSIDE, _size(row)))
+
+    def times(self, is_measured: bool) -> str:
+        """Minimum, mean and maximum."""
+        found = {row.statistic: row.measured if is_measured else row.predicted for row in self.rows}
+        return " / ".join(_time(found.get(statistic)) for statistic in _STATISTICS)
+
+
+def prediction_groups(result: Comparison) -> list[PredictionGroup]:
+    """The predictions with a tolerance that are shown."""
+    groups: dict[tuple[str, Kind | None, str], list[ComparisonRow]] = {}
+    for row in result.compared:
+        if not is_bound(row.claim, row.statistic):
+            groups.setdefault((row.object, row.kind, row.quantity), []).append(row)
+    distances: dict[tuple[str, Kind | None, str], DistributionRow]
+    distances = {(row.object, row.kind, row.quantity): row for row in result.distributions}
+    found = [PredictionGroup(tuple(rows), distances.get(key)) for key, rows in groups.items()]
+    return [group for group in found if group.verdict is not Agreement.WITHIN or _is_shown(result, group.rows[0])]
 
 
 def bound_tests(result: Comparison) -> list[BoundTest]:
     """The bounds that are shown."""
-    tests: dict[tuple[str, str], dict[Statistic | None, ComparisonRow]] = {}
+    tests: dict[tuple[str, Kind | None, str], dict[Statistic | None, ComparisonRow]] = {}
     for row in result.compared:
         if is_bound(row.claim, row.statistic):
-            tests.setdefault((row.object, row.quantity), {})[row.statistic] = row
-    found = [
-        BoundTest(name, quantity, rows.get(Statistic.MIN), rows.get(Statistic.MAX)) for (name, quantity), rows in tests.items()
-    ]
-    return [
-        test
-        for test in found
-        if result.with_all or test.verdict is Agreement.REFUTED or test.reason or test.quantity in _IMPORTANT
-    ]
+            tests.setdefault((row.object, row.kind, row.quantity), {})[row.statistic] = row
+    found = [BoundTest(rows.get(Statistic.MIN), rows.get(Statistic.MAX)) for rows in tests.values()]
+    return [test for test in found if test.verdict is Agreement.REFUTED or test.reason or _is_shown(result, test.rows[0])]
 
 
 def hidden(result: Comparison) -> str:
-    """How many rows are not shown, "" if all are."""
-    shown = len(predicted_rows(result)) + sum(len(test.rows) for test in bound_tests(result))
-    rest = len(result.compared) - shown
+    """How many comparisons are not shown, "" if all are."""
+    shown = [*(row for each in prediction_groups(result) for row in each.rows)]
+    shown += [row for each in bound_tests(result) for row in each.rows]
+    rest = len(result.compared) - len(shown)
     return f"{counted(rest, 'other comparison')} within; --all shows them" if rest else ""
 
 
-def _is_important(row: ComparisonRow) -> bool:
-    return row.quantity in _IMPORTANT and row.statistic in _STATISTICS
+def _is_shown(result: Comparison, row: ComparisonRow) -> bool:
+    """Whether a quantity is shown although it agrees: the most important ones of processes and chains, or of what else there is."""
+    if result.with_all:
+        return True
+    has_others = any(each.kind is not Kind.RUNNABLE for each in result.compared)
+    return row.quantity in _IMPORTANT and not (has_others and row.kind is Kind.RUNNABLE)
 
 
 def subject_line(result: Comparison) -> str:
@@ -130,10 +162,15 @@ def _outcome(result: Comparison) -> str:
     return f"Model holds: {counted(number, 'comparison')} within {tolerance}{_largest(result.compared)}{rest}"
 
 
+#: Smaller deviations are shown as none.
+_SMALLEST = Fraction(5, 10_000)
+
+
 def _largest(rows: Sequence[ComparisonRow]) -> str:
     """The largest deviation of a prediction that is no bound."""
-    deviations = [row for row in rows if row.deviation and not is_bound(row.claim, row.statistic)]
-    worst = max(deviations, key=lambda row: abs(row.deviation or 0), default=None)
+    tolerated = (row for row in rows if not is_bound(row.claim, row.statistic))
+    deviations = [row for row in tolerated if _size(row) >= _SMALLEST]
+    worst = max(deviations, key=_size, default=None)
     return "" if worst is None else f"; largest deviation {deviation_text(worst)} ({what(worst)})"
 
 
@@ -163,7 +200,13 @@ def percent(share: Fraction) -> str:
 
 def deviation_text(row: ComparisonRow) -> str:
     """The deviation in percent of the measurement, with its sign: positive if more was measured than predicted."""
-    return "-" if row.deviation is None else f"{float(row.deviation * 100):+.1f} %" if row.deviation else "0 %"
+    if row.deviation is None:
+        return "-"
+    return f"{float(row.deviation * 100):+.1f} %" if _size(row) >= _SMALLEST else "0 %"
+
+
+def _size(row: ComparisonRow) -> Fraction:
+    return abs(row.deviation or Fraction(0))
 
 
 def limit_text(limit: MeasuredLimit) -> str:
@@ -175,9 +218,9 @@ def limit_text(limit: MeasuredLimit) -> str:
 
 
 def distribution_rows(result: Comparison) -> Iterator[tuple[str, ...]]:
-    """The cells of the distributions that are shown: the distance, and both 50 % and 99 % quantiles."""
+    """The cells of the distributions that are shown: the distance, and both medians and 99 % quantiles."""
     for row in result.distributions:
-        if not (result.with_all or row.is_hidden or row.quantity in _IMPORTANT):
+        if not (result.with_all or row.is_hidden):
             continue
         between = row.distance
         median, high = (between.quantiles[share] for share in (Fraction(50, 100), Fraction(99, 100)))
@@ -199,32 +242,34 @@ def _time(value: Fraction | None) -> str:
     return "-" if value is None else rounded_time_text(value, Rounding.NEAREST)
 
 
-def prediction_cells(row: ComparisonRow) -> tuple[str, ...]:
-    """The cells of a prediction."""
+def prediction_cells(group: PredictionGroup) -> tuple[str, ...]:
+    """The cells of the predictions of a quantity."""
+    first, worst, distance = group.rows[0], group.worst, group.distance
+    of = f" ({worst.statistic})" if worst.deviation else ""
     return (
-        row.object,
-        quantity_text(row.quantity),
-        str(row.statistic),
-        _time(row.measured),
-        _time(row.predicted),
-        str(row.claim),
-        deviation_text(row),
-        f"{row.samples:,}",
-        str(row.verdict),
-        row.reason,
+        first.object,
+        quantity_text(first.quantity),
+        f"{first.samples:,}",
+        group.times(is_measured=True),
+        group.times(is_measured=False),
+        str(first.claim),
+        f"{deviation_text(worst)}{of}",
+        "-" if distance is None else f"{float(distance.distance.value):.3f}",
+        str(group.verdict),
+        worst.reason,
     )
 
 
 #: The headings of `prediction_cells`.
-PREDICTIONS = ("object", "quantity", "", "measured", "predicted", "claim", "deviation", "values", "verdict", "")
+PREDICTIONS = ("object", "quantity", "values", "measured", "predicted", "claim", "deviation", "distance", "verdict", "")
 
 
 def bound_cells(test: BoundTest) -> tuple[str, ...]:
     """The cells of a test of bounds: minimum, maximum, and by how much they are on the safe side."""
     lower, upper = test.lower, test.upper
     return (
-        test.object,
-        quantity_text(test.quantity),
+        test.rows[0].object,
+        quantity_text(test.rows[0].quantity),
         "-" if lower is None else _time(lower.predicted),
         "-" if lower is None else _time(lower.measured),
         "-" if upper is None else _time(upper.measured),

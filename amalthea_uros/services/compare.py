@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.changes.apply import apply
+from amalthea_uros.changes.change import Change
+from amalthea_uros.changes.key import Configuration
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
@@ -29,10 +31,12 @@ from amalthea_uros.services.comparison.results import (
     Source,
     Statistic,
 )
+from amalthea_uros.services.measure import MeasureOptions, measure_file
 from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.paths import StrPath
+from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
+from amalthea_uros.services.timing_changes import described
 from amalthea_uros.services.what_if import Changes, as_changes
 from amalthea_uros.timing.phases import unknown_phases, with_first_arrivals
 from amalthea_uros.timing.settings import Settings
@@ -114,14 +118,48 @@ def compare(
         overheads=overheads or {},
         uncertainty=uncertainty,
     )
+    return _run(subject, _measured(measured), options, settings or Settings(), as_changes(changes))
+
+
+def compare_files(
+    model: StrPath,
+    traces: Sequence[StrPath],
+    options: CompareOptions,
+    reading: MeasureOptions,
+    *,
+    settings: Settings | None = None,
+    changes: Sequence[Change] = (),
+) -> Comparison:
+    """Compare what a model in files predicts with what is measured in traces.
+
+    Parameters
+    ----------
+    reading : how the traces are measured
+    changes : of the system and the settings, made first
+
+    Raises
+    ------
+    ReadError, InvalidArgumentError : as for `compare`.
+    """
+    return _run(model, _measured_in(traces, reading), options, settings or Settings(), tuple(changes))
+
+
+def _run(
+    subject: Subject, measurement: Measurement, options: CompareOptions, settings: Settings, changes: Sequence[Change]
+) -> Comparison:
     given = reusable(subject)
     opened = open_subject(given)
-    parsed = as_changes(changes)
-    system, settings = apply(opened.system, settings or Settings(), parsed)
-    require_settings(settings, system)
-    measurement = measured if isinstance(measured, Measurement) else _measure(measured)
-    model = " ".join(map(str, paths_of(given) or ()))
-    return _compared(system, settings, measurement, options, model, opened.findings)
+    configuration = Configuration(opened.system, settings)
+    require_settings(settings, opened.system)
+    differences = described(configuration, changes)
+    system, settings = apply(*configuration, changes)
+    found = _compared(system, settings, measurement, options)
+    return replace(
+        found,
+        model=" ".join(map(str, paths_of(given) or ())),
+        differences=differences,
+        findings=unsuppressed((*opened.findings, *found.findings)),
+    )
 
 
 def parse_tolerance(value: str | float | Fraction) -> Fraction:
@@ -147,20 +185,17 @@ def _source(name: Source | str) -> Source:
     return Source(name)
 
 
-def _measure(paths: StrPath | Iterable[StrPath]) -> Measurement:
-    from amalthea_uros.services.measure import measure
-
-    return measure(paths)
+def _measured(measured: Measured) -> Measurement:
+    return measured if isinstance(measured, Measurement) else _measured_in(as_paths(measured), MeasureOptions())
 
 
-def _compared(
-    system: System,
-    settings: Settings,
-    measurement: Measurement,
-    options: CompareOptions,
-    model: str,
-    findings: Sequence[Finding],
-) -> Comparison:
+def _measured_in(traces: Sequence[StrPath], reading: MeasureOptions) -> Measurement:
+    from amalthea_uros.services.comparison.traces import joined
+
+    return joined([measure_file(path, reading) for path in as_paths(traces)])
+
+
+def _compared(system: System, settings: Settings, measurement: Measurement, options: CompareOptions) -> Comparison:
     require("process", filter(None, options.overheads), system.processes)
     analysis = analyze_system(system, settings) if Source.ANALYSIS in options.sources else None
     found = tuple(targets(measurement, options.names, system))
@@ -173,7 +208,7 @@ def _compared(
     rule = Rule(tolerance=options.tolerance, uncertainty=uncertainty or 0)
     rows = (*(row for target in found for row in _rows(target, predictor, rule)), *_not_measured(system, found))
     comparison = Comparison(
-        model=model,
+        model="",
         measurement=measurement,
         tolerance=options.tolerance,
         uncertainty=uncertainty,
@@ -185,9 +220,9 @@ def _compared(
         assumptions=_assumptions(measurement, options, analysis, simulation),
     )
     of_predictions = (each.findings for each in (analysis, simulation) if each is not None)
-    reported = (*findings, *measurement.findings, *(finding for each in of_predictions for finding in each))
+    reported = (*measurement.findings, *(finding for each in of_predictions for finding in each))
     own = _findings(comparison, found, _phases(system, settings))
-    return replace(comparison, findings=unsuppressed(tuple(dict.fromkeys((*reported, *own)))))
+    return replace(comparison, findings=tuple(dict.fromkeys((*reported, *own))))
 
 
 def _refuse_twice(found: Iterable[Target]) -> None:
@@ -204,7 +239,7 @@ def _refuse_twice(found: Iterable[Target]) -> None:
 
 def _simulated(
     system: System, settings: Settings, options: CompareOptions, measurement: Measurement
-) -> tuple[Simulation, Measurement | None]:
+) -> tuple[Simulation, Measurement]:
     """A run as long as the measurement, and what is measured in its own trace."""
     from amalthea_uros.services.comparison.simulated import simulate_measured
 

@@ -1,6 +1,6 @@
 """Files that name the objects of CAN logs and their markers; docs/measure.md describes them.
 
-    Executor_Task: {start: 0x18000001, end: 0x18000002, kind: process, baseline: Empty_1kHz}
+Executor_Task: {start: 0x18000001, end: 0x18000002, kind: process, baseline: Empty_1kHz}
 """
 
 from __future__ import annotations
@@ -93,7 +93,9 @@ class _Reader:
     def objects(self, node: Node) -> tuple[Measurable, ...]:
         """All objects; those with an error are left out, and a finding is added."""
         if not isinstance(node, Mapping) or not node.items:
-            self._add(_WrongError(node.place, "a file with markers names objects", "An example: Task: {start: 0x101, end: 0x102}"))
+            self._add(
+                _WrongError(node.place, "a file with markers names objects", "An example: Task: {start: 0x101, end: 0x102}")
+            )
             return ()
         self._nodes = node.items
         found = []

@@ -113,7 +113,9 @@ class _Table:
             self._first = time if self._first is None else self._first
             self._last = max(self._last, time)
             offset = time - self._first
-            if not self.window.is_all and not (self.window.start <= offset and (self.window.end is None or offset < self.window.end)):
+            if not self.window.is_all and not (
+                self.window.start <= offset and (self.window.end is None or offset < self.window.end)
+            ):
                 return
             time = offset
         self._rows.setdefault((name, quantity, kind), []).append((value, time))

@@ -7,6 +7,7 @@ from typing import Any
 
 from amalthea_uros.report.compared import closing_line
 from amalthea_uros.report.findings import finding_json
+from amalthea_uros.report.json import changes
 from amalthea_uros.services.comparison.results import (
     Agreement,
     Comparison,
@@ -34,6 +35,7 @@ def content(result: Comparison) -> dict[str, Any]:
         "distributions": [distribution_json(row) for row in result.distributions],
         "assumptions": list(result.assumptions),
         "findings": [finding_json(finding) for finding in result.findings],
+        "changes": changes.content(result.differences),
         "summary": {
             "holds": result.holds,
             **{verdict.replace(" ", "_"): result.count(verdict) for verdict in Agreement},

@@ -39,7 +39,9 @@ def series_json(series: Series) -> dict[str, Any]:
         "quantity": series.quantity,
         "samples": 0 if found is None else found.count,
         "latency": None if found is None else statistics_json(found),
-        "jitter": None if found is None else {**jitter_of(found), "period_ps": series.period, "period_deviation_ps": series.period_deviation},
+        "jitter": None
+        if found is None
+        else {**jitter_of(found), "period_ps": series.period, "period_deviation_ps": series.period_deviation},
         "exceedance": None if limit is None else float(limit),
         "histogram": None if histogram is None else _histogram(histogram),
         "counts": _counts(series.counts),

@@ -16,8 +16,8 @@ from amalthea_uros.report.compared import (
     distribution_rows,
     limit_cells,
     missing_cells,
-    predicted_rows,
     prediction_cells,
+    prediction_groups,
     subject_line,
 )
 from amalthea_uros.report.markdown_text import escaped, table
@@ -34,7 +34,7 @@ def lines(result: Comparison) -> Iterator[str]:
         escaped(subject_line(result)),
     )
     sections = (
-        ("Predictions", PREDICTIONS, [*map(prediction_cells, predicted_rows(result))], (3, 4, 6, 7)),
+        ("Predictions", PREDICTIONS, [*map(prediction_cells, prediction_groups(result))], (2, 3, 4, 6, 7)),
         ("Bounds of the analysis", BOUNDS, [*map(bound_cells, bound_tests(result))], range(2, 7)),
         ("Distributions", DISTRIBUTIONS, [*distribution_rows(result)], range(2, 8)),
         ("Limits, as measured", LIMITS, [*map(limit_cells, result.limits)], (3, 4)),

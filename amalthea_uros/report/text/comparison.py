@@ -15,8 +15,8 @@ from amalthea_uros.report.compared import (
     hidden,
     limit_cells,
     missing_cells,
-    predicted_rows,
     prediction_cells,
+    prediction_groups,
     subject_line,
 )
 from amalthea_uros.report.terminal import Terminal
@@ -26,10 +26,12 @@ from amalthea_uros.services.comparison.results import Comparison
 def write(result: Comparison, terminal: Terminal) -> None:
     """Write tables of predictions, bounds, distributions and limits, what was not compared, and whether the model holds."""
     terminal.line(subject_line(result))
-    predictions, bounds = [*map(prediction_cells, predicted_rows(result))], [*map(bound_cells, bound_tests(result))]
+    predictions, bounds = [*map(prediction_cells, prediction_groups(result))], [*map(bound_cells, bound_tests(result))]
     if predictions:
-        terminal.heading("Predictions (deviation: of the measurement, positive if more was measured than predicted)")
-        terminal.table(PREDICTIONS, predictions, right=(3, 4, 6, 7))
+        terminal.heading(
+            "Predictions (min / mean / max; deviation: largest one, of the measurement, positive if more was measured than predicted)"
+        )
+        terminal.table(PREDICTIONS, predictions, right=(2, 3, 4, 6, 7))
     if bounds:
         terminal.heading("Bounds of the analysis (nothing may be measured beyond them, without tolerance)")
         terminal.table(BOUNDS, bounds, right=range(2, 7))

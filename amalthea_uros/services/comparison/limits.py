@@ -19,7 +19,6 @@ from amalthea_uros.services.comparison.results import MeasuredLimit
 from amalthea_uros.simulate.limited_values import LimitedQuantity
 from amalthea_uros.simulate.results import (
     ChainObservation,
-    ChainQuantity,
     CountObservation,
     MetricObservation,
     ObservedVerdict,
@@ -29,6 +28,7 @@ from amalthea_uros.simulate.results import (
     RunnableObservation,
 )
 from amalthea_uros.simulate.verdicts import ObservedConstraint, deadline_of, judge_process, judge_requirements
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.timing.settings import Settings
@@ -70,7 +70,9 @@ def judge_limits(
     processes = Results(_process(name, measured.get(name, {}), context) for name in system.processes)
     chains = Results(_chain(name, measured.get(name, {})) for name in system.chains)
     runnables = Results(_runnable(name, measured[name]) for name in system.runnables if name in measured)
-    yield from (_deadline(process) for process in processes if process.verdict is not None)
+    # A deadline that is also stated as a requirement is judged once.
+    stated = {(each.process, each.limit.value) for each in system.constraints.requirements}
+    yield from (_deadline(each) for each in processes if each.verdict and (each.name, each.deadline) not in stated)
     times = tuple(filter(_is_measurable, system.constraints.requirements))
     judged = replace(system, constraints=replace(system.constraints, requirements=times))
     for found in judge_requirements(judged, processes, chains, measurement.duration, runnables, _NotMeasured()):

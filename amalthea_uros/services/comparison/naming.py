@@ -12,7 +12,7 @@ from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.comparison.results import Statistic
-from amalthea_uros.simulate.results import ChainQuantity
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 
 #: How a meaning is written.

@@ -16,7 +16,8 @@ from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, Metric, 
 from amalthea_uros.measure.series import Kind, Measurement
 from amalthea_uros.services.comparison.agreement import Prediction, measured_values
 from amalthea_uros.services.comparison.results import PredictionClaim, Statistic
-from amalthea_uros.simulate.results import ChainQuantity, MetricObservation, Simulation
+from amalthea_uros.simulate.results import MetricObservation, Simulation
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time, time_text
 

@@ -7,6 +7,7 @@ from enum import StrEnum
 from fractions import Fraction
 
 from amalthea_uros._internal.shown import Shown
+from amalthea_uros.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.measure.distances import Distance
 from amalthea_uros.measure.series import Kind, Measurement
@@ -171,6 +172,7 @@ class Comparison(Shown):
     rows : all comparisons, in the order of the trace, then what was not measured
     limits : deadlines, requirements and constraints, judged by what was measured
     distributions : of the quantities of which the values are measured and simulated
+    differences : what changes of the model did before
     with_all : whether texts show all rows, or only the most important quantities and what does not agree
     """
 
@@ -185,6 +187,7 @@ class Comparison(Shown):
     seed: int | None = None
     assumptions: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
+    differences: tuple[Difference, ...] = ()
     with_all: bool = False
 
     def __repr__(self) -> str:
