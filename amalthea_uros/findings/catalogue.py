@@ -22,6 +22,7 @@ FAMILIES = {
     "CAN": "Reading logs of CAN buses",
     "CMP": "Comparing predictions with measurements",
     "TRC": "Reading, checking and writing traces",
+    "MEA": "Measuring times in traces",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",
 }

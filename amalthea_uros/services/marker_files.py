@@ -30,7 +30,6 @@ from amalthea_uros.measure.markers import (
 from amalthea_uros.measure.series import Kind
 from amalthea_uros.services.signals import Signals, Value
 from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Source, read_nodes
-from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time, parse_duration, parse_time
 
@@ -224,10 +223,12 @@ class _Reader:
         return str(value.value)
 
     def _marker(self, name: str, node: Mapping, key: str) -> Marker:
-        return self._parsed(name, node, key, parse_marker)
+        found: Marker = self._parsed(name, node, key, parse_marker)
+        return found
 
     def _place(self, name: str, node: Mapping, key: str) -> Value:
-        return self._parsed(name, node, key, self.signals.value)
+        found: Value = self._parsed(name, node, key, self.signals.value)
+        return found
 
     def _counter(self, name: str, node: Mapping) -> Counter | None:
         if "counter" not in node.items:

@@ -49,13 +49,19 @@ def measured_events(path: Path, window: Window) -> Measurement:
     if jobs.illegal:
         message = f"{jobs.illegal:,} events that the state of their job does not allow; these jobs are not measured"
         findings.append(Finding("MEA004", Severity.WARNING, message, Location(path), "Check the trace for lost events."))
+    series = (*jobs.series(names), *chains.series(names))
+    for name in chains.ambiguous:
+        message = (
+            f"the steps of the chain {name!r} are of several routes, which the trace does not tell apart; it is not measured"
+        )
+        findings.append(Finding("MEA011", Severity.WARNING, message, Location(path), "Measure it between markers.", name))
     return Measurement(
         source=str(path),
         format=path.name.lower().removesuffix(".gz").rpartition(".")[2].upper(),
         digest="",
         duration=last,
         resolution=resolution_of(np.concatenate([np.empty(0, np.int64), *times])),
-        series=(*jobs.series(names), *chains.series(names)),
+        series=series,
         findings=tuple(findings),
     )
 

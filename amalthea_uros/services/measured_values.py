@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from pathlib import Path
-from typing import TextIO
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.measure.series import Counts, Kind, Measurement, Series
@@ -81,7 +80,7 @@ class _Table:
     _first: int | None = None
     _last: int = 0
 
-    def read(self, lines: "csv._reader") -> None:  # type: ignore[name-defined]
+    def read(self, lines: csv._reader) -> None:  # type: ignore[name-defined]
         self._columns = columns_of(next(lines, [])) or {}
         while True:
             try:
