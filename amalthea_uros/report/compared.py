@@ -256,7 +256,7 @@ def prediction_cells(group: PredictionGroup) -> tuple[str, ...]:
         f"{deviation_text(worst)}{of}",
         "-" if distance is None else f"{float(distance.distance.value):.3f}",
         str(group.verdict),
-        worst.reason,
+        worst.reason or ("nearest value of all phases" if any(row.predicted_range for row in group.rows) else ""),
     )
 
 

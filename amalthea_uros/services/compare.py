@@ -17,6 +17,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.measure.distances import Distance, distance
 from amalthea_uros.measure.series import Kind, Measurement
+from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.comparison.agreement import Rule, compared
@@ -31,6 +32,7 @@ from amalthea_uros.services.comparison.results import (
     Source,
     Statistic,
 )
+from amalthea_uros.services.comparison.simulated import Run, simulate_measured
 from amalthea_uros.services.measure import MeasureOptions, measure_file
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
@@ -43,7 +45,8 @@ from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import SECOND, Time, time_text
 
 if TYPE_CHECKING:
-    from amalthea_uros.simulate.results import Simulation
+    import numpy as np
+    from numpy.typing import NDArray
 
 #: What was measured, or the trace to measure.
 Measured: TypeAlias = "Measurement | StrPath | Iterable[StrPath]"
@@ -200,10 +203,9 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
     analysis = analyze_system(system, settings) if Source.ANALYSIS in options.sources else None
     found = tuple(targets(measurement, options.names, system))
     _refuse_twice(found)
-    simulation = values = None
-    if Source.SIMULATION in options.sources:
-        simulation, values = _simulated(system, settings, options, measurement)
-    predictor = Predictor(analysis=analysis, simulation=simulation, values=values, overheads=options.overheads)
+    runs = _simulated(system, settings, options, measurement) if Source.SIMULATION in options.sources else ()
+    simulation = runs[0].simulation if runs else None
+    predictor = Predictor(analysis=analysis, runs=runs, overheads=options.overheads)
     uncertainty = measurement.resolution if options.uncertainty is None else options.uncertainty
     rule = Rule(tolerance=options.tolerance, uncertainty=uncertainty or 0)
     rows = (*(row for target in found for row in _rows(target, predictor, rule)), *_not_measured(system, found))
@@ -214,7 +216,7 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
         uncertainty=uncertainty,
         rows=rows,
         limits=tuple(judge_limits(system, settings, measurement, found)),
-        distributions=tuple(_distributions(found, rows, values, options.tolerance)),
+        distributions=tuple(_distributions(found, rows, runs, options.tolerance)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,
         assumptions=_assumptions(measurement, options, analysis, simulation),
@@ -237,12 +239,8 @@ def _refuse_twice(found: Iterable[Target]) -> None:
             raise InvalidArgumentError(f"{listed} of the trace are both {name}.{quantity}; leave one of them out")
 
 
-def _simulated(
-    system: System, settings: Settings, options: CompareOptions, measurement: Measurement
-) -> tuple[Simulation, Measurement]:
-    """A run as long as the measurement, and what is measured in its own trace."""
-    from amalthea_uros.services.comparison.simulated import simulate_measured
-
+def _simulated(system: System, settings: Settings, options: CompareOptions, measurement: Measurement) -> tuple[Run, ...]:
+    """A run as long as the measurement, and others in other phases."""
     duration = options.duration or measurement.duration or SECOND
     return simulate_measured(system, settings, duration, options.seed)
 
@@ -291,22 +289,41 @@ def _not_measured(system: System, found: Sequence[Target]) -> Iterator[Compariso
 
 
 def _distributions(
-    found: Sequence[Target], rows: Sequence[ComparisonRow], values: Measurement | None, tolerance: Fraction
+    found: Sequence[Target], rows: Sequence[ComparisonRow], runs: Sequence[Run], tolerance: Fraction
 ) -> Iterator[DistributionRow]:
-    """The distances of all quantities of which both have the values."""
-    simulated = {(each.kind, each.name, each.quantity): each.values for each in (values.series if values else ())}
+    """The distances of all quantities of which both have the values; of several phases, the nearest one or all together."""
+    simulated = _simulated_values(runs)
     agreeing = {
         (row.object, row.quantity) for row in rows if row.statistic is Statistic.MEAN and row.verdict is Agreement.WITHIN
     }
     for target in found:
-        other = simulated.get((target.kind, target.name, target.quantity))
-        if target.reason or target.series.values is None or other is None or not len(other) or not len(target.series.values):
+        values = target.series.values
+        others = simulated.get((target.kind, target.name, target.quantity), ())
+        if target.reason or values is None or not len(values) or not others:
             continue
-        between = distance(target.series.values, other)
+        between = min((distance(values, other) for other in others), key=lambda each: each.value)
         is_hidden = (target.name, target.quantity) in agreeing and _differs(between, tolerance)
         yield DistributionRow(
             object=target.name, kind=target.kind, quantity=target.quantity, distance=between, is_hidden=is_hidden
         )
+
+
+def _simulated_values(runs: Sequence[Run]) -> Mapping[tuple[Kind, str, str], list[NDArray[np.int64]]]:
+    """The values of each quantity in all runs where they differ, and those of all runs together."""
+    import numpy as np
+
+    found: dict[tuple[Kind, str, str], dict[object, NDArray[np.int64]]] = {}
+    for run in runs:
+        for each in run.values.series:
+            if each.values is not None and each.statistics is not None:
+                found.setdefault((each.kind, each.name, each.quantity), {}).setdefault(_key(each.statistics), each.values)
+    samples = {key: list(different.values()) for key, different in found.items()}
+    return {key: [*each, np.concatenate(each)] if len(each) > 1 else each for key, each in samples.items()}
+
+
+def _key(statistics: Statistics) -> tuple[object, ...]:
+    """Samples that differ in none of these are taken as equal."""
+    return statistics.min, statistics.mean, statistics.max, statistics.variance
 
 
 def _differs(between: Distance, tolerance: Fraction) -> bool:
@@ -347,13 +364,18 @@ def _findings(comparison: Comparison, found: Sequence[Target], phases: Sequence[
             share = f"{float(row.distance.value):.2g}"
             message = f"{what} has the predicted mean, but another distribution (Kolmogorov-Smirnov distance {share})"
             yield Finding("CMP003", Severity.WARNING, message, help="Compare the histograms.", object=row.object)
-    if phases and comparison.seed is not None:
-        names = ", ".join(map(repr, phases))
-        message = f"the phase of {names} is unknown: the simulation took one at random, the measured system may have another"
-        yield Finding("CMP004", Severity.WARNING, message, help="State it with --phase NAME=TIME, or compare with other seeds.")
+    if phases:
+        yield _unknown_phases(comparison, phases)
     if not comparison.compared:
         message = "nothing was compared: no measured quantity is predicted"
         yield Finding("CMP005", Severity.ERROR, message, help="Say with --map or --as what the measured objects are.")
+
+
+def _unknown_phases(comparison: Comparison, phases: Sequence[str]) -> Finding:
+    names = ", ".join(map(repr, phases))
+    what = "are ranges over several phases" if comparison.seed is not None else "of means are those over all phases"
+    message = f"the phase of {names} is unknown: predictions that depend on it {what}"
+    return Finding("CMP004", Severity.WARNING, message, help="State it with --phase NAME=TIME to compare more strictly.")
 
 
 def _refutations(comparison: Comparison) -> Iterator[Finding]:

@@ -38,10 +38,10 @@ KINDS = (
         title="unknown phase",
         severity=Severity.WARNING,
         rationale=(
-            "The simulation takes a phase at random, while the measured system has one of its own. Values that depend on it, such as "
-            "latencies of chains, may differ although the model is right."
+            "What comes from outside may have any phase in the measured system. Values that depend on it, such as latencies of chains, "
+            "are predicted as ranges: the model agrees if they agree in one of the phases, which is less than could be tested."
         ),
-        remedy="State the phase, or compare with several seeds; bounds are those of all phases.",
+        remedy="State the phase with --phase, if it is known and constant.",
     ),
     FindingKind(
         id="CMP005",

@@ -47,12 +47,15 @@ def content(result: Comparison) -> dict[str, Any]:
 
 def row_json(row: ComparisonRow) -> dict[str, Any]:
     """A predicted value beside a measured one."""
+    low, high = row.predicted_range or (row.predicted, row.predicted)
     return {
         "object": row.object,
         "kind": row.kind,
         "quantity": row.quantity,
         "statistic": row.statistic,
         "predicted_ps": _whole(row.predicted),
+        "predicted_low_ps": _whole(low),
+        "predicted_high_ps": _whole(high),
         "measured_ps": _whole(row.measured),
         "deviation": _share(row.deviation),
         "deviation_of_prediction": _share(row.deviation_of_prediction),

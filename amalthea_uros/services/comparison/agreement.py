@@ -20,11 +20,21 @@ from amalthea_uros.units import Time, time_text
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prediction:
-    """A predicted value in picoseconds."""
+    """A predicted value in picoseconds.
+
+    Attributes
+    ----------
+    high : the other end of a range of values that are possible, each in another phase; None if it is one value
+    """
 
     value: Fraction
     claim: PredictionClaim
     method: str
+    high: Fraction | None = None
+
+    def nearest(self, measured: Fraction) -> Fraction:
+        """The possible value that is nearest to a measured one."""
+        return self.value if self.high is None else min(max(measured, self.value), self.high)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,7 +85,8 @@ def compared(
                 statistic=statistic,
                 verdict=agreement,
                 measured=measured,
-                predicted=prediction.value,
+                predicted=prediction.nearest(measured),
+                predicted_range=None if prediction.high in (None, prediction.value) else (prediction.value, prediction.high),
                 claim=prediction.claim,
                 method=prediction.method,
                 tolerance=None if is_bound(prediction.claim, statistic) else rule.tolerance,
@@ -108,7 +119,7 @@ def _certain(series: Series, statistic: Statistic, value: Fraction, rule: Rule) 
 
 def _judged(statistic: Statistic, measured: Fraction, ends: _Ends, prediction: Prediction, rule: Rule) -> tuple[Agreement, str]:
     """The verdict, with its reason."""
-    predicted = prediction.value
+    predicted = prediction.nearest(measured)
     is_uncertain = ends.lower < predicted < ends.upper
     if is_bound(prediction.claim, statistic):
         is_upper = statistic is Statistic.MAX

@@ -7,15 +7,16 @@ at any time, for example, but the measured one is that of the worst events, so t
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import NamedTuple
 
 from amalthea_uros.analyze.metrics import merged
 from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, Metric, Quantity
-from amalthea_uros.measure.series import Kind, Measurement
+from amalthea_uros.measure.series import Kind
 from amalthea_uros.services.comparison.agreement import Prediction, measured_values
 from amalthea_uros.services.comparison.results import PredictionClaim, Statistic
+from amalthea_uros.services.comparison.simulated import Run
 from amalthea_uros.simulate.results import MetricObservation, Simulation
 from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
@@ -60,14 +61,13 @@ class Predictor:
 
     Attributes
     ----------
-    analysis, simulation : None if they are not asked; one of them is given
-    values : of the simulation, as measured in its own trace; None if there is none
+    analysis : None if it is not asked
+    runs : simulations, the first one as long as the measurement; none if they are not asked
     overheads : process -> what is added to its predicted times; "" stands for all others
     """
 
     analysis: Analysis | None
-    simulation: Simulation | None
-    values: Measurement | None = None
+    runs: tuple[Run, ...]
     overheads: Mapping[str, Time] = field(default_factory=dict)
 
     def of(self, kind: Kind, name: str, quantity: str) -> Predictions:
@@ -112,14 +112,14 @@ class Predictor:
             yield Statistic.MIN, Prediction(value=Fraction(metric.min), claim=claim, method=method)
         if metric.max is not None:
             yield Statistic.MAX, Prediction(value=Fraction(metric.max), claim=claim, method=method)
-        if metric.mean is not None and self.simulation is None:
+        if metric.mean is not None and not self.runs:
             yield Statistic.MEAN, Prediction(value=metric.mean, claim=PredictionClaim.EXACT, method=method)
 
     def _of_chain(self, chain: ChainResult, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
         for statistic, end in _ENDS.items():
             name = getattr(_OF_CHAINS.get(quantity, _Ends()), end)
             value = None if name is None else chain.value(name)
-            if value is None or value.value is None or (statistic is Statistic.MEAN and self.simulation is not None):
+            if value is None or value.value is None or (statistic is Statistic.MEAN and self.runs):
                 continue
             claim = PredictionClaim.EXACT if value.claim is Claim.EXACT else PredictionClaim.BOUND
             # A bound of a mean is no prediction of it.
@@ -129,26 +129,15 @@ class Predictor:
     # The simulation.
 
     def _simulated(self, kind: Kind, name: str, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
-        if self.simulation is None:
+        if not self.runs:
             return
-        found = _observed(self.simulation, kind, name, quantity)
-        values = self._in_trace(kind, name, quantity)
-        if found is not None:
-            values |= {
-                Statistic.MIN: found.min,
-                Statistic.MEAN: found.mean,
-                Statistic.MAX: found.max,
-                Statistic.JITTER: found.jitter,
-            }
-        method = f"simulation of {time_text(self.simulation.duration)}, seed {self.simulation.seed}"
-        for statistic, value in values.items():
-            yield statistic, Prediction(value=value, claim=PredictionClaim.SIMULATED, method=method)
-
-    def _in_trace(self, kind: Kind, name: str, quantity: str) -> dict[Statistic, Fraction]:
-        """What the trace of the simulation has of a quantity."""
-        series = () if self.values is None else self.values.series
-        found = next((each for each in series if (each.kind, each.name, each.quantity) == (kind, name, quantity)), None)
-        return {} if found is None or found.statistics is None else dict(measured_values(found.statistics))
+        found = [values for run in self.runs if (values := _values(run, kind, name, quantity))]
+        first, others = self.runs[0].simulation, len(self.runs) - 1
+        phases = f", and in {others} phases" if others else ""
+        method = f"simulation of {time_text(first.duration)}, seed {first.seed}{phases}"
+        for statistic in found[0] if found else ():
+            each = [values[statistic] for values in found if statistic in values]
+            yield statistic, Prediction(value=min(each), high=max(each), claim=PredictionClaim.SIMULATED, method=method)
 
     # Both.
 
@@ -156,8 +145,11 @@ class Predictor:
         overhead = self.overheads.get(name, self.overheads.get("", 0))
         if not overhead or quantity not in _WITH_OVERHEAD or statistic is Statistic.JITTER:
             return found
-        return Prediction(
-            value=found.value + overhead, claim=found.claim, method=f"{found.method}, plus {time_text(overhead)} of overhead"
+        return replace(
+            found,
+            value=found.value + overhead,
+            high=None if found.high is None else found.high + overhead,
+            method=f"{found.method}, plus {time_text(overhead)} of overhead",
         )
 
     def _reason(self, kind: Kind, name: str, quantity: str) -> str:
@@ -175,8 +167,20 @@ class Predictor:
             yield from (each.reason for each in analysis.processes if (kind, each.name) == (Kind.PROCESS, name))
             yield from (each.reason for each in analysis.callbacks if (kind, each.name) == (Kind.RUNNABLE, name))
             yield from (each.reason for each in analysis.chains if (kind, each.name) == (Kind.CHAIN, name))
-        if self.simulation is not None:
-            yield from (each.reason for each in self.simulation.chains if (kind, each.name) == (Kind.CHAIN, name))
+        if self.runs:
+            yield from (each.reason for each in self.runs[0].simulation.chains if (kind, each.name) == (Kind.CHAIN, name))
+
+
+def _values(run: Run, kind: Kind, name: str, quantity: str) -> dict[Statistic, Fraction]:
+    """What a run has of a quantity: of all of it, and what only its trace shows."""
+    series = (each for each in run.values.series if (each.kind, each.name, each.quantity) == (kind, name, quantity))
+    statistics = next((each.statistics for each in series), None)
+    values = {} if statistics is None else dict(measured_values(statistics))
+    found = _observed(run.simulation, kind, name, quantity)
+    if found is not None:
+        values |= {Statistic.MIN: found.min, Statistic.MEAN: found.mean, Statistic.MAX: found.max}
+        values[Statistic.JITTER] = found.jitter
+    return values
 
 
 def _observed(simulation: Simulation, kind: Kind, name: str, quantity: str) -> MetricObservation | None:

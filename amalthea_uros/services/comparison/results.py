@@ -67,6 +67,8 @@ class ComparisonRow(Shown):
     object : its name in the model, or in the trace if the model has none of that name
     statistic : None if nothing of the object is compared
     measured, predicted : None if there is no such value, for the `reason`
+    predicted_range : if the prediction depends on an unknown phase, its ends over the phases; then `predicted` is the nearest value
+        to the measured one; None if it is one value
     tolerance : of the deviation; None for a bound, which has none
     samples : number of measured values
     """
@@ -78,6 +80,7 @@ class ComparisonRow(Shown):
     verdict: Agreement
     measured: Fraction | None = None
     predicted: Fraction | None = None
+    predicted_range: tuple[Fraction, Fraction] | None = None
     claim: PredictionClaim | None = None
     method: str = ""
     tolerance: Fraction | None = None
