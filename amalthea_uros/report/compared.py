@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -81,12 +81,28 @@ class PredictionGroup:
     @property
     def worst(self) -> ComparisonRow:
         """The row with the largest deviation, of those that do not agree if there are any."""
-        return max(self.rows, key=lambda row: (row.verdict is Agreement.OUTSIDE, _size(row)))
+        return worst_of(self.rows)
 
     def times(self, is_measured: bool) -> str:
         """Minimum, mean and maximum."""
         found = {row.statistic: row.measured if is_measured else row.predicted for row in self.rows}
         return " / ".join(_time(found.get(statistic)) for statistic in _STATISTICS)
+
+
+def worst_of(rows: Iterable[ComparisonRow]) -> ComparisonRow:
+    """The row that matters most: what is refuted, then the largest deviation of what does not agree, then of what agrees.
+
+    Of bounds, the deviation does not matter.
+    """
+
+    def rank(row: ComparisonRow) -> tuple[int, bool, Fraction]:
+        is_tested = is_bound(row.claim, row.statistic)
+        return _BADNESS.index(row.verdict), not is_tested, Fraction(0) if is_tested else _size(row)
+
+    return max(rows, key=rank)
+
+
+_BADNESS = (Agreement.WITHIN, Agreement.OUTSIDE, Agreement.REFUTED)
 
 
 def prediction_groups(result: Comparison) -> list[PredictionGroup]:
@@ -256,8 +272,13 @@ def prediction_cells(group: PredictionGroup) -> tuple[str, ...]:
         f"{deviation_text(worst)}{of}",
         "-" if distance is None else f"{float(distance.distance.value):.3f}",
         str(group.verdict),
-        worst.reason or ("nearest value of all phases" if any(row.predicted_range for row in group.rows) else ""),
+        worst.reason or ("nearest value of all phases" if any(map(_depends_on_phase, group.rows)) else ""),
     )
+
+
+def _depends_on_phase(row: ComparisonRow) -> bool:
+    low, high = row.predicted_range or (Fraction(0), Fraction(0))
+    return high - low > _SMALLEST * abs(high)
 
 
 #: The headings of `prediction_cells`.

@@ -255,6 +255,7 @@ def _rows(target: Target, predictor: Predictor, rule: Rule) -> Iterator[Comparis
         verdict=Agreement.NOT_PREDICTED,
         samples=0 if series.statistics is None else series.statistics.count,
         reason=target.reason,
+        series=series,
     )
     if target.reason:
         yield nothing

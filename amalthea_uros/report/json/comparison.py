@@ -51,6 +51,7 @@ def row_json(row: ComparisonRow) -> dict[str, Any]:
     return {
         "object": row.object,
         "kind": row.kind,
+        "trace_object": None if row.series is None else row.series.name,
         "quantity": row.quantity,
         "statistic": row.statistic,
         "predicted_ps": _whole(row.predicted),

@@ -92,6 +92,7 @@ def compared(
                 tolerance=None if is_bound(prediction.claim, statistic) else rule.tolerance,
                 samples=series.statistics.count,
                 reason=reason,
+                series=series,
             )
 
 

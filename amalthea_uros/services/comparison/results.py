@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 
@@ -10,7 +10,7 @@ from amalthea_uros._internal.shown import Shown
 from amalthea_uros.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.measure.distances import Distance
-from amalthea_uros.measure.series import Kind, Measurement
+from amalthea_uros.measure.series import Kind, Measurement, Series
 from amalthea_uros.simulate.results import ObservedVerdict
 from amalthea_uros.units import Time
 
@@ -71,6 +71,7 @@ class ComparisonRow(Shown):
         to the measured one; None if it is one value
     tolerance : of the deviation; None for a bound, which has none
     samples : number of measured values
+    series : what was measured; None if nothing was
     """
 
     object: str
@@ -86,6 +87,7 @@ class ComparisonRow(Shown):
     tolerance: Fraction | None = None
     samples: int = 0
     reason: str = ""
+    series: Series | None = field(default=None, repr=False, compare=False)
 
     @property
     def deviation(self) -> Fraction | None:
