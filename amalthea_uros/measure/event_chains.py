@@ -1,20 +1,20 @@
 """Latencies of chains from the steps that a trace has of them.
 
-A chain begins with the activation of the job that makes its first step, if the trace has it, and otherwise with that step: where the
-chain of the model begins later in that job, the measured latencies are longer than those of the model. It ends with the last step.
+A chain begins with the activation of the job that makes its first step, or with its start if that is known of the chain; if the trace
+does not have that, with the step. Where the chain of a model begins later in that job, the measured latencies are longer than those of
+the model. It ends with the last step.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.measure.reactions import LatencyLists
+from amalthea_uros.measure.reactions import BY_NUMBER, LatencyLists
 from amalthea_uros.measure.series import Counts, Series
-from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.route_latencies import RouteLatencies
 from amalthea_uros.trace.table import NO_NOTE, EventKind, EventTable
 
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 #: Numbers of jobs have fewer bits.
 _BITS = 40
+#: The events of a job with which a chain can begin, in words.
+_BEGINS = {EventKind.ACTIVATE: "activation", EventKind.START: "start"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,13 +51,15 @@ class ChainSteps:
 
     Attributes
     ----------
+    starts : of chains that do not begin with the activation of a job: with which event they do
     ambiguous : the chains with several routes, which are not measured
     """
 
+    starts: Mapping[str, EventKind] = field(default_factory=dict)
     gaps: int = 0
     ambiguous: list[str] = field(default_factory=list)
     _steps: list[Numbers] = field(default_factory=list)
-    _activations: list[Numbers] = field(default_factory=list)
+    _begins: dict[EventKind, list[Numbers]] = field(default_factory=lambda: {kind: [] for kind in _BEGINS})
 
     def add(self, table: EventTable) -> None:
         """Take events in."""
@@ -66,9 +70,9 @@ class ChainSteps:
             job = _job(table.source, table.source_instance)
             columns = (table.time, table.target.astype(np.int64), table.target_instance, table.note, segment, job)
             self._steps.append(np.array([column[is_step] for column in columns]))
-        is_activation = table.kind == EventKind.ACTIVATE
-        jobs = _job(table.target[is_activation], table.target_instance[is_activation])
-        self._activations.append(np.array([jobs, table.time[is_activation]]))
+        for kind, found in self._begins.items():
+            here = table.kind == kind
+            found.append(np.array([_job(table.target[here], table.target_instance[here]), table.time[here]]))
 
     def series(self, names: Sequence[str]) -> Iterator[Series]:
         """The latencies of each chain, by the number of the stimulus."""
@@ -76,24 +80,24 @@ class ChainSteps:
             return
         steps = np.concatenate(self._steps, axis=1)
         for number in np.unique(steps[1]).tolist():
-            found = self._ends(steps[:, steps[1] == number])
+            found = self._ends(steps[:, steps[1] == number], self.starts.get(names[number], EventKind.ACTIVATE))
             if found.has_several_routes:
                 self.ambiguous.append(names[number])
             else:
-                yield from _latencies(names[number], found)
+                yield from _latencies(names[number], found, self.starts.get(names[number], EventKind.ACTIVATE))
 
-    def _ends(self, steps: Numbers) -> _Steps:
+    def _ends(self, steps: Numbers, begin: EventKind) -> _Steps:
         time, _, stimulus, step, segment, job = steps
         is_first, is_last = step == 0, step == step.max()
-        times = np.concatenate([self._activated(job[is_first], time[is_first]), time[is_last]])
+        times = np.concatenate([self._begun(begin, job[is_first], time[is_first]), time[is_last]])
         is_response = np.repeat([False, True], [np.count_nonzero(is_first), np.count_nonzero(is_last)])
         order = np.lexsort((is_response, times))
         stimuli, segments = (np.concatenate([column[is_first], column[is_last]])[order] for column in (stimulus, segment))
         return _Steps(times[order], stimuli, segments, is_response[order])
 
-    def _activated(self, jobs: Numbers, otherwise: Numbers) -> Numbers:
-        """When jobs were activated, or another time where the trace does not say it."""
-        known, times = np.concatenate(self._activations, axis=1)
+    def _begun(self, kind: EventKind, jobs: Numbers, otherwise: Numbers) -> Numbers:
+        """When jobs were activated or started, or another time where the trace does not say it."""
+        known, times = np.concatenate(self._begins[kind], axis=1)
         order = np.argsort(known, kind="stable")
         place = np.searchsorted(known, jobs, sorter=order)
         found = order[np.minimum(place, max(len(order) - 1, 0))] if len(order) else np.zeros(0, np.int64)
@@ -102,7 +106,7 @@ class ChainSteps:
         return np.where(known[found] == jobs, times[found], otherwise)
 
 
-def _latencies(name: str, steps: _Steps) -> Iterator[Series]:
+def _latencies(name: str, steps: _Steps, begin: EventKind) -> Iterator[Series]:
     found, unanswered = LatencyLists(), 0
     for part in np.unique(steps.segment).tolist():
         here = steps.segment == part
@@ -110,8 +114,8 @@ def _latencies(name: str, steps: _Steps) -> Iterator[Series]:
         latencies = RouteLatencies(found.note)
         latencies.add(is_response, steps.time[here], _in_order(is_response, stimulus))
         unanswered += latencies.stimuli - 1 - latencies.answered
-    method = "from the activation of the job with the first step to the last step, by the number of the stimulus"
-    yield from found.series(name, Counts(incomplete=unanswered), method, tuple(ChainQuantity))
+    method = f"from the {_BEGINS[begin]} of the job with the first step to the last step, by the number of the stimulus"
+    yield from found.series(name, Counts(incomplete=unanswered), method, BY_NUMBER)
 
 
 def _in_order(is_response: NDArray[np.bool_], stimulus: Numbers) -> Numbers:

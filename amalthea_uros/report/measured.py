@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from math import floor
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.measure.series import Counts, Measurement, Series
@@ -101,11 +102,12 @@ def closing_line(measurement: Measurement) -> str:
 
 def _exceedance(measurement: Measurement) -> str:
     """How many later values may exceed a maximum, by the fewest values of an object."""
-    numbers = [series.statistics.count for series in measurement.series if series.statistics is not None]
-    share = exceedance(min(numbers))
+    first = {series.name: series.statistics for series in reversed(measurement.series) if series.statistics is not None}
+    count = min(found.count for found in first.values())
+    share = exceedance(count)
     if share is None:
         return ""
-    return f"; if jobs are independent, fewer than {float(share):.2g} of them exceed it (95 % confidence, n = {min(numbers):,})"
+    return f"; if values are independent, at most 1 in {floor(1 / share):,} exceeds it (n = {count:,}, 95 % confidence)"
 
 
 def exceedance(count: int) -> Fraction | None:

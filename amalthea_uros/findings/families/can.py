@@ -86,4 +86,11 @@ KINDS = (
         ),
         remedy="Choose one of the channels.",
     ),
+    FindingKind(
+        id="CAN012",
+        title="DBC file that cannot be read",
+        severity=Severity.ERROR,
+        rationale="The file is missing, or not a valid DBC file. Nothing is known of the signals in the frames.",
+        remedy="Check the path and the place in the file that is stated, or save the file again as DBC.",
+    ),
 )
