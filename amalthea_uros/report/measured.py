@@ -13,7 +13,7 @@ from amalthea_uros.simulate.results import Histogram
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 #: The numbers that are shown of each series.
-COLUMNS = ("object", "quantity", "n", "min", "mean", "max", "std", "peak to peak", "p99", "mean sq. deviation")
+COLUMNS = ("object", "quantity", "n", "min", "mean", "max", "std", "peak to peak", "p99", "variance")
 RIGHT = range(2, len(COLUMNS))
 P99 = Fraction(99, 100)
 #: With this probability no more exceed the maximum than `exceedance` says, if the values are independent: 1 - 0.05^(1/n) < 3/n.

@@ -112,8 +112,8 @@ def measure(
     period : the standard period; the deviation of the distances of starts from it is the jitter of AUTOSAR
     window : the part of the trace that is measured, from its first event on
     select : the objects of the result; by default all
-    model : what describes the system of a trace of events, so that chains begin as they do in it; by default, at the activation of the job
-        with their first step
+    model : what describes the system of a trace of events, so that chains begin as they do in it; by default, at the activation of the
+        job with their first step
 
     Raises
     ------
