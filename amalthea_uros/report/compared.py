@@ -95,9 +95,9 @@ def worst_of(rows: Iterable[ComparisonRow]) -> ComparisonRow:
     Of bounds, the deviation does not matter.
     """
 
-    def rank(row: ComparisonRow) -> tuple[int, bool, Fraction]:
+    def rank(row: ComparisonRow) -> tuple[int, bool, bool, Fraction]:
         is_tested = is_bound(row.claim, row.statistic)
-        return _BADNESS.index(row.verdict), not is_tested, Fraction(0) if is_tested else _size(row)
+        return _BADNESS.index(row.verdict), not is_tested, not row.reason, Fraction(0) if is_tested else _size(row)
 
     return max(rows, key=rank)
 
@@ -166,7 +166,7 @@ def _outcome(result: Comparison) -> str:
     outside = [row for row in result.rows if row.verdict is Agreement.OUTSIDE]
     if refuted:
         others = f"; {counted(len(refuted) - 1, 'other bound')} exceeded" if refuted[1:] else ""
-        return f"Model refuted: {what(refuted[0])} is {_time(refuted[0].measured)}, {refuted[0].reason}{others}"
+        return f"Model refuted: {what(refuted[0])} is {time_text(refuted[0].measured or 0)}, {refuted[0].reason}{others}"
     if not result.compared:
         return "Nothing compared: no measured quantity is predicted"
     tolerance = f"{percent(result.tolerance)} of the measurement"

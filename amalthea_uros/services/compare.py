@@ -16,11 +16,11 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.measure.distances import Distance, distance
-from amalthea_uros.measure.series import Kind, Measurement
+from amalthea_uros.measure.series import Kind, Measurement, Series
 from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.comparison.agreement import Rule, compared
+from amalthea_uros.services.comparison.agreement import LEAST, Rule, compared
 from amalthea_uros.services.comparison.limits import judge_limits
 from amalthea_uros.services.comparison.naming import Names, Target, targets
 from amalthea_uros.services.comparison.predictions import Missing, Predictor
@@ -216,7 +216,7 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
         uncertainty=uncertainty,
         rows=rows,
         limits=tuple(judge_limits(system, settings, measurement, found)),
-        distributions=tuple(_distributions(found, rows, runs, options.tolerance)),
+        distributions=tuple(_distributions(found, rows, runs, rule)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,
         assumptions=_assumptions(measurement, options, analysis, simulation),
@@ -270,7 +270,10 @@ def _rows(target: Target, predictor: Predictor, rule: Rule) -> Iterator[Comparis
         return
     chosen = {statistic: predictions[statistic] for statistic in target.statistics}
     rows = list(compared(replace(series, kind=target.kind), target.name, target.quantity, chosen, rule))
-    yield from rows or [replace(nothing, reason="what is predicted of it is not what was measured")]
+    yield from rows or [replace(nothing, reason=LEAST if series.is_least else _UNLIKE)]
+
+
+_UNLIKE = "no prediction has the definition of what was measured"
 
 
 def _not_measured(system: System, found: Sequence[Target]) -> Iterator[ComparisonRow]:
@@ -290,7 +293,7 @@ def _not_measured(system: System, found: Sequence[Target]) -> Iterator[Compariso
 
 
 def _distributions(
-    found: Sequence[Target], rows: Sequence[ComparisonRow], runs: Sequence[Run], tolerance: Fraction
+    found: Sequence[Target], rows: Sequence[ComparisonRow], runs: Sequence[Run], rule: Rule
 ) -> Iterator[DistributionRow]:
     """The distances of all quantities of which both have the values; of several phases, the nearest one or all together."""
     simulated = _simulated_values(runs)
@@ -300,10 +303,10 @@ def _distributions(
     for target in found:
         values = target.series.values
         others = simulated.get((target.kind, target.name, target.quantity), ())
-        if target.reason or values is None or not len(values) or not others:
+        if target.reason or target.series.is_least or values is None or not len(values) or not others:
             continue
-        between = min((distance(values, other) for other in others), key=lambda each: each.value)
-        is_hidden = (target.name, target.quantity) in agreeing and _differs(between, tolerance)
+        between = min((distance(values, other) for other in others), key=_farness)
+        is_hidden = (target.name, target.quantity) in agreeing and _differs(between, rule, target.series)
         yield DistributionRow(
             object=target.name, kind=target.kind, quantity=target.quantity, distance=between, is_hidden=is_hidden
         )
@@ -327,10 +330,21 @@ def _key(statistics: Statistics) -> tuple[object, ...]:
     return statistics.min, statistics.mean, statistics.max, statistics.variance
 
 
-def _differs(between: Distance, tolerance: Fraction) -> bool:
-    """Whether distributions differ by more than chance, and at some quantile by more than the tolerance."""
-    far = (abs(measured - simulated) > tolerance * abs(measured) for measured, simulated in between.quantiles.values())
-    return between.is_significant and any(far)
+def _farness(between: Distance) -> tuple[Fraction, int]:
+    """Which of several distributions is nearer; those without a common value differ by their quantiles."""
+    return between.value, sum(abs(measured - simulated) for measured, simulated in between.quantiles.values())
+
+
+def _differs(between: Distance, rule: Rule, series: Series) -> bool:
+    """Whether distributions differ by more than chance, and at some quantile by more than tolerance and uncertainty."""
+    baseline = series.baseline
+    uncertainty = Fraction(rule.uncertainty) + (0 if baseline is None else baseline.max - baseline.min)
+
+    def is_far(measured: Time, simulated: Time) -> bool:
+        difference = abs(measured - simulated)
+        return difference > rule.tolerance * abs(measured) and difference > uncertainty
+
+    return between.is_significant and any(is_far(*both) for both in between.quantiles.values())
 
 
 def _phases(system: System, settings: Settings) -> tuple[str, ...]:
@@ -380,14 +394,17 @@ def _unknown_phases(comparison: Comparison, phases: Sequence[str]) -> Finding:
 
 
 def _refutations(comparison: Comparison) -> Iterator[Finding]:
+    """A finding for each quantity that was measured beyond its bounds."""
+    refuted: dict[tuple[str, str], list[str]] = {}
     for row in comparison.rows:
         if row.verdict is Agreement.REFUTED:
-            assert row.measured is not None
-            assert row.predicted is not None
-            what = f"the {row.statistic} {row.quantity.replace('_', ' ')} of {row.object!r}"
-            measured, bound = time_text(row.measured), time_text(row.predicted)
-            message = f"the model is wrong: {what} was measured as {measured}, {row.reason} of {bound}"
-            yield Finding("CMP001", Severity.ERROR, message, help=_REFUTED, object=row.object)
+            bound = f"{row.reason} of {time_text(row.predicted or 0)}"
+            refuted.setdefault((row.object, row.quantity), []).append(
+                f"{row.statistic} {time_text(row.measured or 0)}, {bound}"
+            )
+    for (name, quantity), found in refuted.items():
+        message = f"the model is wrong: the {quantity.replace('_', ' ')} of {name!r} was measured beyond its bounds: {'; '.join(found)}"
+        yield Finding("CMP001", Severity.ERROR, message, help=_REFUTED, object=name)
 
 
 _REFUTED = (

@@ -76,6 +76,8 @@ def compared(
     values = measured_values(series.statistics)
     for statistic in Statistic:
         for prediction in predictions.get(statistic, ()) if statistic in values else ():
+            if not _is_comparable(series, statistic, prediction):
+                continue
             measured = values[statistic]
             agreement, reason = _judged(statistic, measured, _certain(series, statistic, measured, rule), prediction, rule)
             yield ComparisonRow(
@@ -91,9 +93,13 @@ def compared(
                 method=prediction.method,
                 tolerance=None if is_bound(prediction.claim, statistic) else rule.tolerance,
                 samples=series.statistics.count,
-                reason=reason,
+                reason=reason or (LEAST if series.is_least else ""),
                 series=series,
             )
+
+
+#: What is to be said of latencies that are measured without knowing what a response belongs to.
+LEAST = "without the number of the stimulus, only the least possible latencies are measured"
 
 
 class _Ends(NamedTuple):
@@ -116,6 +122,11 @@ def _certain(series: Series, statistic: Statistic, value: Fraction, rule: Rule) 
     if statistic is Statistic.JITTER:
         below = above = below + above
     return _Ends(value - wrong - below, value + wrong + above)
+
+
+def _is_comparable(series: Series, statistic: Statistic, prediction: Prediction) -> bool:
+    """Whether a prediction says something about a measured value: of the least possible latencies, only the maximum can be too long."""
+    return not series.is_least or (statistic is Statistic.MAX and is_bound(prediction.claim, statistic))
 
 
 def _judged(statistic: Statistic, measured: Fraction, ends: _Ends, prediction: Prediction, rule: Rule) -> tuple[Agreement, str]:

@@ -14,6 +14,7 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros.measure.series import Measurement, Series
 from amalthea_uros.perf.constraints import Bound, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.comparison.agreement import LEAST
 from amalthea_uros.services.comparison.naming import Target
 from amalthea_uros.services.comparison.results import MeasuredLimit
 from amalthea_uros.simulate.limited_values import LimitedQuantity
@@ -62,8 +63,9 @@ def judge_limits(
     system: System, settings: Settings, measurement: Measurement, targets: Iterable[Target]
 ) -> Iterator[MeasuredLimit]:
     """The verdicts on all deadlines, requirements and constraints."""
+    found = tuple(targets)
     measured: dict[str, dict[str, MetricObservation]] = {}
-    for target in targets:
+    for target in found:
         if target.series.statistics is not None and not target.reason and len(target.statistics) > 1:
             measured.setdefault(target.name, {})[target.quantity] = _observation(target.series)
     context = TimingContext.of_scheduling(system, settings)
@@ -75,8 +77,9 @@ def judge_limits(
     yield from (_deadline(each) for each in processes if each.verdict and (each.name, each.deadline) not in stated)
     times = tuple(filter(_is_measurable, system.constraints.requirements))
     judged = replace(system, constraints=replace(system.constraints, requirements=times))
-    for found in judge_requirements(judged, processes, chains, measurement.duration, runnables, _NotMeasured()):
-        yield _limit(found, measured.get(found.object, {}))
+    least = {target.name for target in found if target.series.is_least}
+    for limit in judge_requirements(judged, processes, chains, measurement.duration, runnables, _NotMeasured()):
+        yield _certain(_limit(limit, measured.get(limit.object, {})), limit.object in least)
     yield from (_not_a_time(each) for each in system.constraints.requirements if not _is_measurable(each))
 
 
@@ -174,6 +177,15 @@ def _limit(found: RequirementObservation, metrics: _Metrics) -> MeasuredLimit:
         is_time=found.is_time,
         reason=f"the {found.quantity} of {found.object!r} was not measured" if is_missing else found.reason,
     )
+
+
+def _certain(limit: MeasuredLimit, is_least: bool) -> MeasuredLimit:
+    """A verdict that also holds if the real values are longer than those that were measured."""
+    if not is_least or limit.verdict is ObservedVerdict.NOT_OBSERVED:
+        return limit
+    if limit.is_upper and limit.verdict is ObservedVerdict.MISSED:
+        return limit
+    return replace(limit, verdict=ObservedVerdict.NOT_OBSERVED, reason=LEAST)
 
 
 def _not_a_time(requirement: Requirement) -> MeasuredLimit:

@@ -101,9 +101,20 @@ def targets(measurement: Measurement, names: Names, system: System) -> Iterator[
         parts = _measured(meaning.measured, measurement)
         used |= {(each.kind, each.name, each.quantity) for each in parts}
         yield _meant(meaning, parts, system)
+    baselines = _baselines(measurement)
     for series in measurement.series:
-        if (series.kind, series.name, series.quantity) not in used:
-            yield _named(series, names.renamed.get(series.name, series.name), system)
+        if (series.kind, series.name, series.quantity) in used:
+            continue
+        target = _named(series, names.renamed.get(series.name, series.name), system)
+        if target.is_unknown and series.name in baselines:
+            target = replace(target, reason="it is a baseline, which was subtracted from others", is_unknown=False)
+        yield target
+
+
+def _baselines(measurement: Measurement) -> set[str]:
+    """The objects whose times were subtracted from those of others."""
+    subtracted = [series.baseline for series in measurement.series if series.baseline is not None]
+    return {series.name for series in measurement.series if series.statistics in subtracted}
 
 
 def _check(measurement: Measurement, names: Names, system: System) -> None:
