@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.measure.series import Measurement, Series
-from amalthea_uros.perf.constraints import Bound, Requirement, TimeLimit, TimeMetric
+from amalthea_uros.perf.constraints import Bound, Requirement, TimeMetric
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.comparison.agreement import LEAST
 from amalthea_uros.services.comparison.naming import Target
@@ -41,6 +41,8 @@ _QUANTITIES = {
     "reaction": ChainQuantity.REDUCED_REACTION_TIME,
     "data age": ChainQuantity.REDUCED_DATA_AGE,
 }
+#: The end of the names of jitters: they are differences of two values.
+_JITTER = " jitter"
 #: Quantity -> what was measured of it.
 _Metrics = Mapping[str, MetricObservation]
 
@@ -85,7 +87,8 @@ def judge_limits(
 
 def _is_measurable(requirement: Requirement) -> bool:
     """Whether the values of a series show it; how often jobs migrate is not measured, so the time on one core is not known."""
-    return isinstance(requirement.limit, TimeLimit) and requirement.limit.metric is not TimeMetric.CORE_EXECUTION_TIME
+    is_time = isinstance(requirement.limit.metric, TimeMetric)
+    return is_time and requirement.limit.metric is not TimeMetric.CORE_EXECUTION_TIME
 
 
 def _observation(series: Series) -> MetricObservation:
@@ -164,7 +167,8 @@ def _deadline(process: ProcessObservation) -> MeasuredLimit:
 
 def _limit(found: RequirementObservation, metrics: _Metrics) -> MeasuredLimit:
     is_missing = found.verdict is ObservedVerdict.NOT_OBSERVED and found.object
-    values = metrics.get(_QUANTITIES.get(found.quantity, found.quantity.replace(" ", "_")))
+    limited = found.quantity.removesuffix(_JITTER)
+    values = metrics.get(_QUANTITIES.get(limited, limited.replace(" ", "_")))
     return MeasuredLimit(
         name=found.name,
         object=found.object,
@@ -183,7 +187,7 @@ def _certain(limit: MeasuredLimit, is_least: bool) -> MeasuredLimit:
     """A verdict that also holds if the real values are longer than those that were measured."""
     if not is_least or limit.verdict is ObservedVerdict.NOT_OBSERVED:
         return limit
-    if limit.is_upper and limit.verdict is ObservedVerdict.MISSED:
+    if limit.is_upper and limit.verdict is ObservedVerdict.MISSED and not limit.quantity.endswith(_JITTER):
         return limit
     return replace(limit, verdict=ObservedVerdict.NOT_OBSERVED, reason=LEAST)
 
@@ -199,6 +203,6 @@ def _not_a_time(requirement: Requirement) -> MeasuredLimit:
         value=None,
         verdict=ObservedVerdict.NOT_OBSERVED,
         samples=0,
-        is_time=isinstance(limit, TimeLimit),
+        is_time=isinstance(limit.metric, TimeMetric),
         reason=f"the {limit.metric} is not measured in traces",
     )
