@@ -46,7 +46,7 @@ RUNS = {
         ),
     ),
     "amuros measure": (
-        ("measure", "bodas-test-measured.log", "--markers", "bodas-test-measured.markers.yaml"),
+        ("measure", "bodas-test-measured.log", "--markers", "bodas-test-measured.markers.yml"),
         ("measure", "bodas-test-measured.log", "--start", "18000001", "--end", "18000002", "--from", "10ms"),
         ("measure", "bodas-test-measured.log", "--start", "18000001", "--end", "1"),
     ),
