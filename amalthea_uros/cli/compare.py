@@ -40,6 +40,13 @@ def _overhead(text: str) -> tuple[str, Time]:
     return name, parse_time(time)
 
 
+def _uncertainty(text: str) -> Time:
+    time = parse_time(text)
+    if time < 0:
+        raise ValueError("an uncertainty must not be negative")
+    return time
+
+
 @click.command("compare")
 @click.argument("model", type=INPUT, metavar="MODEL_OR_YAML")
 @click.argument("traces", nargs=-1, required=True, type=INPUT, metavar="TRACE...")
@@ -84,7 +91,7 @@ def _overhead(text: str) -> tuple[str, Time]:
 )
 @click.option(
     "--uncertainty",
-    type=Parsed("TIME", parse_time),
+    type=Parsed("TIME", _uncertainty),
     help="How far a measured time may be wrong; default: less than a step of the time stamps.",
 )
 @click.option(

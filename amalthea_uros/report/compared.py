@@ -83,6 +83,22 @@ class PredictionGroup:
         """The row with the largest deviation, of those that do not agree if there are any."""
         return worst_of(self.rows)
 
+    @property
+    def deviations(self) -> str:
+        """Those of minimum, mean and maximum."""
+        found = {row.statistic: deviation_text(row) for row in self.rows}
+        texts = [found.get(statistic, "-") for statistic in _STATISTICS]
+        return texts[0] if len(set(texts)) == 1 else " / ".join(texts)
+
+    @property
+    def remark(self) -> str:
+        """What else is outside, and why the verdict is what it is."""
+        others = [row for row in self.rows if row.verdict is Agreement.OUTSIDE and row.statistic not in _STATISTICS]
+        parts = [f"{row.statistic} {deviation_text(row)}" for row in others]
+        if self.worst.reason or any(map(_depends_on_phase, self.rows)):
+            parts.append(self.worst.reason or "nearest value of all phases")
+        return ", ".join(parts)
+
     def times(self, is_measured: bool) -> str:
         """Minimum, mean and maximum."""
         found = {row.statistic: row.measured if is_measured else row.predicted for row in self.rows}
@@ -260,8 +276,7 @@ def _time(value: Fraction | None) -> str:
 
 def prediction_cells(group: PredictionGroup) -> tuple[str, ...]:
     """The cells of the predictions of a quantity."""
-    first, worst, distance = group.rows[0], group.worst, group.distance
-    of = f" ({worst.statistic})" if worst.deviation else ""
+    first, distance = group.rows[0], group.distance
     return (
         first.object,
         quantity_text(first.quantity),
@@ -269,10 +284,10 @@ def prediction_cells(group: PredictionGroup) -> tuple[str, ...]:
         group.times(is_measured=True),
         group.times(is_measured=False),
         str(first.claim),
-        f"{deviation_text(worst)}{of}",
+        group.deviations,
         "-" if distance is None else f"{float(distance.distance.value):.3f}",
         str(group.verdict),
-        worst.reason or ("nearest value of all phases" if any(map(_depends_on_phase, group.rows)) else ""),
+        group.remark,
     )
 
 

@@ -23,7 +23,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.services.comparison.agreement import LEAST, Rule, compared
 from amalthea_uros.services.comparison.limits import judge_limits
 from amalthea_uros.services.comparison.naming import Names, Target, targets
-from amalthea_uros.services.comparison.predictions import Missing, Predictor
+from amalthea_uros.services.comparison.predictions import Missing, Predictor, overhead_of
 from amalthea_uros.services.comparison.results import (
     Agreement,
     Comparison,
@@ -76,6 +76,12 @@ class CompareOptions:
     names: Names = field(default_factory=Names)
     overheads: Mapping[str, Time] = field(default_factory=dict)
     uncertainty: Time | None = None
+
+    def __post_init__(self) -> None:
+        if not self.sources:
+            raise InvalidArgumentError("nothing predicts; compare by analysis, simulation, or both")
+        if self.uncertainty is not None and self.uncertainty < 0:
+            raise InvalidArgumentError("an uncertainty must not be negative")
 
 
 def compare(
@@ -216,7 +222,7 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
         uncertainty=uncertainty,
         rows=rows,
         limits=tuple(judge_limits(system, settings, measurement, found)),
-        distributions=tuple(_distributions(found, rows, runs, rule)),
+        distributions=tuple(_distributions(found, rows, runs, rule, options.overheads)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,
         assumptions=_assumptions(measurement, options, analysis, simulation),
@@ -293,7 +299,7 @@ def _not_measured(system: System, found: Sequence[Target]) -> Iterator[Compariso
 
 
 def _distributions(
-    found: Sequence[Target], rows: Sequence[ComparisonRow], runs: Sequence[Run], rule: Rule
+    found: Sequence[Target], rows: Sequence[ComparisonRow], runs: Sequence[Run], rule: Rule, overheads: Mapping[str, Time]
 ) -> Iterator[DistributionRow]:
     """The distances of all quantities of which both have the values; of several phases, the nearest one or all together."""
     simulated = _simulated_values(runs)
@@ -305,7 +311,8 @@ def _distributions(
         others = simulated.get((target.kind, target.name, target.quantity), ())
         if target.reason or target.series.is_least or values is None or not len(values) or not others:
             continue
-        between = min((distance(values, other) for other in others), key=_farness)
+        added = overhead_of(target.name, target.quantity, overheads)
+        between = min((distance(values, other + added) for other in others), key=_farness)
         is_hidden = (target.name, target.quantity) in agreeing and _differs(between, rule, target.series)
         yield DistributionRow(
             object=target.name, kind=target.kind, quantity=target.quantity, distance=between, is_hidden=is_hidden
@@ -375,9 +382,9 @@ def _findings(comparison: Comparison, found: Sequence[Target], phases: Sequence[
     yield from _unknown_names(found)
     for row in comparison.distributions:
         if row.is_hidden:
-            what = f"the {row.quantity.replace('_', ' ')} of {row.object!r}"
+            what = f"{row.quantity.replace('_', ' ')} of {row.object!r}"
             share = f"{float(row.distance.value):.2g}"
-            message = f"{what} has the predicted mean, but another distribution (Kolmogorov-Smirnov distance {share})"
+            message = f"the mean {what} agrees, but not its distribution (Kolmogorov-Smirnov distance {share})"
             yield Finding("CMP003", Severity.WARNING, message, help="Compare the histograms.", object=row.object)
     if phases:
         yield _unknown_phases(comparison, phases)

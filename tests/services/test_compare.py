@@ -264,6 +264,7 @@ def test_an_overhead_is_added_only_if_asked_for():
     added = compare(app, measured, by=["simulation"], overheads={"": 41 * MICROSECOND})
     assert only(added, "mean").predicted == 57 * MICROSECOND
     assert only(added, "jitter").predicted == 0
+    assert {both[1] for row in added.distributions for both in row.distance.quantiles.values()} == {57 * MICROSECOND}
     assert any("41 us of overhead" in sentence for sentence in added.assumptions)
     others = compare(app, measured, by=["simulation"], overheads={"Executor_Task": 41 * MICROSECOND})
     assert only(others, "mean").predicted == 16 * MICROSECOND

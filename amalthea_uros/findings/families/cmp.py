@@ -25,7 +25,7 @@ KINDS = (
     ),
     FindingKind(
         id="CMP003",
-        title="equal means of different distributions",
+        title="agreeing means of different distributions",
         severity=Severity.WARNING,
         rationale=(
             "The measured mean agrees with the simulated one, but the values are distributed differently: something that happens "

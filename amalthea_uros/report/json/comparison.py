@@ -40,7 +40,7 @@ def content(result: Comparison) -> dict[str, Any]:
             "holds": result.holds,
             **{verdict.replace(" ", "_"): result.count(verdict) for verdict in Agreement},
             "missed": [limit.name for limit in result.missed],
-            "closing_line": closing_line(result),
+            "text": closing_line(result),
         },
     }
 

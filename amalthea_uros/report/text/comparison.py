@@ -29,7 +29,7 @@ def write(result: Comparison, terminal: Terminal) -> None:
     predictions, bounds = [*map(prediction_cells, prediction_groups(result))], [*map(bound_cells, bound_tests(result))]
     if predictions:
         terminal.heading(
-            "Predictions (min / mean / max; deviation: largest one, of the measurement, positive if more was measured than predicted)"
+            "Predictions (min / mean / max; deviation: of the measurement, positive if more was measured than predicted)"
         )
         terminal.table(PREDICTIONS, predictions, right=(2, 3, 4, 6, 7))
     if bounds:

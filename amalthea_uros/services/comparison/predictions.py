@@ -142,8 +142,8 @@ class Predictor:
     # Both.
 
     def _with_overhead(self, name: str, quantity: str, statistic: Statistic, found: Prediction) -> Prediction:
-        overhead = self.overheads.get(name, self.overheads.get("", 0))
-        if not overhead or quantity not in _WITH_OVERHEAD or statistic is Statistic.JITTER:
+        overhead = overhead_of(name, quantity, self.overheads)
+        if not overhead or statistic is Statistic.JITTER:
             return found
         return replace(
             found,
@@ -181,6 +181,11 @@ def _values(run: Run, kind: Kind, name: str, quantity: str) -> dict[Statistic, F
         values |= {Statistic.MIN: found.min, Statistic.MEAN: found.mean, Statistic.MAX: found.max}
         values[Statistic.JITTER] = found.jitter
     return values
+
+
+def overhead_of(name: str, quantity: str, overheads: Mapping[str, Time]) -> Time:
+    """What is added to the predicted values of a quantity."""
+    return overheads.get(name, overheads.get("", 0)) if quantity in _WITH_OVERHEAD else 0
 
 
 def _observed(simulation: Simulation, kind: Kind, name: str, quantity: str) -> MetricObservation | None:
