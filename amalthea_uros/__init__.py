@@ -99,6 +99,11 @@ if TYPE_CHECKING:
     from amalthea_uros.services.check import CheckResult as CheckResult
     from amalthea_uros.services.check import check as check
     from amalthea_uros.services.check import check_files as check_files
+    from amalthea_uros.services.compare import compare as compare
+    from amalthea_uros.services.comparison.naming import Meaning as Meaning
+    from amalthea_uros.services.comparison.naming import Names as Names
+    from amalthea_uros.services.comparison.results import Comparison as Comparison
+    from amalthea_uros.services.comparison.results import ComparisonRow as ComparisonRow
     from amalthea_uros.services.diff import DiffResult as DiffResult
     from amalthea_uros.services.diff import diff as diff
     from amalthea_uros.services.explain import explain as explain
@@ -175,6 +180,9 @@ _NAMES = {
     "changes.change": ("Change", "parse_change"),
     "changes.sweep": ("Sweep", "parse_sweep"),
     "services.check": ("CheckResult", "check", "check_files"),
+    "services.compare": ("compare",),
+    "services.comparison.naming": ("Meaning", "Names"),
+    "services.comparison.results": ("Comparison", "ComparisonRow"),
     "services.diff": ("DiffResult", "diff"),
     "services.explain": ("explain",),
     "services.improvements": ("Improvement", "Improvements", "improvements"),

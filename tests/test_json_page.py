@@ -54,6 +54,11 @@ RUNS = {
         ("measure", "bodas-test-measured.log", "--start", "18000001", "--end", "18000002", "--from", "10ms"),
         ("measure", "bodas-test-measured.log", "--start", "18000001", "--end", "1"),
     ),
+    "amuros compare": (
+        ("compare", ADVANCED, "stopwatch.csv", "--duration", "20ms", "--set", "Control_Function.execution_time=5us"),
+        ("compare", "bodas-test-simple.yaml", "stopwatch.csv", "--by", "analysis"),
+        ("compare", "counted.amxmi", "stopwatch.csv", "--by", "analysis"),
+    ),
     "amuros check": (("check", ADVANCED, "--profile", "inchron,ta"),),
     "amuros build": (
         ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),
@@ -132,6 +137,13 @@ def folder(tmp_path):
     save(model, tmp_path / "unknown.amxmi")
     model[am.Runnable, "Message_Factor_Callback"].activity_graph = None
     save(model, tmp_path / "no-times.amxmi")
+    count = am.CountRequirementLimit(limit_type=am.LimitType.UPPER_LIMIT, metric=am.CountMetric.PREEMPTIONS, limit_value=1)
+    process = model[am.Task, "Control_Function"]
+    model.root.constraints_model.requirements.append(am.ProcessRequirement(name="preemptions", process=process, limit=count))
+    save(model, tmp_path / "counted.amxmi")
+    (tmp_path / "stopwatch.csv").write_text(
+        "object,kind,quantity,value_us\nControl_Function,process,response_time,16\nControl_Function,process,response_time,1200\n"
+    )
     return tmp_path
 
 

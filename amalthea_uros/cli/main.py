@@ -24,6 +24,7 @@ COMMANDS = {
     "build": "Build an AMALTHEA model from an app.yaml.",
     "chains": "List the paths from one process to another, with their latencies.",
     "check": "Check models by rules.",
+    "compare": "Compare predictions with what was measured.",
     "completion": "Print what makes a shell complete commands, options and files.",
     "diff": "Compare two models by meaning.",
     "explain": "Explain a rule or another finding.",

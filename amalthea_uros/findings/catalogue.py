@@ -20,6 +20,7 @@ FAMILIES = {
     "SIM": "Simulating systems",
     "CHN": "Analysing event chains",
     "CAN": "Reading logs of CAN buses",
+    "CMP": "Comparing predictions with measurements",
     "TRC": "Reading, checking and writing traces",
     "MEA": "Measuring times in traces",
     "RUL": "Loading user-made rules",

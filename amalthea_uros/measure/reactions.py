@@ -7,6 +7,7 @@ response is taken to show the latest stimulus before it: no chain is faster, so 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -94,7 +95,8 @@ def reactions(
         unanswered += latencies.stimuli - 1 - latencies.answered
     counts = Counts(incomplete=unanswered, lost=lost, duplicated=duplicated, reordered=int(np.count_nonzero(is_back)))
     if number is None:
-        yield from found.series(name, counts, "each response with the latest stimulus before it (the least possible)", _BY_TIME)
+        method = "each response with the latest stimulus before it (the least possible)"
+        yield from (replace(series, is_least=True) for series in found.series(name, counts, method, _BY_TIME))
     else:
         yield from found.series(name, counts, "by the number of the stimulus", BY_NUMBER)
 

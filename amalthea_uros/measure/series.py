@@ -56,6 +56,7 @@ class Series:
     method : how it was measured, in words
     baseline : of the empty object whose mean was subtracted from the values, None if nothing was
     period : the standard period of distances, None if it is not stated
+    is_least : whether the real values are at least these: what a response belongs to is not known
     """
 
     kind: Kind
@@ -68,6 +69,7 @@ class Series:
     method: str = ""
     baseline: Statistics | None = None
     period: Time | None = None
+    is_least: bool = False
 
     @property
     def net_range(self) -> tuple[Time, Time] | None:

@@ -25,6 +25,7 @@ from amalthea_uros.report.json import (
     analysis_result,
     build_result,
     check_result,
+    comparison,
     diff_result,
     impact,
     measurement,
@@ -34,6 +35,7 @@ from amalthea_uros.report.json import (
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.check import CheckResult
+from amalthea_uros.services.comparison.results import Comparison, ComparisonRow, DistributionRow, MeasuredLimit
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.improvements import Improvements
 from amalthea_uros.services.migrate import MigrationResult
@@ -212,6 +214,26 @@ def _(result: MigrationResult) -> list[Record]:
 @all_records.register
 def _(result: DiffResult) -> list[Record]:
     return [flat(diff_result.change_json(change)) for change in result.changes]
+
+
+@all_records.register
+def _(result: Comparison) -> list[Record]:
+    return [row for each in result.rows for row in all_records(each)]
+
+
+@all_records.register
+def _(row: ComparisonRow) -> list[Record]:
+    return [flat(comparison.row_json(row))]
+
+
+@all_records.register
+def _(row: DistributionRow) -> list[Record]:
+    return [flat({name: value for name, value in comparison.distribution_json(row).items() if name != "quantiles"})]
+
+
+@all_records.register
+def _(limit: MeasuredLimit) -> list[Record]:
+    return [flat(comparison.limit_json(limit))]
 
 
 @all_records.register

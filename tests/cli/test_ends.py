@@ -22,6 +22,7 @@ WITH_A_FILE = {
     "build": ["{}"],
     "chains": ["{}", "--from", "a", "--to", "b"],
     "check": ["{}"],
+    "compare": ["{}", "{}"],
     "diff": ["{}", str(BRAKE)],
     "fmt": ["{}"],
     "info": ["{}"],

@@ -1,0 +1,49 @@
+"""A comparison with a measurement as Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.report.compared import (
+    BOUNDS,
+    DISTRIBUTIONS,
+    LIMITS,
+    MISSING,
+    PREDICTIONS,
+    bound_cells,
+    bound_tests,
+    closing_line,
+    distribution_rows,
+    limit_cells,
+    missing_cells,
+    prediction_cells,
+    prediction_groups,
+    subject_line,
+)
+from amalthea_uros.report.markdown_text import escaped, table
+from amalthea_uros.services.comparison.results import Comparison
+
+
+def lines(result: Comparison) -> Iterator[str]:
+    """Whether the model holds, then the tables."""
+    yield from (
+        "# Comparison with a measurement",
+        "",
+        f"**{escaped(closing_line(result))}**",
+        "",
+        escaped(subject_line(result)),
+    )
+    sections = (
+        ("Predictions", PREDICTIONS, [*map(prediction_cells, prediction_groups(result))], (2, 3, 4, 6, 7)),
+        ("Bounds of the analysis", BOUNDS, [*map(bound_cells, bound_tests(result))], range(2, 7)),
+        ("Distributions", DISTRIBUTIONS, [*distribution_rows(result)], range(2, 8)),
+        ("Limits, as measured", LIMITS, [*map(limit_cells, result.limits)], (3, 4)),
+        ("Not compared", MISSING, [*map(missing_cells, result.not_compared)], ()),
+    )
+    for title, headings, rows, right in sections:
+        if rows:
+            yield from ("", f"## {title}", "")
+            yield from table(headings, rows, right)
+    if result.assumptions:
+        yield from ("", "## Assumptions", "")
+        yield from (f"- {escaped(sentence)}" for sentence in result.assumptions)

@@ -1,0 +1,427 @@
+"""Predictions of a model compared with a measurement: whether the model holds."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, TypeAlias
+
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.changes.apply import apply
+from amalthea_uros.changes.change import Change
+from amalthea_uros.changes.key import Configuration
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.measure.distances import Distance, distance
+from amalthea_uros.measure.series import Kind, Measurement, Series
+from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.names import require
+from amalthea_uros.perf.system import System
+from amalthea_uros.services.comparison.agreement import LEAST, Rule, compared
+from amalthea_uros.services.comparison.limits import judge_limits
+from amalthea_uros.services.comparison.naming import Names, Target, targets
+from amalthea_uros.services.comparison.predictions import Missing, Predictor, overhead_of
+from amalthea_uros.services.comparison.results import (
+    Agreement,
+    Comparison,
+    ComparisonRow,
+    DistributionRow,
+    Source,
+    Statistic,
+)
+from amalthea_uros.services.comparison.simulated import Run, simulate_measured
+from amalthea_uros.services.measure import MeasureOptions, measure_file
+from amalthea_uros.services.names import require_settings
+from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.services.simulate import time_of
+from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
+from amalthea_uros.services.timing_changes import described
+from amalthea_uros.services.what_if import Changes, as_changes
+from amalthea_uros.timing.phases import unknown_phases, with_first_arrivals
+from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import SECOND, Time, time_text
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+#: What was measured, or the trace to measure.
+Measured: TypeAlias = "Measurement | StrPath | Iterable[StrPath]"
+
+DEFAULT_TOLERANCE = Fraction(20, 100)
+_EVERYTHING = tuple(Source)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CompareOptions:
+    """How predictions and measurements are compared.
+
+    Attributes
+    ----------
+    tolerance : of deviations, relative to the measurement
+    sources : what predicts
+    duration : of the simulation; None: as long as the measurement
+    names : which measured series is what in the model
+    overheads : process -> what is added to its predicted execution and response times; "" stands for all others
+    uncertainty : by how much a measured time may be wrong; None: by less than a step of its time stamps
+    """
+
+    tolerance: Fraction = DEFAULT_TOLERANCE
+    sources: tuple[Source, ...] = _EVERYTHING
+    duration: Time | None = None
+    seed: int = 1
+    names: Names = field(default_factory=Names)
+    overheads: Mapping[str, Time] = field(default_factory=dict)
+    uncertainty: Time | None = None
+
+    def __post_init__(self) -> None:
+        if not self.sources:
+            raise InvalidArgumentError("nothing predicts; compare by analysis, simulation, or both")
+        if self.uncertainty is not None and self.uncertainty < 0:
+            raise InvalidArgumentError("an uncertainty must not be negative")
+
+
+def compare(
+    subject: Subject,
+    measured: Measured,
+    *,
+    tolerance: str | float | Fraction = DEFAULT_TOLERANCE,
+    by: Iterable[Source | str] = _EVERYTHING,
+    duration: str | Time | None = None,
+    seed: int = 1,
+    names: Names | None = None,
+    overheads: Mapping[str, Time] | None = None,
+    uncertainty: Time | None = None,
+    settings: Settings | None = None,
+    changes: Changes = (),
+) -> Comparison:
+    """Compare what the analysis and a simulation of a system predict with what was measured.
+
+    >>> print(compare("app.yaml", "run.log"))  # doctest: +SKIP
+
+    Parameters
+    ----------
+    subject : as for `analyze`
+    measured : what `measure` returned, or the files of a trace
+    tolerance : of deviations, as a share of the measurement: "20 %" or 0.2
+    by : "analysis", "simulation", or both
+    duration : of the simulation, such as "1 s", or picoseconds; None: as long as the measurement
+    names : which measured series is what in the model, where the names differ
+    overheads : process -> picoseconds that are added to its predicted execution and response times; "" stands for all others
+    uncertainty : by how many picoseconds a measured time may be wrong; None: by less than a step of its time stamps
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    InvalidArgumentError : a name, a value or the tolerance is wrong.
+    """
+    options = CompareOptions(
+        tolerance=parse_tolerance(tolerance),
+        sources=tuple(_source(each) for each in by),
+        duration=None if duration is None else time_of(duration),
+        seed=seed,
+        names=names or Names(),
+        overheads=overheads or {},
+        uncertainty=uncertainty,
+    )
+    return _run(subject, _measured(measured), options, settings or Settings(), as_changes(changes))
+
+
+def compare_files(
+    model: StrPath,
+    traces: Sequence[StrPath],
+    options: CompareOptions,
+    reading: MeasureOptions,
+    *,
+    settings: Settings | None = None,
+    changes: Sequence[Change] = (),
+) -> Comparison:
+    """Compare what a model in files predicts with what is measured in traces.
+
+    Parameters
+    ----------
+    reading : how the traces are measured
+    changes : of the system and the settings, made first
+
+    Raises
+    ------
+    ReadError, InvalidArgumentError : as for `compare`.
+    """
+    return _run(model, _measured_in(traces, reading), options, settings or Settings(), tuple(changes))
+
+
+def _run(
+    subject: Subject, measurement: Measurement, options: CompareOptions, settings: Settings, changes: Sequence[Change]
+) -> Comparison:
+    given = reusable(subject)
+    opened = open_subject(given)
+    configuration = Configuration(opened.system, settings)
+    require_settings(settings, opened.system)
+    differences = described(configuration, changes)
+    system, settings = apply(*configuration, changes)
+    found = _compared(system, settings, measurement, options)
+    return replace(
+        found,
+        model=" ".join(map(str, paths_of(given) or ())),
+        differences=differences,
+        findings=unsuppressed((*opened.findings, *found.findings)),
+    )
+
+
+def parse_tolerance(value: str | float | Fraction) -> Fraction:
+    """A tolerance as a share: "20 %", "0.2" or 0.2.
+
+    Raises
+    ------
+    InvalidArgumentError : it is none, or a number above 1, which may be meant in percent.
+    """
+    text = str(value).strip()
+    number, percent = text.removesuffix("%").strip(), text.endswith("%")
+    try:
+        share = Fraction(number) / (100 if percent else 1)
+    except (ValueError, ZeroDivisionError):
+        raise InvalidArgumentError(f"{value!r} is not a tolerance such as '20%'") from None
+    if share < 0 or (share > 1 and not percent):
+        raise InvalidArgumentError(f"{value!r} is not a tolerance from 0 to 1; write percent as in '20%'")
+    return share
+
+
+def _source(name: Source | str) -> Source:
+    require("source of predictions", [name], _EVERYTHING)
+    return Source(name)
+
+
+def _measured(measured: Measured) -> Measurement:
+    return measured if isinstance(measured, Measurement) else _measured_in(as_paths(measured), MeasureOptions())
+
+
+def _measured_in(traces: Sequence[StrPath], reading: MeasureOptions) -> Measurement:
+    from amalthea_uros.services.comparison.traces import joined
+
+    return joined([measure_file(path, reading) for path in as_paths(traces)])
+
+
+def _compared(system: System, settings: Settings, measurement: Measurement, options: CompareOptions) -> Comparison:
+    require("process", filter(None, options.overheads), system.processes)
+    analysis = analyze_system(system, settings) if Source.ANALYSIS in options.sources else None
+    found = tuple(targets(measurement, options.names, system))
+    _refuse_twice(found)
+    runs = _simulated(system, settings, options, measurement) if Source.SIMULATION in options.sources else ()
+    simulation = runs[0].simulation if runs else None
+    predictor = Predictor(analysis=analysis, runs=runs, overheads=options.overheads)
+    uncertainty = measurement.resolution if options.uncertainty is None else options.uncertainty
+    rule = Rule(tolerance=options.tolerance, uncertainty=uncertainty or 0)
+    rows = (*(row for target in found for row in _rows(target, predictor, rule)), *_not_measured(system, found))
+    comparison = Comparison(
+        model="",
+        measurement=measurement,
+        tolerance=options.tolerance,
+        uncertainty=uncertainty,
+        rows=rows,
+        limits=tuple(judge_limits(system, settings, measurement, found)),
+        distributions=tuple(_distributions(found, rows, runs, rule, options.overheads)),
+        duration=None if simulation is None else simulation.duration,
+        seed=None if simulation is None else simulation.seed,
+        assumptions=_assumptions(measurement, options, analysis, simulation),
+    )
+    of_predictions = (each.findings for each in (analysis, simulation) if each is not None)
+    reported = (*measurement.findings, *(finding for each in of_predictions for finding in each))
+    own = _findings(comparison, found, _phases(system, settings))
+    return replace(comparison, findings=tuple(dict.fromkeys((*reported, *own))))
+
+
+def _refuse_twice(found: Iterable[Target]) -> None:
+    """Refuse that two series are the same quantity: which of them is meant is not known."""
+    series: dict[tuple[Kind, str, str], list[str]] = {}
+    for target in found:
+        if not target.reason:
+            series.setdefault((target.kind, target.name, target.quantity), []).append(target.series.name)
+    for (_, name, quantity), names in series.items():
+        if len(names) > 1:
+            listed = " and ".join(map(repr, names))
+            raise InvalidArgumentError(f"{listed} of the trace are both {name}.{quantity}; leave one of them out")
+
+
+def _simulated(system: System, settings: Settings, options: CompareOptions, measurement: Measurement) -> tuple[Run, ...]:
+    """A run as long as the measurement, and others in other phases."""
+    duration = options.duration or measurement.duration or SECOND
+    return simulate_measured(system, settings, duration, options.seed)
+
+
+def _rows(target: Target, predictor: Predictor, rule: Rule) -> Iterator[ComparisonRow]:
+    series = target.series
+    nothing = ComparisonRow(
+        object=target.name,
+        kind=series.kind,
+        quantity=target.quantity,
+        statistic=None,
+        verdict=Agreement.NOT_PREDICTED,
+        samples=0 if series.statistics is None else series.statistics.count,
+        reason=target.reason,
+        series=series,
+    )
+    if target.reason:
+        yield nothing
+        return
+    if series.statistics is None:
+        yield replace(nothing, verdict=Agreement.NOT_MEASURED, reason="no value could be measured")
+        return
+    try:
+        predictions = predictor.of(target.kind, target.name, target.quantity)
+    except Missing as missing:
+        yield replace(nothing, reason=str(missing))
+        return
+    chosen = {statistic: predictions[statistic] for statistic in target.statistics}
+    rows = list(compared(replace(series, kind=target.kind), target.name, target.quantity, chosen, rule))
+    yield from rows or [replace(nothing, reason=LEAST if series.is_least else _UNLIKE)]
+
+
+_UNLIKE = "no prediction has the definition of what was measured"
+
+
+def _not_measured(system: System, found: Sequence[Target]) -> Iterator[ComparisonRow]:
+    """A row for each process and chain of which the trace has nothing."""
+    measured = {(target.kind, target.name) for target in found}
+    for kind, names in ((Kind.PROCESS, system.processes), (Kind.CHAIN, system.chains)):
+        for name in names:
+            if (kind, name) not in measured:
+                yield ComparisonRow(
+                    object=name,
+                    kind=kind,
+                    quantity="",
+                    statistic=None,
+                    verdict=Agreement.NOT_MEASURED,
+                    reason=f"the trace has no {kind} of this name",
+                )
+
+
+def _distributions(
+    found: Sequence[Target], rows: Sequence[ComparisonRow], runs: Sequence[Run], rule: Rule, overheads: Mapping[str, Time]
+) -> Iterator[DistributionRow]:
+    """The distances of all quantities of which both have the values; of several phases, the nearest one or all together."""
+    simulated = _simulated_values(runs)
+    agreeing = {
+        (row.object, row.quantity) for row in rows if row.statistic is Statistic.MEAN and row.verdict is Agreement.WITHIN
+    }
+    for target in found:
+        values = target.series.values
+        others = simulated.get((target.kind, target.name, target.quantity), ())
+        if target.reason or target.series.is_least or values is None or not len(values) or not others:
+            continue
+        added = overhead_of(target.name, target.quantity, overheads)
+        between = min((distance(values, other + added) for other in others), key=_farness)
+        is_hidden = (target.name, target.quantity) in agreeing and _differs(between, rule, target.series)
+        yield DistributionRow(
+            object=target.name, kind=target.kind, quantity=target.quantity, distance=between, is_hidden=is_hidden
+        )
+
+
+def _simulated_values(runs: Sequence[Run]) -> Mapping[tuple[Kind, str, str], list[NDArray[np.int64]]]:
+    """The values of each quantity in all runs where they differ, and those of all runs together."""
+    import numpy as np
+
+    found: dict[tuple[Kind, str, str], dict[object, NDArray[np.int64]]] = {}
+    for run in runs:
+        for each in run.values.series:
+            if each.values is not None and each.statistics is not None:
+                found.setdefault((each.kind, each.name, each.quantity), {}).setdefault(_key(each.statistics), each.values)
+    samples = {key: list(different.values()) for key, different in found.items()}
+    return {key: [*each, np.concatenate(each)] if len(each) > 1 else each for key, each in samples.items()}
+
+
+def _key(statistics: Statistics) -> tuple[object, ...]:
+    """Samples that differ in none of these are taken as equal."""
+    return statistics.min, statistics.mean, statistics.max, statistics.variance
+
+
+def _farness(between: Distance) -> tuple[Fraction, int]:
+    """Which of several distributions is nearer; those without a common value differ by their quantiles."""
+    return between.value, sum(abs(measured - simulated) for measured, simulated in between.quantiles.values())
+
+
+def _differs(between: Distance, rule: Rule, series: Series) -> bool:
+    """Whether distributions differ by more than chance, and at some quantile by more than tolerance and uncertainty."""
+    baseline = series.baseline
+    uncertainty = Fraction(rule.uncertainty) + (0 if baseline is None else baseline.max - baseline.min)
+
+    def is_far(measured: Time, simulated: Time) -> bool:
+        difference = abs(measured - simulated)
+        return difference > rule.tolerance * abs(measured) and difference > uncertainty
+
+    return between.is_significant and any(is_far(*both) for both in between.quantiles.values())
+
+
+def _phases(system: System, settings: Settings) -> tuple[str, ...]:
+    """What comes from outside with an unknown phase."""
+    known = with_first_arrivals(system, settings.phases)
+    return tuple(dict.fromkeys(occurrence.source for occurrence in unknown_phases(known)))
+
+
+def _assumptions(measurement: Measurement, options: CompareOptions, *predictions: object) -> tuple[str, ...]:
+    stated = [sentence for each in predictions for sentence in getattr(each, "assumptions", ())]
+    subtracted = [series for series in measurement.series if series.baseline is not None]
+    if subtracted:
+        names = ", ".join(dict.fromkeys(series.name for series in subtracted))
+        stated.append(f"the mean of a baseline was subtracted from what was measured of {names}")
+    elif not options.overheads:
+        stated.append("no baseline was subtracted from the measured times, and no overhead was added to the predicted ones")
+    for name, overhead in options.overheads.items():
+        whose = name or "every process"
+        stated.append(f"{time_text(overhead)} of overhead were added to the predicted execution and response times of {whose}")
+    return tuple(dict.fromkeys(stated))
+
+
+# Findings.
+
+
+def _findings(comparison: Comparison, found: Sequence[Target], phases: Sequence[str]) -> Iterator[Finding]:
+    yield from _refutations(comparison)
+    yield from _unknown_names(found)
+    for row in comparison.distributions:
+        if row.is_hidden:
+            what = f"{row.quantity.replace('_', ' ')} of {row.object!r}"
+            share = f"{float(row.distance.value):.2g}"
+            message = f"the mean {what} agrees, but not its distribution (Kolmogorov-Smirnov distance {share})"
+            yield Finding("CMP003", Severity.WARNING, message, help="Compare the histograms.", object=row.object)
+    if phases:
+        yield _unknown_phases(comparison, phases)
+    if not comparison.compared:
+        message = "nothing was compared: no measured quantity is predicted"
+        yield Finding("CMP005", Severity.ERROR, message, help="Say with --map or --as what the measured objects are.")
+
+
+def _unknown_phases(comparison: Comparison, phases: Sequence[str]) -> Finding:
+    names = ", ".join(map(repr, phases))
+    what = "are ranges over several phases" if comparison.seed is not None else "of means are those over all phases"
+    message = f"the phase of {names} is unknown: predictions that depend on it {what}"
+    return Finding("CMP004", Severity.WARNING, message, help="State it with --phase NAME=TIME to compare more strictly.")
+
+
+def _refutations(comparison: Comparison) -> Iterator[Finding]:
+    """A finding for each quantity that was measured beyond its bounds."""
+    refuted: dict[tuple[str, str], list[str]] = {}
+    for row in comparison.rows:
+        if row.verdict is Agreement.REFUTED:
+            bound = f"{row.reason} of {time_text(row.predicted or 0)}"
+            refuted.setdefault((row.object, row.quantity), []).append(
+                f"{row.statistic} {time_text(row.measured or 0)}, {bound}"
+            )
+    for (name, quantity), found in refuted.items():
+        message = f"the model is wrong: the {quantity.replace('_', ' ')} of {name!r} was measured beyond its bounds: {'; '.join(found)}"
+        yield Finding("CMP001", Severity.ERROR, message, help=_REFUTED, object=name)
+
+
+_REFUTED = (
+    "Correct execution times, periods or overheads of the model. If the clock of the trace is less exact than its steps, say so with "
+    "--uncertainty TIME."
+)
+
+
+def _unknown_names(found: Sequence[Target]) -> Iterator[Finding]:
+    counts = Counter(target.series.name for target in found if target.is_unknown)
+    reasons = {target.series.name: target.reason for target in found if target.is_unknown}
+    for name in counts:
+        yield Finding("CMP002", Severity.WARNING, reasons[name], object=name)

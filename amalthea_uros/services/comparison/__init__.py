@@ -1,0 +1,1 @@
+"""Predictions of a model compared with what was measured."""

@@ -1,0 +1,148 @@
+"""Whether a prediction agrees with a measured value.
+
+Like is compared with like. What an analysis says of a minimum or a maximum is a bound, also where it is exact: a finite measurement
+need not contain the extreme case, but must not exceed it. There is no tolerance for that, only for what is known of the measurement
+itself. Means, and what a simulation of like length has, agree within the tolerance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple
+
+from amalthea_uros.measure.series import Series
+from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.services.comparison.results import Agreement, ComparisonRow, PredictionClaim, Statistic, is_bound
+from amalthea_uros.units import Time, time_text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prediction:
+    """A predicted value in picoseconds.
+
+    Attributes
+    ----------
+    high : the other end of a range of values that are possible, each in another phase; None if it is one value
+    """
+
+    value: Fraction
+    claim: PredictionClaim
+    method: str
+    high: Fraction | None = None
+
+    def nearest(self, measured: Fraction) -> Fraction:
+        """The possible value that is nearest to a measured one."""
+        return self.value if self.high is None else min(max(measured, self.value), self.high)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rule:
+    """How values are compared.
+
+    Attributes
+    ----------
+    tolerance : of the deviation, relative to the measurement
+    uncertainty : by how much a measured time may be wrong, in picoseconds
+    """
+
+    tolerance: Fraction
+    uncertainty: Time
+
+
+def measured_values(statistics: Statistics) -> Mapping[Statistic, Fraction]:
+    """The statistics that are compared."""
+    found = {
+        Statistic.MIN: Fraction(statistics.min),
+        Statistic.MEAN: statistics.mean,
+        Statistic.MAX: Fraction(statistics.max),
+        Statistic.JITTER: Fraction(statistics.peak_to_peak),
+    }
+    percentile = statistics.percentiles.get(Fraction(99, 100))
+    return found if percentile is None else {**found, Statistic.P99: Fraction(percentile)}
+
+
+def compared(
+    series: Series, name: str, quantity: str, predictions: Mapping[Statistic, tuple[Prediction, ...]], rule: Rule
+) -> Iterator[ComparisonRow]:
+    """The rows of a series: each statistic of which there is a prediction.
+
+    Parameters
+    ----------
+    name, quantity : what is predicted
+    """
+    assert series.statistics is not None
+    values = measured_values(series.statistics)
+    for statistic in Statistic:
+        for prediction in predictions.get(statistic, ()) if statistic in values else ():
+            if not _is_comparable(series, statistic, prediction):
+                continue
+            measured = values[statistic]
+            agreement, reason = _judged(statistic, measured, _certain(series, statistic, measured, rule), prediction, rule)
+            yield ComparisonRow(
+                object=name,
+                kind=series.kind,
+                quantity=quantity,
+                statistic=statistic,
+                verdict=agreement,
+                measured=measured,
+                predicted=prediction.nearest(measured),
+                predicted_range=None if prediction.high in (None, prediction.value) else (prediction.value, prediction.high),
+                claim=prediction.claim,
+                method=prediction.method,
+                tolerance=None if is_bound(prediction.claim, statistic) else rule.tolerance,
+                samples=series.statistics.count,
+                reason=reason or (LEAST if series.is_least else ""),
+                series=series,
+            )
+
+
+#: What is to be said of latencies that are measured without knowing what a response belongs to.
+LEAST = "without the number of the stimulus, only the least possible latencies are measured"
+
+
+class _Ends(NamedTuple):
+    """Between which ends a measured value really is."""
+
+    lower: Fraction
+    upper: Fraction
+
+
+def _certain(series: Series, statistic: Statistic, value: Fraction, rule: Rule) -> _Ends:
+    """What is certain of a measured value; of a jitter, both of its ends can be wrong.
+
+    With a baseline, its mean was subtracted; the share of a single value is anything within the baseline's values.
+    """
+    wrong = Fraction(rule.uncertainty) * (2 if statistic is Statistic.JITTER else 1)
+    baseline = series.baseline
+    if baseline is None or statistic is Statistic.MEAN:
+        return _Ends(value - wrong, value + wrong)
+    below, above = baseline.max - baseline.mean, baseline.mean - baseline.min
+    if statistic is Statistic.JITTER:
+        below = above = below + above
+    return _Ends(value - wrong - below, value + wrong + above)
+
+
+def _is_comparable(series: Series, statistic: Statistic, prediction: Prediction) -> bool:
+    """Whether a prediction says something about a measured value: of the least possible latencies, only the maximum can be too long."""
+    return not series.is_least or (statistic is Statistic.MAX and is_bound(prediction.claim, statistic))
+
+
+def _judged(statistic: Statistic, measured: Fraction, ends: _Ends, prediction: Prediction, rule: Rule) -> tuple[Agreement, str]:
+    """The verdict, with its reason."""
+    predicted = prediction.nearest(measured)
+    is_uncertain = ends.lower < predicted < ends.upper
+    if is_bound(prediction.claim, statistic):
+        is_upper = statistic is Statistic.MAX
+        beyond = measured - predicted if is_upper else predicted - measured
+        if beyond <= 0:
+            return Agreement.WITHIN, ""
+        side = f"{time_text(beyond)} {'above the upper' if is_upper else 'below the lower'} bound"
+        return (Agreement.WITHIN, f"{side}, {_UNCERTAIN}") if is_uncertain else (Agreement.REFUTED, side)
+    if abs(measured - predicted) <= rule.tolerance * abs(measured):
+        return Agreement.WITHIN, ""
+    return (Agreement.WITHIN, f"the difference is {_UNCERTAIN}") if is_uncertain else (Agreement.OUTSIDE, "")
+
+
+_UNCERTAIN = "less than the uncertainty of the measurement"
