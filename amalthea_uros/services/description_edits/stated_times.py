@@ -30,6 +30,13 @@ class StatedTime:
         lower, upper = self._own(lower), self._own(upper)
         return time_text(lower) if lower == upper else {"min": time_text(lower), "max": time_text(upper)}
 
+    def with_mean(self, lower: Time, mean: Time, upper: Time) -> Value:
+        """What is written for a range of whole execution times with their mean; raises as `bounds`."""
+        if lower == upper:
+            return self.bounds(lower, upper)
+        lower, mean, upper = self._own(lower), self._own(mean), self._own(upper)
+        return {"min": time_text(lower), "avg": time_text(mean), "max": time_text(upper)}
+
     def histogram(self, buckets: Iterable[tuple[Time, Time, int]]) -> Value:
         """What is written for the numbers of whole execution times in ranges; raises as `bounds`."""
         return {
