@@ -19,6 +19,7 @@ FAMILIES = {
     "ANA": "Analysing response times",
     "SIM": "Simulating systems",
     "CHN": "Analysing event chains",
+    "CAN": "Reading logs of CAN buses",
     "TRC": "Reading, checking and writing traces",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",

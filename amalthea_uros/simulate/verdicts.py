@@ -32,12 +32,12 @@ from amalthea_uros.simulate.limited_values import (
 )
 from amalthea_uros.simulate.results import (
     ChainObservation,
-    ChainQuantity,
     ObservedVerdict,
     ProcessObservation,
     RequirementObservation,
     RunnableObservation,
 )
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.deadlines import implicit_deadline
 from amalthea_uros.timing.releases import response_time_limits
