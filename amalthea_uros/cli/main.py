@@ -31,6 +31,7 @@ COMMANDS = {
     "info": "Show the content of a model.",
     "init": "Write a commented app.yaml to begin with, or copy an example.",
     "lsp": "Run the language server, for editors.",
+    "measure": "Measure the times in a trace: statistics, jitter, histograms.",
     "migrate": "Convert models to another AMALTHEA version.",
     "report": "Write a report: one HTML page, or a summary in Markdown.",
     "rules": "List the rules of check.",

@@ -23,7 +23,9 @@ _OPTIONS = (
     click.option("--start", type=_MARKER, help="Frame of a CAN log at the start of what is measured, e.g. 0x18000001."),
     click.option("--end", type=_MARKER, help="Frame at its end, e.g. 0x18000002, or can0:123#01 for a bus and first bytes."),
     click.option("--name", default="interval", show_default=True, help="Name of what --start and --end delimit."),
-    click.option("--counter", metavar="PLACE", help="Number of the job in the payload of both, e.g. 'byte 0' or Message.Signal."),
+    click.option(
+        "--counter", metavar="PLACE", help="Number of the job in the payload of both, e.g. 'byte 0' or Message.Signal."
+    ),
     click.option("--markers", type=INPUT, metavar="FILE", help="YAML file with the frames of several objects by their names."),
     click.option("--dbc", type=INPUT, metavar="FILE", help="DBC file with the signals that --markers or --counter name."),
     click.option("--channel", metavar="BUS", help="Use only the frames of this bus of a CAN log, e.g. can0."),

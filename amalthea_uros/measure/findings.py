@@ -39,7 +39,9 @@ def _uncounted(series: Series, place: Location) -> Iterator[Finding]:
     told = ", ".join(f"{number:,} {what}" for what, number in problems.items() if number)
     if told:
         severity = Severity.WARNING if counts.lost or counts.reordered else Severity.INFO
-        yield Finding("MEA006", severity, f"events of {series.name!r}: {told}; they are not measured", place, object=series.name)
+        yield Finding(
+            "MEA006", severity, f"events of {series.name!r}: {told}; they are not measured", place, object=series.name
+        )
 
 
 def _coarse(series: Series, resolution: Time, place: Location) -> Iterator[Finding]:
@@ -56,6 +58,7 @@ def _coarse(series: Series, resolution: Time, place: Location) -> Iterator[Findi
 
 def _baseline(series: Series, place: Location) -> Iterator[Finding]:
     if series.baseline is not None and series.statistics is not None and series.statistics.min < 0:
-        message = f"the mean of the baseline, {time_text(round(series.baseline.mean))}, is longer than the shortest time of {series.name!r}"
+        mean = time_text(round(series.baseline.mean))
+        message = f"the mean of the baseline, {mean}, is longer than the shortest time of {series.name!r}"
         help_ = "Check that the baseline is of an empty object with the same period and on the same core."
         yield Finding("MEA008", Severity.WARNING, message, place, help_, series.name)

@@ -75,7 +75,9 @@ class _Ended:
     incomplete: int = 0
     lost: int = 0
 
-    def add(self, job: int, segment: int, activation: int, start: int, end: int, times: dict[str, int], is_numbered: bool) -> None:
+    def add(
+        self, job: int, segment: int, activation: int, start: int, end: int, times: dict[str, int], is_numbered: bool
+    ) -> None:
         """Add one that has ended."""
         is_next = segment == self.segment and (not is_numbered or self.last is None or job == self.last + 1)
         self.rows.append((job, activation, start, end, *times.values(), is_next))
@@ -275,5 +277,12 @@ def _of_metric(
         statistics = statistics_of(values)
         method = "from the events of jobs" if kind is Kind.PROCESS else "from the events of runnables and their jobs"
         yield Series(
-            kind=kind, name=name, quantity=metric, statistics=statistics, values=values, times=ends, counts=counts, method=method
+            kind=kind,
+            name=name,
+            quantity=metric,
+            statistics=statistics,
+            values=values,
+            times=ends,
+            counts=counts,
+            method=method,
         )

@@ -1,6 +1,6 @@
 """Files that name the objects of CAN logs and their markers; docs/measure.md describes them.
 
-    Executor_Task: {start: 0x18000001, end: 0x18000002, kind: process, baseline: Empty_1kHz}
+Executor_Task: {start: 0x18000001, end: 0x18000002, kind: process, baseline: Empty_1kHz}
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ from amalthea_uros.measure.markers import (
 from amalthea_uros.measure.series import Kind
 from amalthea_uros.services.signals import Signals, Value
 from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Source, read_nodes
-from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time, parse_duration, parse_time
 
@@ -93,7 +92,9 @@ class _Reader:
     def objects(self, node: Node) -> tuple[Measurable, ...]:
         """All objects; those with an error are left out, and a finding is added."""
         if not isinstance(node, Mapping) or not node.items:
-            self._add(_WrongError(node.place, "a file with markers names objects", "An example: Task: {start: 0x101, end: 0x102}"))
+            self._add(
+                _WrongError(node.place, "a file with markers names objects", "An example: Task: {start: 0x101, end: 0x102}")
+            )
             return ()
         self._nodes = node.items
         found = []

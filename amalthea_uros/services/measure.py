@@ -65,7 +65,9 @@ class MeasureOptions:
             missing, given = ("end", "start") if self.end is None else ("start", "end")
             raise InvalidArgumentError(f"an interval needs two markers; add --{missing} to --{given}")
         if self.counter is not None and self.start is None:
-            raise InvalidArgumentError("a counter belongs to a start and an end; add --start and --end, or state it in the markers")
+            raise InvalidArgumentError(
+                "a counter belongs to a start and an end; add --start and --end, or state it in the markers"
+            )
         if self.baseline_from is not None and not self.baselines and self.markers is None:
             raise InvalidArgumentError("a trace for baselines needs the name of the empty object; add --baseline NAME")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -70,8 +70,15 @@ def _measured_object(
 
     numbers = [markers.index(marker) for marker in markers_of(item)]
     own = found.where(np.isin(found.marker, numbers))
-    own = replace(own, marker=np.searchsorted(np.array(sorted(numbers)), own.marker) if len(numbers) == 1 else (own.marker == numbers[1]).astype(np.int64))
-    findings = [_missing(item, marker, log, place) for number, marker in enumerate(markers_of(item)) if not (own.marker == number).any()]
+    own = replace(
+        own,
+        marker=np.searchsorted(np.array(sorted(numbers)), own.marker)
+        if len(numbers) == 1
+        else (own.marker == numbers[1]).astype(np.int64),
+    )
+    findings = [
+        _missing(item, marker, log, place) for number, marker in enumerate(markers_of(item)) if not (own.marker == number).any()
+    ]
     buses = np.unique(own.channel).tolist()
     parts: list[MeasuredObject] = []
     for bus in buses:
@@ -105,4 +112,6 @@ def _several_buses(item: Measurable, names: Sequence[str], place: Location) -> F
 
 def _undecoded(item: Measurable, number: int, place: Location) -> Finding:
     message = f"{number:,} frames of {item.name!r} do not have the value or number that they should; they are not used"
-    return Finding("MEA003", Severity.WARNING, message, place, "Check the bytes or the signal, and that the DBC fits.", item.name)
+    return Finding(
+        "MEA003", Severity.WARNING, message, place, "Check the bytes or the signal, and that the DBC fits.", item.name
+    )

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from pathlib import Path
-from typing import TextIO
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.measure.series import Counts, Kind, Measurement, Series
@@ -81,7 +80,7 @@ class _Table:
     _first: int | None = None
     _last: int = 0
 
-    def read(self, lines: "csv._reader") -> None:  # type: ignore[name-defined]
+    def read(self, lines: csv._reader) -> None:  # type: ignore[name-defined]
         self._columns = columns_of(next(lines, [])) or {}
         while True:
             try:
@@ -113,7 +112,9 @@ class _Table:
             self._first = time if self._first is None else self._first
             self._last = max(self._last, time)
             offset = time - self._first
-            if not self.window.is_all and not (self.window.start <= offset and (self.window.end is None or offset < self.window.end)):
+            if not self.window.is_all and not (
+                self.window.start <= offset and (self.window.end is None or offset < self.window.end)
+            ):
                 return
             time = offset
         self._rows.setdefault((name, quantity, kind), []).append((value, time))

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
-from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.markers import Decoder, Marker
 
 #: How some bytes are written; the first one is byte 0.

@@ -39,7 +39,9 @@ def series_json(series: Series) -> dict[str, Any]:
         "quantity": series.quantity,
         "samples": 0 if found is None else found.count,
         "latency": None if found is None else statistics_json(found),
-        "jitter": None if found is None else {**jitter_of(found), "period_ps": series.period, "period_deviation_ps": series.period_deviation},
+        "jitter": None
+        if found is None
+        else {**jitter_of(found), "period_ps": series.period, "period_deviation_ps": series.period_deviation},
         "exceedance": None if limit is None else float(limit),
         "histogram": None if histogram is None else _histogram(histogram),
         "counts": _counts(series.counts),
@@ -51,7 +53,7 @@ def series_json(series: Series) -> dict[str, Any]:
 
 def statistics_json(found: Statistics) -> dict[str, Any]:
     """Statistics; percentiles of too few values are null."""
-    percentiles = {name: None for name in ("p50", "p90", "p95", "p99", "p99_9")}
+    percentiles = dict.fromkeys(("p50", "p90", "p95", "p99", "p99_9"))
     percentiles |= {f"p{float(100 * share):g}".replace(".", "_"): value for share, value in found.percentiles.items()}
     return {
         "min_ps": found.min,

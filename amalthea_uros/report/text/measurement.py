@@ -14,7 +14,12 @@ def write(measurement: Measurement, terminal: Terminal) -> None:
     terminal.line(f"{terminal.style('Measurement', '1')} of {trace}")
     terminal.heading("Measured times")
     terminal.table(measured.COLUMNS, map(measured.row, measurement.series), right=measured.RIGHT)
-    _table(terminal, "Baselines (the mean is subtracted above; single net times are within the last two columns)", NET, net(measurement))
+    _table(
+        terminal,
+        "Baselines (the mean is subtracted above; single net times are within the last two columns)",
+        NET,
+        net(measurement),
+    )
     _table(terminal, "Deviation from the standard period", PERIODS, list(measured.period_rows(measurement)))
     _table(terminal, "Events that gave no value", COUNTS, list(measured.count_rows(measurement)))
     methods = list(measured.methods(measurement))
