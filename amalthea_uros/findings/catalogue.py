@@ -21,6 +21,7 @@ FAMILIES = {
     "CHN": "Analysing event chains",
     "CAN": "Reading logs of CAN buses",
     "TRC": "Reading, checking and writing traces",
+    "CAL": "Putting measured values into a description",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",
 }

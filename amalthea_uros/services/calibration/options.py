@@ -37,4 +37,6 @@ class CalibrationOptions:
         if self.margin < 0:
             raise InvalidArgumentError(f"the margin {float(self.margin):.4g} is negative; expected 0 or more, e.g. 20%")
         if not 0 <= self.judge_on < 1:
-            raise InvalidArgumentError(f"cannot judge on {float(self.judge_on):.4g} of the values; expected less than all, e.g. 30%")
+            raise InvalidArgumentError(
+                f"cannot judge on {float(self.judge_on):.4g} of the values; expected less than all, e.g. 30%"
+            )

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import ceil, floor
 from typing import TYPE_CHECKING
 
 from amalthea_uros.measure.series import Measurement, Series
-from amalthea_uros.measure.statistics import Statistics, statistics_of
+from amalthea_uros.measure.statistics import Statistics, shifted, statistics_of
 from amalthea_uros.units import NANOSECOND, Time
 
 if TYPE_CHECKING:
@@ -18,10 +19,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A series that has values, and where it comes from."""
+    """A series that has values, and where it comes from.
+
+    Attributes
+    ----------
+    others : what was subtracted because the description states it elsewhere
+    """
 
     series: Series
     source: Measurement
+    others: Time = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +39,8 @@ class Samples:
     ----------
     values : picoseconds; None if only statistics are known
     held_out : values that are not used, but must be within what is written
+    lower, upper : what all values are within; with a baseline, whatever its share of each value is
+    certain_min, certain_max : what the least and the greatest value are at most and at least, whatever the share of a baseline is
     step : the resolution, to which bounds are rounded
     """
 
@@ -39,7 +48,22 @@ class Samples:
     statistics: Statistics
     values: NDArray[np.int64] | None
     held_out: NDArray[np.int64] | None
+    lower: Time
+    upper: Time
+    certain_min: Time
+    certain_max: Time
     step: Time
+
+
+def without_others(measured: Measured, others: Time) -> Measured:
+    """The series without a part of its times that does not vary."""
+    series = measured.series
+    if not others or series.statistics is None:
+        return measured
+    values = None if series.values is None else series.values - others
+    return replace(
+        measured, series=replace(series, statistics=shifted(series.statistics, -others), values=values), others=others
+    )
 
 
 def samples_of(measured: Sequence[Measured], judge_on: Fraction) -> Samples:
@@ -56,9 +80,14 @@ def samples_of(measured: Sequence[Measured], judge_on: Fraction) -> Samples:
     are_known = len(used) == len(measured)
     values = np.concatenate(used) if are_known else None
     statistics = _merged(each.series.statistics for each in measured) if values is None else statistics_of(values)
+    below, above, certain_below, certain_above = _uncertainty(measured)
     return Samples(
         measured=tuple(measured),
         statistics=statistics,
+        lower=statistics.min - below,
+        upper=statistics.max + above,
+        certain_min=statistics.min + certain_below,
+        certain_max=statistics.max - certain_above,
         values=values,
         held_out=np.concatenate(held_out) if are_known and judge_on else None,
         step=max(each.source.resolution or NANOSECOND for each in measured),
@@ -75,3 +104,11 @@ def _merged(parts: Iterable[Statistics | None]) -> Statistics:
         max=max(part.max for part in known),
         variance=None,
     )
+
+
+def _uncertainty(measured: Sequence[Measured]) -> tuple[Time, Time, Time, Time]:
+    """By how much values can be less and more than stated, since the share of a baseline in each of them varies."""
+    baselines = [each.series.baseline for each in measured if each.series.baseline is not None]
+    more = max((ceil(each.mean) - each.min for each in baselines), default=0)
+    less = max((each.max - floor(each.mean) for each in baselines), default=0)
+    return less, more, more, less

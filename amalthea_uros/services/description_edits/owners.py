@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from amalthea_uros.services.description_edits.text_edits import Path
-from amalthea_uros.spec.application import Callback, Timer
+from amalthea_uros.spec.application import Callback, MessageCallback, Timer
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.section import Section
 from amalthea_uros.uros.application import body_name
@@ -24,6 +24,8 @@ class OwnerKind(StrEnum):
     ISR = "interrupt service routine"
     RUNNABLE = "runnable"
     SPIN = "runnable of the executor"
+    TAKE = "runnable that takes a message"
+    NOTIFY = "runnable that notifies a callback"
     INTERRUPT = "interrupt of the transport"
 
 
@@ -46,6 +48,10 @@ def owners(description: Description) -> Iterator[Owner]:
         kind = OwnerKind.TIMER if isinstance(callback, Timer) else OwnerKind.MESSAGE_CALLBACK
         yield Owner(callback.name, kind, path, callback)
         yield Owner(body_name(callback.name), OwnerKind.BODY, path, callback)
+        if isinstance(callback, MessageCallback):
+            yield Owner(f"Take_{callback.name}", OwnerKind.TAKE, path, callback)
+        else:
+            yield Owner(f"Notify_{callback.name}", OwnerKind.NOTIFY, path, callback)
     for key, kind in (("tasks", OwnerKind.TASK), ("isrs", OwnerKind.ISR)):
         for index, process in enumerate(getattr(description, key)):
             yield Owner(process.name, kind, (key, index), process)

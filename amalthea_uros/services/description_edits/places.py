@@ -16,14 +16,16 @@ from amalthea_uros.services.description_edits.yaml_values import Value
 from amalthea_uros.spec.application import Callback, MessageCallback, Timer
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.execution_time import ExecutionTime
-from amalthea_uros.spec.middleware import Executor
+from amalthea_uros.spec.middleware import Executor, Interrupt
 from amalthea_uros.spec.processes import Process
 from amalthea_uros.units import SECOND, Time, parse_time, time_text
-from amalthea_uros.uros.callbacks import callbacks_of
-from amalthea_uros.uros.executor import message_cost
+from amalthea_uros.uros import callbacks as uros
+from amalthea_uros.uros.executor import message_cost, timer_count
 from amalthea_uros.uros.notes import Notes
 
 _TICKS = re.compile(r"\d+\s*ticks?", re.ASCII)
+#: Sections under other names than their own.
+_PARTS = (OwnerKind.TAKE, OwnerKind.NOTIFY)
 _WHOLE = re.compile(r"-?\d+", re.ASCII)
 
 
@@ -102,26 +104,56 @@ class Places:
         if isinstance(section, Process) and section.runnables:
             names = ", ".join(f"{runnable.name}.execution_time" for runnable in section.runnables)
             raise InvalidArgumentError(f"the execution time of {owner.name!r} is that of its runnables; change {names}")
-        time: ExecutionTime | None
         if isinstance(section, Executor):
-            path, time = self._executor_base(owner, section)
+            path, time, elsewhere = self._spin(owner, section)
+        elif owner.kind is OwnerKind.TAKE:
+            path, time, elsewhere = self._take(owner)
+        elif owner.kind is OwnerKind.NOTIFY:
+            path = ("middleware", "executor", "execution_time", "per_ready_callback")
+            time, elsewhere = self.description.middleware.executor.execution_time.per_ready_callback, 0
+        elif isinstance(section, Interrupt):
+            is_mapping = section.location("execution_time") != section.location()
+            path, time, elsewhere = path if is_mapping else owner.path, section.execution_time, 0
         else:
             time = getattr(section, "execution_time", None)
+            elsewhere = self._publishing(section) if isinstance(section, Callback) else 0
         if time is not None and time.on is not None:
             path, time = self._on(path, time, owner)
-        return StatedTime(path, time, self._publishing(section) if isinstance(section, Callback) else 0)
+        return StatedTime(self._target(path), path, time, elsewhere)
 
-    def _executor_base(self, owner: Owner, section: Executor) -> tuple[Path, ExecutionTime | None]:
+    def _target(self, path: Path) -> str:
+        """The object and the keys of a path."""
+        holder = max(
+            (owner for owner in owners(self.description) if path[: len(owner.path)] == owner.path),
+            key=lambda owner: (len(owner.path), owner.kind not in _PARTS),
+        )
+        return ".".join(
+            map(str, (getattr(holder.section, "name", holder.name), *(path[len(holder.path) :] or ["execution_time"])))
+        )
+
+    def _spin(self, owner: Owner, section: Executor) -> tuple[Path, ExecutionTime | None, Time]:
+        """The base of the cost of the executor, and its other parts in every activation."""
         cost, path = section.execution_time, (*owner.path, "execution_time")
         parts = [part for part in ("per_timer", "per_ready_callback", "per_message") if part in cost.model_fields_set]
         if owner.kind is OwnerKind.EXECUTOR and parts:
             raise InvalidArgumentError(
                 f"the execution time of {owner.name!r} has parts ({', '.join(['base', *parts])}), which are measured one by one"
             )
-        if "per_timer" in parts:
-            raise InvalidArgumentError(f"the execution time of {owner.name!r} has the parts base and per_timer")
         is_mapping = "base" in cost.model_fields_set and cost.location("base") != cost.location()
-        return ((*path, "base") if is_mapping or parts else path), cost.base
+        timers = _constant([cost.per_timer] * timer_count(self.callbacks), owner.name)
+        return ((*path, "base") if is_mapping or parts else path), cost.base, timers
+
+    def _take(self, owner: Owner) -> tuple[Path, ExecutionTime | None, Time]:
+        """The fixed part of the cost of a message, and the other parts that a callback's message has."""
+        cost = self.description.middleware.executor.execution_time
+        incoming = next(each.incoming for each in self.callbacks if each.section is owner.section)
+        assert incoming is not None
+        others = _constant([cost.per_ready_callback, *message_cost(cost.per_message, incoming.size)[1:]], owner.name)
+        path = ("middleware", "executor", "execution_time", "per_message")
+        is_mapping = (
+            cost.per_message.location() is not None and cost.per_message.location("fixed") != cost.per_message.location()
+        )
+        return ((*path, "fixed") if is_mapping else path), cost.per_message.fixed, others
 
     def _on(self, path: Path, time: ExecutionTime, owner: Owner) -> tuple[Path, ExecutionTime | None]:
         """The value of an execution time for this hardware."""
@@ -140,18 +172,32 @@ class Places:
 
     def _publishing(self, section: Callback) -> Time:
         """What publishing adds to the execution time of a callback."""
-        middleware = self.description.middleware
-        known = callbacks_of(self.description.application, middleware.executor, Notes())
-        sent = next((each.outgoing for each in known if each.section is section), ())
-        total = 0
-        for part in (part for message in sent for part in message_cost(middleware.publish, message.size)):
-            if isinstance(part, ExecutionTime):
-                if part.min is None or part.min != part.max or part.distribution is not None:
-                    raise InvalidArgumentError(f"{section.name!r} publishes, and the time of that varies")
-                total += part.min
-            else:
-                total += part or 0
-        return total
+        sent = next((each.outgoing for each in self.callbacks if each.section is section), ())
+        publish = self.description.middleware.publish
+        return _constant((part for message in sent for part in message_cost(publish, message.size)), section.name)
+
+    @property
+    def callbacks(self) -> tuple[uros.Callback, ...]:
+        """The callbacks, with their intervals and messages."""
+        return uros.callbacks_of(self.description.application, self.description.middleware.executor, Notes())
+
+
+def _constant(parts: Iterable[ExecutionTime | Time | None], name: str) -> Time:
+    """The sum of costs that do not vary.
+
+    Raises
+    ------
+    InvalidArgumentError : one of them varies.
+    """
+    total = 0
+    for part in parts:
+        if isinstance(part, ExecutionTime):
+            if part.min is None or part.min != part.max or part.distribution is not None:
+                raise InvalidArgumentError(f"a part of the execution time of {name!r} is stated elsewhere, and varies")
+            total += part.min
+        else:
+            total += part or 0
+    return total
 
 
 _Write = Callable[[Places, Owner, Change], Iterable[Assignment]]
@@ -253,6 +299,8 @@ _KEYS: Mapping[OwnerKind, Mapping[str, _Write]] = {
         "callbacks": _single(_word),
     },
     OwnerKind.SPIN: _ONLY_EXECUTION_TIME,
+    OwnerKind.TAKE: _ONLY_EXECUTION_TIME,
+    OwnerKind.NOTIFY: _ONLY_EXECUTION_TIME,
     OwnerKind.TIMER: {**_CALLBACK, "period": _write_timer_period},
     OwnerKind.MESSAGE_CALLBACK: {
         **_CALLBACK,

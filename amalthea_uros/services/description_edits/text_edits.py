@@ -93,27 +93,27 @@ def newline_of(text: str) -> str:
 
 def line_of(text: str, path: Path) -> int:
     """The line of a value, counted from 1; of one that is not there, the line of what it would be in."""
-    document = read_document(text)
-    node, start = document.root, document.root.start
-    for key in path:
-        inner = _inner(document.resolved(node), key)
-        if inner is None:
-            break
-        start = inner.start
-        node = inner.value if isinstance(inner, Entry) else inner
-    return text.count("\n", 0, start) + 1
+    place, _ = _found(read_document(text), path)
+    return text.count("\n", 0, place.start) + 1
 
 
 def value_text(text: str, path: Path) -> str | None:
     """The text of a value as it is, None if it is not there."""
-    document = read_document(text)
-    node = document.root
+    place, is_there = _found(read_document(text), path)
+    node = place.value if isinstance(place, Entry) else place
+    return text[node.start : node.end].strip() if is_there else None
+
+
+def _found(document: Document, path: Path) -> tuple[Entry | AnyNode, bool]:
+    """The place of a value, and whether it is there: otherwise it is the place of what it would be in."""
+    place: Entry | AnyNode = document.root
     for key in path:
-        inner = _inner(document.resolved(node), key)
+        node = document.resolved(place.value if isinstance(place, Entry) else place)
+        inner = _inner(node, key)
         if inner is None:
-            return None
-        node = inner.value if isinstance(inner, Entry) else inner
-    return text[node.start : node.end].strip()
+            return place, False
+        place = inner
+    return place, True
 
 
 def _inner(node: AnyNode, key: str | int) -> Entry | AnyNode | None:
