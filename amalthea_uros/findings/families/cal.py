@@ -32,7 +32,7 @@ KINDS = (
         id="CAL004",
         title="description that allows more than was measured",
         severity=Severity.INFO,
-        rationale="The stated range includes all measured values. A measurement does not prove that the others cannot occur, so it stays.",
+        rationale="The stated range includes all measured values. That others cannot occur is not proved by measuring, so it stays.",
         remedy="Narrow it with `--tighten` if the stated range was only a guess.",
     ),
     FindingKind(

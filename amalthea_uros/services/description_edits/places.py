@@ -252,10 +252,12 @@ def _write_arrival_period(_places: Places, owner: Owner, change: Change) -> Iter
         yield Assignment(change.target, (*owner.path, "interval"), _time(change.value), "rate")
 
 
-def _write_timer_period(_places: Places, owner: Owner, change: Change) -> Iterable[Assignment]:
+def _write_timer_period(places: Places, owner: Owner, change: Change) -> Iterable[Assignment]:
     """A timer is due as often as its task is activated, unless the description says something else."""
-    section = owner.section
+    section, available = owner.section, places.description.middleware.task_periods
     assert isinstance(section, Timer)
+    if available and parse_time(change.value) not in available:
+        raise ValueError(f"{_time(change.value)} is not one of 'task_periods'")
     if section.task_period is not None:
         yield Assignment(change.target, (*owner.path, "task_period"), _time(change.value))
     if section.task_period is None or section.task_period == section.period:
