@@ -75,6 +75,10 @@ if TYPE_CHECKING:
     from amalthea_uros.errors import InvalidArgumentError as InvalidArgumentError
     from amalthea_uros.errors import ReadError as ReadError
     from amalthea_uros.errors import WriteError as WriteError
+    from amalthea_uros.measure.series import Counts as Counts
+    from amalthea_uros.measure.series import Measurement as Measurement
+    from amalthea_uros.measure.series import Series as Series
+    from amalthea_uros.measure.statistics import Statistics as Statistics
     from amalthea_uros.metamodel.element import Element as Element
     from amalthea_uros.metamodel.model import Document as Document
     from amalthea_uros.metamodel.model import Model as Model
@@ -104,6 +108,7 @@ if TYPE_CHECKING:
     from amalthea_uros.services.improvements import Improvement as Improvement
     from amalthea_uros.services.improvements import Improvements as Improvements
     from amalthea_uros.services.improvements import improvements as improvements
+    from amalthea_uros.services.measure import measure as measure
     from amalthea_uros.services.migrate import MigrationResult as MigrationResult
     from amalthea_uros.services.migrate import migrate as migrate
     from amalthea_uros.services.settings import CheckSettings as CheckSettings
@@ -157,6 +162,8 @@ _NAMES = {
     "bridge.extract": ("Extraction", "extract"),
     "diagnostics": ("Finding", "Location", "Severity"),
     "errors": ("AmurosError", "InvalidArgumentError", "ReadError", "WriteError"),
+    "measure.series": ("Counts", "Measurement", "Series"),
+    "measure.statistics": ("Statistics",),
     "metamodel.element": ("Element",),
     "metamodel.model": ("Document", "Model", "Reference"),
     "perf.activities": ("Communication",),
@@ -173,6 +180,7 @@ _NAMES = {
     "services.diff": ("DiffResult", "diff"),
     "services.explain": ("explain",),
     "services.improvements": ("Improvement", "Improvements", "improvements"),
+    "services.measure": ("measure",),
     "services.migrate": ("MigrationResult", "migrate"),
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),

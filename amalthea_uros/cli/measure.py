@@ -24,11 +24,19 @@ from amalthea_uros.cli.settings_options import Assignment
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.services.measure import MeasureOptions, measure_file
+from amalthea_uros.services.measured_events import chain_starts
+from amalthea_uros.services.subject import system_of
 
 
 @click.command("measure")
 @click.argument("trace", type=INPUT, metavar="TRACE")
 @measure_options
+@click.option(
+    "--model",
+    type=INPUT,
+    metavar="MODEL_OR_YAML",
+    help="System of a trace of events: its chains then begin as they do in it; default: at the activation of a job.",
+)
 @click.option("--select", multiple=True, metavar="NAME", help="Show only this object; may be repeated.")
 @click.option(
     "--histogram",
@@ -41,6 +49,7 @@ from amalthea_uros.services.measure import MeasureOptions, measure_file
 def command(
     trace: Path,
     reading: MeasureOptions,
+    model: Path | None,
     select: tuple[str, ...],
     histograms: tuple[tuple[str, Path], ...],
     outputs: tuple[Output, ...],
@@ -57,7 +66,8 @@ def command(
             raise click.UsageError(f"{path} is the file of {number} options; give each its own")
         refuse_input(path, str(path))
         refuse_unwritable(path)
-    found = measure_file(trace, replace(reading, select=select))
+    starts = {} if model is None else chain_starts(system_of(model))
+    found = measure_file(trace, replace(reading, select=select, chain_starts=starts))
     show_findings(found.findings)
     if histograms:
         from amalthea_uros.report.measurement_pictures import histogram_picture

@@ -22,6 +22,7 @@ FAMILIES = {
     "CAN": "Reading logs of CAN buses",
     "TRC": "Reading, checking and writing traces",
     "CAL": "Putting measured values into a description",
+    "MEA": "Measuring times in traces",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",
 }

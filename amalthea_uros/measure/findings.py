@@ -7,14 +7,13 @@ from pathlib import Path
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.measure.baselines import WITH_COST
 from amalthea_uros.measure.series import Measurement, Series
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.units import Time, time_text
 
 #: Shorter times are measured too coarsely, in steps of the clock.
 _FEWEST_STEPS = 10
-#: What is judged once for each object: its first series.
-_DURATIONS = ("duration", JobMetric.NET_EXECUTION_TIME, JobMetric.RESPONSE_TIME)
 
 
 def judged(measurement: Measurement) -> Iterator[Finding]:
@@ -29,8 +28,7 @@ def judged(measurement: Measurement) -> Iterator[Finding]:
             seen.add(series.name)
             yield from _uncounted(series, place)
         yield from _baseline(series, place)
-        if series.quantity in _DURATIONS and measurement.resolution is not None:
-            yield from _coarse(series, measurement.resolution, place)
+    yield from _coarse(measurement, place)
 
 
 def _uncounted(series: Series, place: Location) -> Iterator[Finding]:
@@ -44,16 +42,22 @@ def _uncounted(series: Series, place: Location) -> Iterator[Finding]:
         )
 
 
-def _coarse(series: Series, resolution: Time, place: Location) -> Iterator[Finding]:
-    found = series.statistics
-    if found is None or found.mean <= 0 or found.mean >= _FEWEST_STEPS * resolution:
-        return
+def _coarse(measurement: Measurement, place: Location) -> Iterator[Finding]:
+    resolution = measurement.resolution
+    shortest = {series.name: series for series in reversed(measurement.series) if series.quantity in WITH_COST}
+    for series in shortest.values():
+        found = series.statistics
+        if resolution is not None and found is not None and 0 < found.mean < _FEWEST_STEPS * resolution:
+            yield _few_steps(series, found, resolution, place)
+
+
+def _few_steps(series: Series, found: Statistics, resolution: Time, place: Location) -> Finding:
     error = float(100 * resolution / found.mean)
     message = (
         f"the {series.quantity.replace('_', ' ')} of {series.name!r} is about {counted(round(found.mean / resolution), 'step')} of the "
         f"clock ({time_text(resolution)}): a single value is only known to +-{error:.0f} %"
     )
-    yield Finding("MEA007", Severity.WARNING, message, place, "Use a finer clock, or the mean of many values.", series.name)
+    return Finding("MEA007", Severity.WARNING, message, place, "Use a finer clock, or the mean of many values.", series.name)
 
 
 def _baseline(series: Series, place: Location) -> Iterator[Finding]:

@@ -44,6 +44,13 @@ class Marker:
             wanted is None or wanted == byte for wanted, byte in zip(self.data, payload, strict=False)
         )
 
+    def overlaps(self, other: Marker) -> bool:
+        """Whether a frame can be both."""
+        is_one_bus = self.channel is None or other.channel is None or self.channel == other.channel
+        bytes_ = zip(self.data, other.data, strict=False)
+        is_one_payload = all(one is None or two is None or one == two for one, two in bytes_)
+        return self.identifier == other.identifier and is_one_bus and is_one_payload
+
     def __str__(self) -> str:
         digits = f"{self.identifier & ~EXTENDED:08X}" if self.identifier & EXTENDED else f"{self.identifier:03X}"
         data = "".join("xx" if byte is None else f"{byte:02X}" for byte in self.data)
@@ -157,6 +164,17 @@ class ReportedStatistics:
     kind: Kind = Kind.INTERVAL
     quantity: str = "duration"
     baseline: str | None = None
+
+
+def refuse_overlap(first: Marker, second: Marker) -> None:
+    """Refuse two markers that one frame can be.
+
+    Raises
+    ------
+    ValueError : it would not be known which of them it is.
+    """
+    if first.overlaps(second):
+        raise ValueError(f"a frame can be both {first} and {second}; give first bytes that differ, e.g. 123#01 and 123#02")
 
 
 Measurable: TypeAlias = MarkerPair | MarkerChain | ReportedValue | ReportedStatistics

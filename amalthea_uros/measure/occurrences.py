@@ -123,5 +123,7 @@ class Collector:
         """All that were found so far."""
         empty = np.empty(0, np.int64)
         parts = [Occurrences(empty, empty, empty, empty, []), *self._parts]
-        columns = (np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "marker", "channel", "segment"))
-        return Occurrences(*columns, [data for part in parts for data in part.data])
+        time, marker, channel, segment = (
+            np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "marker", "channel", "segment")
+        )
+        return Occurrences(time, marker, channel, segment, [data for part in parts for data in part.data])

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 #: What can be said where it is not known which stimulus a response shows.
 _BY_TIME = (ChainQuantity.REDUCED_REACTION_TIME, ChainQuantity.REDUCED_DATA_AGE)
+#: All of them, the usual one first.
+BY_NUMBER = tuple(dict.fromkeys((*_BY_TIME, *ChainQuantity)))
 #: The values that begin at the stimulus whose time is noted with them.
 _FROM_STIMULUS = (*_BY_TIME, ChainQuantity.DATA_AGE, ChainQuantity.LAST_TO_FIRST)
 
@@ -42,7 +44,9 @@ class LatencyLists:
         self._times.setdefault(quantity, []).append(starts + values)
 
     def series(self, name: str, counts: Counts, method: str, quantities: tuple[ChainQuantity, ...]) -> Iterator[Series]:
-        """Those of the quantities that have a value."""
+        """Those of the quantities that have a value; if none has one, the first of them without."""
+        if not any(len(part) for parts in self._values.values() for part in parts):
+            yield Series(kind=Kind.CHAIN, name=name, quantity=quantities[0], statistics=None, counts=counts, method=method)
         for quantity in quantities:
             noted = SAME.get(quantity, quantity)
             values = np.concatenate([np.empty(0, np.int64), *self._values.get(noted, [])])
@@ -92,7 +96,7 @@ def reactions(
     if number is None:
         yield from found.series(name, counts, "each response with the latest stimulus before it (the least possible)", _BY_TIME)
     else:
-        yield from found.series(name, counts, "by the number of the stimulus", tuple(ChainQuantity))
+        yield from found.series(name, counts, "by the number of the stimulus", BY_NUMBER)
 
 
 def _is_after_loss(number: Numbers, is_response: Flags) -> Flags:

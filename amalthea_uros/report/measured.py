@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from math import floor
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.measure.series import Counts, Measurement, Series
-from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.report.simulated import duration_text
 from amalthea_uros.simulate.results import Histogram
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 #: The numbers that are shown of each series.
-COLUMNS = ("object", "quantity", "n", "min", "mean", "max", "std", "peak to peak", "p99")
+COLUMNS = ("object", "quantity", "n", "min", "mean", "max", "std", "peak to peak", "p99", "mean sq. deviation")
 RIGHT = range(2, len(COLUMNS))
 P99 = Fraction(99, 100)
 #: With this probability no more exceed the maximum than `exceedance` says, if the values are independent: 1 - 0.05^(1/n) < 3/n.
@@ -35,6 +35,7 @@ def row(series: Series) -> tuple[str, ...]:
         "-" if found.std is None else _deviation(found.std),
         rounded_time_text(found.peak_to_peak, Rounding.UP),
         rounded_time_text(found.percentiles[P99], Rounding.UP) if P99 in found.percentiles else "-",
+        "-" if found.variance is None else _square(found.variance),
     )
 
 
@@ -42,8 +43,8 @@ def _deviation(std: float) -> str:
     return rounded_time_text(Fraction(std), Rounding.NEAREST)
 
 
-def squared_microseconds(variance: Fraction) -> str:
-    """A mean squared deviation."""
+def _square(variance: Fraction) -> str:
+    """A mean squared deviation, which the thesis calls jitter."""
     return f"{float(variance) / 1e12:.4g} us^2"
 
 
@@ -101,11 +102,12 @@ def closing_line(measurement: Measurement) -> str:
 
 def _exceedance(measurement: Measurement) -> str:
     """How many later values may exceed a maximum, by the fewest values of an object."""
-    numbers = [series.statistics.count for series in measurement.series if series.statistics is not None]
-    share = exceedance(min(numbers))
+    first = {series.name: series.statistics for series in reversed(measurement.series) if series.statistics is not None}
+    count = min(found.count for found in first.values())
+    share = exceedance(count)
     if share is None:
         return ""
-    return f"; if jobs are independent, fewer than {float(share):.2g} of them exceed it (95 % confidence, n = {min(numbers):,})"
+    return f"; if values are independent, at most 1 in {floor(1 / share):,} exceeds it (n = {count:,}, 95 % confidence)"
 
 
 def exceedance(count: int) -> Fraction | None:
@@ -116,13 +118,18 @@ def exceedance(count: int) -> Fraction | None:
     return Fraction(_RULE_OF_THREE, count) if count > _RULE_OF_THREE else None
 
 
-def histogram_of(series: Series) -> Histogram | None:
-    """The numbers of values in bins, as of simulations; None if the values are not known."""
+def histogram_of(series: Series, resolution: Time | None) -> Histogram | None:
+    """The numbers of values in bins, as of simulations; None if the values are not known.
+
+    Parameters
+    ----------
+    resolution : the step of the clock, which no bin is narrower than
+    """
     if series.values is None or not len(series.values):
         return None
     from amalthea_uros.simulate.metrics.histogram import BinCounts
 
-    counts = BinCounts()
+    counts = BinCounts(unit=resolution or 1)
     counts.add(series.values, int(series.values.min()), int(series.values.max()))
     return Histogram(
         start=Fraction(counts.first * counts.width), width=Fraction(counts.width), counts=tuple(counts.counts.tolist())
@@ -132,12 +139,3 @@ def histogram_of(series: Series) -> Histogram | None:
 def resolution_text(resolution: Time | None) -> str:
     """The step of the time stamps."""
     return "unknown" if resolution is None else time_text(resolution)
-
-
-def jitter_of(found: Statistics) -> dict[str, int | float | None]:
-    """The jitter by its definitions: peak to peak, standard deviation, and the mean squared deviation of the thesis."""
-    return {
-        "peak_to_peak_ps": found.peak_to_peak,
-        "std_ps": None if found.std is None else round(found.std),
-        "mean_squared_deviation_us2": None if found.variance is None else float(found.variance) / 1e12,
-    }

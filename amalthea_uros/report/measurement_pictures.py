@@ -23,7 +23,7 @@ def histogram_picture(measurement: Measurement, name: str) -> str:
     InvalidArgumentError : there is no such series, or its single values are not known.
     """
     series = _named(measurement, name)
-    found = measured.histogram_of(series)
+    found = measured.histogram_of(series, measurement.resolution)
     if found is None or series.statistics is None:
         raise InvalidArgumentError(f"the single values of {name!r} are not known, so there is no histogram")
     words = series.quantity.replace("_", " ")

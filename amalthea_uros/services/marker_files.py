@@ -26,6 +26,7 @@ from amalthea_uros.measure.markers import (
     ReportedStatistics,
     ReportedValue,
     parse_marker,
+    refuse_overlap,
 )
 from amalthea_uros.measure.series import Kind
 from amalthea_uros.services.signals import Signals, Value
@@ -130,22 +131,27 @@ class _Reader:
     # The forms of objects.
 
     def _pair(self, name: str, node: Mapping) -> MarkerPair:
+        start, end = self._marker(name, node, "start"), self._marker(name, node, "end")
+        self._refuse_overlap(start, end, node.items["end"].place)
         return MarkerPair(
             name=name,
-            start=self._marker(name, node, "start"),
-            end=self._marker(name, node, "end"),
+            start=start,
+            end=end,
             counter=self._counter(name, node),
             period=self._period(name, node),
             **self._common(name, node),
         )
 
     def _chain(self, name: str, node: Mapping) -> MarkerChain:
-        return MarkerChain(
-            name=name,
-            stimulus=self._end_of_chain(name, node, "from", "start"),
-            response=self._end_of_chain(name, node, "to", "end"),
-            counter=self._counter(name, node),
-        )
+        stimulus, response = self._end_of_chain(name, node, "from", "start"), self._end_of_chain(name, node, "to", "end")
+        self._refuse_overlap(stimulus, response, node.items["to"].place)
+        return MarkerChain(name=name, stimulus=stimulus, response=response, counter=self._counter(name, node))
+
+    def _refuse_overlap(self, first: Marker, second: Marker, place: Place) -> None:
+        try:
+            refuse_overlap(first, second)
+        except ValueError as error:
+            raise _WrongError(place, str(error)) from None
 
     def _end_of_chain(self, name: str, node: Mapping, key: str, default: str) -> Marker:
         """A marker, or that of another object: `Task`, `Task.start`, `Task.end`."""
@@ -223,10 +229,12 @@ class _Reader:
         return str(value.value)
 
     def _marker(self, name: str, node: Mapping, key: str) -> Marker:
-        return self._parsed(name, node, key, parse_marker)
+        found: Marker = self._parsed(name, node, key, parse_marker)
+        return found
 
     def _place(self, name: str, node: Mapping, key: str) -> Value:
-        return self._parsed(name, node, key, self.signals.value)
+        found: Value = self._parsed(name, node, key, self.signals.value)
+        return found
 
     def _counter(self, name: str, node: Mapping) -> Counter | None:
         if "counter" not in node.items:

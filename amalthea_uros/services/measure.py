@@ -11,23 +11,23 @@ from amalthea_uros._internal.files import is_stream
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import WITH_COST, without
 from amalthea_uros.measure.findings import judged
-from amalthea_uros.measure.markers import Marker, MarkerChain, MarkerPair, Measurable, parse_marker
+from amalthea_uros.measure.markers import Marker, MarkerChain, MarkerPair, Measurable, parse_marker, refuse_overlap
 from amalthea_uros.measure.series import Measurement, Series
 from amalthea_uros.measure.window import Window
 from amalthea_uros.names import require
 from amalthea_uros.services.marker_files import counter_of, read_markers
-from amalthea_uros.services.measured_events import measured_events
+from amalthea_uros.services.measured_events import chain_starts, measured_events
 from amalthea_uros.services.measured_frames import measured_frames
 from amalthea_uros.services.measured_values import is_value_table, measured_values
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.services.signals import Signals
 from amalthea_uros.services.simulate import time_of
+from amalthea_uros.services.subject import Subject, system_of
 from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.trace.can.logs import is_can_log
 from amalthea_uros.trace.readers import READERS
+from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import Time
-
-#: The ends of the names of logs of CAN buses; `.gz` may follow.
-CAN_LOGS = (".log", ".asc", ".blf", ".trc", ".mf4")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,6 +45,7 @@ class MeasureOptions:
     period : the standard period, from which the distances of starts deviate
     window : the part of the trace that is measured
     select : the only objects of the result; empty: all
+    chain_starts : of chains that begin with the start of a job instead of its activation: that; `chain_starts` finds them in a model
     """
 
     markers: Path | None = None
@@ -59,11 +60,17 @@ class MeasureOptions:
     period: Time | None = None
     window: Window = field(default_factory=Window)
     select: tuple[str, ...] = ()
+    chain_starts: Mapping[str, EventKind] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if (self.start is None) != (self.end is None):
             missing, given = ("end", "start") if self.end is None else ("start", "end")
             raise InvalidArgumentError(f"an interval needs two markers; add --{missing} to --{given}")
+        if self.start is not None and self.end is not None:
+            try:
+                refuse_overlap(self.start, self.end)
+            except ValueError as error:
+                raise InvalidArgumentError(str(error)) from None
         if self.counter is not None and self.start is None:
             raise InvalidArgumentError(
                 "a counter belongs to a start and an end; add --start and --end, or state it in the markers"
@@ -87,6 +94,7 @@ def measure(
     period: str | Time | None = None,
     window: tuple[str | Time, str | Time | None] = (0, None),
     select: Iterable[str] = (),
+    model: Subject | None = None,
 ) -> Measurement:
     """Measure the times in a trace: of processes, runnables and chains, or of what markers in a CAN log delimit.
 
@@ -104,6 +112,8 @@ def measure(
     period : the standard period; the deviation of the distances of starts from it is the jitter of AUTOSAR
     window : the part of the trace that is measured, from its first event on
     select : the objects of the result; by default all
+    model : what describes the system of a trace of events, so that chains begin as they do in it; by default, at the activation of the job
+        with their first step
 
     Raises
     ------
@@ -123,6 +133,7 @@ def measure(
         period=None if period is None else time_of(period),
         window=Window(time_of(window[0]), None if window[1] is None else time_of(window[1])),
         select=tuple(select),
+        chain_starts={} if model is None else chain_starts(system_of(model)),
     )
     return measure_file(as_paths(trace)[0], options)
 
@@ -162,14 +173,14 @@ def _objects(options: MeasureOptions) -> tuple[Measurable, ...]:
 
 def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions) -> Measurement:
     name = path.name.lower().removesuffix(".gz")
-    if name.endswith(CAN_LOGS) or (objects and not name.endswith((".csv", *READERS))):
+    if is_can_log(path) or (objects and not name.endswith((".csv", *READERS))):
         found = measured_frames(path, objects, options.window, options.channel)
     elif objects:
         raise InvalidArgumentError(f"{path.name!r} is not a log of a CAN bus, so it has no frames with markers; omit them")
     elif is_value_table(path):
         found = measured_values(path, options.window)
     else:
-        found = measured_events(path, options.window)
+        found = measured_events(path, options.window, options.chain_starts)
     return replace(found, digest=_digest(path))
 
 

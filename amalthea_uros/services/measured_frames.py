@@ -68,17 +68,12 @@ def _measured_object(
 
     from amalthea_uros.measure.can_series import MeasuredObject, markers_of, measure_object
 
-    numbers = [markers.index(marker) for marker in markers_of(item)]
+    wanted = markers_of(item)
+    numbers = [markers.index(marker) for marker in wanted]
     own = found.where(np.isin(found.marker, numbers))
-    own = replace(
-        own,
-        marker=np.searchsorted(np.array(sorted(numbers)), own.marker)
-        if len(numbers) == 1
-        else (own.marker == numbers[1]).astype(np.int64),
-    )
-    findings = [
-        _missing(item, marker, log, place) for number, marker in enumerate(markers_of(item)) if not (own.marker == number).any()
-    ]
+    own = replace(own, marker=(own.marker == numbers[-1]).astype(np.int64) if len(numbers) > 1 else np.zeros_like(own.marker))
+    present = set(own.marker.tolist())
+    findings = [_missing(item, marker, log, place) for number, marker in enumerate(wanted) if number not in present]
     buses = np.unique(own.channel).tolist()
     parts: list[MeasuredObject] = []
     for bus in buses:

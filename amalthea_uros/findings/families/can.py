@@ -42,10 +42,55 @@ KINDS = (
         remedy="Record absolute times, as `candump -l` does.",
     ),
     FindingKind(
+        id="CAN006",
+        title="record that is not a frame",
+        severity=Severity.INFO,
+        rationale="The log has records of other kinds, such as statistics of the bus, or a damaged line. They are ignored.",
+        remedy="Nothing needs to be done, unless a frame is missing.",
+    ),
+    FindingKind(
         id="CAN007",
         title="channel that the log does not have",
         severity=Severity.ERROR,
         rationale="No frame of the log is of the channel that was asked for.",
         remedy="Name one of the channels of the log.",
+    ),
+    FindingKind(
+        id="CAN008",
+        title="log that cannot be read to its end",
+        severity=Severity.ERROR,
+        rationale="The file is damaged, or not of the format that its name stands for. The frames before that place are used.",
+        remedy="Check that the file was written and copied completely, and that its name has the right end.",
+    ),
+    FindingKind(
+        id="CAN009",
+        title="clock that steps back",
+        severity=Severity.WARNING,
+        rationale="Somebody or something set the clock of the recorder. How long the interval across the step was is not known.",
+        remedy="Keep the clock from being set while recording, e.g. by a time server.",
+    ),
+    FindingKind(
+        id="CAN010",
+        title="unusually long pause between frames",
+        severity=Severity.INFO,
+        rationale="The bus may have been silent; but a clock that was set forward, or an interrupted recording, looks the same.",
+        remedy="Check what happened then; evaluate only the part before or after if it was not the bus.",
+    ),
+    FindingKind(
+        id="CAN011",
+        title="channels with the same identifiers",
+        severity=Severity.WARNING,
+        rationale=(
+            "Either one bus was recorded on two channels, so that each frame is there twice, or two buses use the same identifiers for "
+            "different frames."
+        ),
+        remedy="Choose one of the channels.",
+    ),
+    FindingKind(
+        id="CAN012",
+        title="DBC file that cannot be read",
+        severity=Severity.ERROR,
+        rationale="The file is missing, or not a valid DBC file. Nothing is known of the signals in the frames.",
+        remedy="Check the path and the place in the file that is stated, or save the file again as DBC.",
     ),
 )

@@ -25,8 +25,8 @@ KINDS = (
         id="MEA003",
         title="value that a frame does not have",
         severity=Severity.WARNING,
-        rationale="The payload is shorter than the bytes that should be in it, or its statistics contradict themselves. The frame is not "
-        "used.",
+        rationale="The payload is shorter than the bytes that should be in it, or its statistics contradict themselves. The frame is "
+        "not used.",
         remedy="Check the bytes or the signal, and that the DBC file belongs to the controller.",
     ),
     FindingKind(
@@ -55,7 +55,7 @@ KINDS = (
         id="MEA007",
         title="times of few steps of the clock",
         severity=Severity.WARNING,
-        rationale="A single time is wrong by up to a step of the clock. The mean of many is better, if they begin at any phase of a step.",
+        rationale="A single time is wrong by up to a step of the clock. The mean of many is better, if their phases vary.",
         remedy="Use a finer clock, or the mean of many values.",
     ),
     FindingKind(
@@ -78,5 +78,12 @@ KINDS = (
         severity=Severity.ERROR,
         rationale="The file cannot be read, or an object in it has no markers or keys that are not known.",
         remedy="Correct the place; an example: `Task: {start: 0x18000001, end: 0x18000002}`.",
+    ),
+    FindingKind(
+        id="MEA011",
+        title="chain with several routes",
+        severity=Severity.WARNING,
+        rationale="The stimuli of each route are numbered on their own, so that it is not known which of them a response shows.",
+        remedy="Measure the chain between markers at its start and its end.",
     ),
 )

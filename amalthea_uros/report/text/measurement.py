@@ -16,9 +16,9 @@ def write(measurement: Measurement, terminal: Terminal) -> None:
     terminal.table(measured.COLUMNS, map(measured.row, measurement.series), right=measured.RIGHT)
     _table(
         terminal,
-        "Baselines (the mean is subtracted above; single net times are within the last two columns)",
+        "Baselines (their means are subtracted above; single net times are within the last two columns)",
         NET,
-        net(measurement),
+        list(measured.net_rows(measurement)),
     )
     _table(terminal, "Deviation from the standard period", PERIODS, list(measured.period_rows(measurement)))
     _table(terminal, "Events that gave no value", COUNTS, list(measured.count_rows(measurement)))
@@ -33,11 +33,6 @@ def write(measurement: Measurement, terminal: Terminal) -> None:
 NET = ("object", "quantity", "empty (min / mean / max)", "at least", "at most")
 PERIODS = ("object", "quantity", "period", "largest deviation")
 COUNTS = ("object", "incomplete", "lost", "duplicated", "reordered")
-
-
-def net(measurement: Measurement) -> list[tuple[str, ...]]:
-    """The rows about baselines."""
-    return list(measured.net_rows(measurement))
 
 
 def write_closing(measurement: Measurement, terminal: Terminal) -> None:

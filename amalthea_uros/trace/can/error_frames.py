@@ -33,9 +33,13 @@ def report_error(problems: Problems, classes: int, data: bytes, place: Place) ->
         message = "the receive buffer of the controller was full, so frames are missing"
         problems.add("CAN003", Severity.WARNING, message, place, _LOST_ADVICE)
         return
-    names = ", ".join(name for bit, name in _CLASSES.items() if classes & bit) or "unknown error"
+    names = ", ".join(name for bit, name in _CLASSES.items() if classes & bit)
     problems.add(
-        "CAN004", Severity.WARNING, f"error frame: {names}", place, "Check the wiring, the bit rate and the load of the bus."
+        "CAN004",
+        Severity.WARNING,
+        f"error frame: {names}" if names else "error frame",
+        place,
+        "Check the wiring, the bit rate and the load of the bus.",
     )
 
 

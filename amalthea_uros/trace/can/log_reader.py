@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.trace.can.buses import BusWatch
+from amalthea_uros.trace.can.clocks import ClockWatch
 from amalthea_uros.trace.can.frames import FrameTable
 from amalthea_uros.trace.problems import Place, Problems
 
@@ -48,9 +50,13 @@ class LogReader(ABC):
         return self._origin or 0
 
     def __iter__(self) -> Iterator[FrameTable]:
+        clock, buses = ClockWatch(self._problems), BusWatch(self._problems)
         for table in map(self._selected, self._tables()):
             if len(table):
-                yield table
+                buses.watch(table)
+                yield clock.watch(table, self._resolution or 0)
+        clock.report()
+        buses.report()
         if self._wanted is not None and self._wanted not in self._channels:
             self._report_missing_channel(self._wanted)
 
