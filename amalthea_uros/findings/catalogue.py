@@ -21,8 +21,8 @@ FAMILIES = {
     "CHN": "Analysing event chains",
     "CAN": "Reading logs of CAN buses",
     "TRC": "Reading, checking and writing traces",
-    "CAL": "Putting measured values into a description",
     "MEA": "Measuring times in traces",
+    "CAL": "Putting measured values into a description",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",
 }
