@@ -15,8 +15,10 @@ from amalthea_uros.errors import InvalidArgumentError, ReadError, WriteError
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.services.build import TEXT
 from amalthea_uros.services.calibration.execution_times import calibrated_execution_times
+from amalthea_uros.services.calibration.executor_parts import with_executor_parts
 from amalthea_uros.services.calibration.findings import findings_of
 from amalthea_uros.services.calibration.options import CalibrationOptions, Form
+from amalthea_uros.services.calibration.overheads import calibrated_overheads
 from amalthea_uros.services.calibration.periods import calibrated_periods
 from amalthea_uros.services.calibration.samples import Measured
 from amalthea_uros.services.calibration.values import CalibratedValue, Outcome
@@ -141,14 +143,17 @@ def calibrate_text(text: str, path: Path, measurements: Sequence[Measurement], o
     before = described(text.removeprefix(_BOM), path)
     places = Places(before.description, before.platform, before.core_types)
     measured = [Measured(series, measurement) for measurement in measurements for series in measurement.series]
+    choices = before.assembly.choices
+    period = choices[0].period if choices else None
     found = [
-        *calibrated_execution_times(measured, places, options),
+        *calibrated_execution_times([*with_executor_parts(measured, places, period)], places, options),
+        *calibrated_overheads(measured, before, options),
         *calibrated_periods(measured, before, places, options),
     ]
     after = _edited(text.removeprefix(_BOM), found)
     _check(after, path)
     values = tuple(_placed(value, text.removeprefix(_BOM), after) for value in found)
-    findings = findings_of(path, text, values, measured, before, options)
+    findings = findings_of(path, text, values, measured, before, places, options)
     return Calibration(
         path=path,
         sources=tuple(measurement.source for measurement in measurements),

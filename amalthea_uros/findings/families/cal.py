@@ -56,4 +56,11 @@ KINDS = (
         rationale="Values on which the calibration is judged (`--judge-on`) are outside the calibrated range, so more will be.",
         remedy="Use all values, a larger margin, or a longer trace.",
     ),
+    FindingKind(
+        id="CAL008",
+        title="measured object that the description does not have",
+        severity=Severity.INFO,
+        rationale="Its times are not used. It may be an empty task for baselines, or a misspelled name.",
+        remedy="Check the name; in CAN logs, it is that of the markers.",
+    ),
 )

@@ -13,6 +13,7 @@ from amalthea_uros.measure.series import Kind
 from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.services.calibration.options import CalibrationOptions, Form
 from amalthea_uros.services.calibration.samples import Measured, Samples, samples_of, without_others
+from amalthea_uros.services.calibration.stated_overheads import stated_overhead
 from amalthea_uros.services.calibration.values import CalibratedValue, Outcome, calibrated
 from amalthea_uros.services.calibration.wording import percentage
 from amalthea_uros.services.description_edits.places import Assignment, Places
@@ -20,7 +21,7 @@ from amalthea_uros.services.description_edits.stated_times import StatedTime
 from amalthea_uros.services.description_edits.text_edits import Path
 from amalthea_uros.services.description_edits.yaml_values import Value
 from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import NANOSECOND, Time, time_text
 from amalthea_uros.uros.demand import times_of
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 #: More different values than this are put into so many ranges.
 _MOST_BUCKETS = 20
+#: Nothing is executed in less: a cycle of a core at 1 GHz.
+_LEAST = NANOSECOND
 #: Significant digits of bounds with a margin.
 _DIGITS = 4
 
@@ -61,6 +64,8 @@ def calibrated_execution_times(
     groups: dict[Path, tuple[StatedTime, list[Measured]]] = {}
     with_runnables = {id(each.source) for each in measured if each.series.kind is Kind.RUNNABLE}
     for each in _one_per_object(measured):
+        if not places.knows(each.series.name):
+            continue
         try:
             stated = places.execution_time(each.series.name)
         except InvalidArgumentError as error:
@@ -68,10 +73,27 @@ def calibrated_execution_times(
                 target = f"{each.series.name}.execution_time"
                 yield calibrated(target, samples_of([each], options.judge_on), Outcome.NOT_WRITTEN, str(error))
             continue
+        overhead = _overhead(each, places)
+        if overhead is None:
+            reason = "its overhead varies and is part of the measured times; subtract that of an empty job with --baseline"
+            yield calibrated(
+                f"{each.series.name}.execution_time", samples_of([each], options.judge_on), Outcome.NOT_WRITTEN, reason
+            )
+            continue
         for place in stated:
-            groups.setdefault(place.path, (place, []))[1].append(without_others(each, place.elsewhere))
+            groups.setdefault(place.path, (place, []))[1].append(without_others(each, place.elsewhere + overhead))
     for stated_time, group in groups.values():
         yield _calibrated(stated_time, _purest(group), options)
+
+
+def _overhead(measured: Measured, places: Places) -> Time | None:
+    """The stated overhead that is part of measured times: of jobs as a whole, without a baseline; None if it varies."""
+    series, executor = measured.series, places.description.middleware.executor.name
+    if series.kind is Kind.RUNNABLE or series.baseline is not None:
+        return 0
+    process = executor if series.name == f"{executor}_Spin" else series.name
+    lower, upper = stated_overhead(process, places.description) or (0, 0)
+    return lower if lower == upper else None
 
 
 def _one_per_object(measured: Sequence[Measured]) -> Iterator[Measured]:
@@ -105,7 +127,6 @@ def _calibrated(stated: StatedTime, group: Sequence[Measured], options: Calibrat
         outcome = Outcome.CONFIRMED if is_equal else Outcome.KEPT
         reason = "" if is_equal else "the description allows more than was measured"
         return calibrated(target, samples, outcome, reason, path=stated.path, refuted=written.refuted, outside=outside)
-    remark = "all values" if options.form is Form.HISTOGRAM else f"margin {percentage(options.margin)}"
     without = f"without {time_text(group[0].others)} of other parts; " if group[0].others else ""
     return calibrated(
         target,
@@ -115,7 +136,7 @@ def _calibrated(stated: StatedTime, group: Sequence[Measured], options: Calibrat
         refuted=written.refuted,
         outside=outside,
         assignment=Assignment(target, stated.path, written.value),
-        remark=f"{without}{remark}; the maximum is a high-water mark, not a bound",
+        remark=f"{without}{margin_text(options)}",
     )
 
 
@@ -163,13 +184,28 @@ def written_time(stated: StatedTime, samples: Samples, options: CalibrationOptio
     return Written(_bounds(lower, upper) if lower < upper else time_text(lower), lower, upper, refuted)
 
 
+def margin_text(options: CalibrationOptions) -> str:
+    """How what is written differs from what was measured."""
+    margin = "all values" if options.form is Form.HISTOGRAM else f"margin {percentage(options.margin)}"
+    return f"{margin}; the maximum is a high-water mark, not a bound"
+
+
+def written_range(samples: Samples, options: CalibrationOptions) -> Value:
+    """What is written for the range of values of which only statistics are known."""
+    lower, upper = _with_margin(samples, options.margin if options.form is not Form.HISTOGRAM else Fraction(0))
+    mean = round(samples.statistics.mean)
+    if lower == upper:
+        return time_text(lower)
+    return _bounds(lower, upper) if options.form is Form.BOUNDS else {**_bounds(lower, upper), "avg": time_text(mean)}
+
+
 def _with_margin(samples: Samples, margin: Fraction) -> tuple[Time, Time]:
     """The extremes with a margin, rounded outwards to the resolution of the trace and to a few digits."""
     if not margin:
-        return max(1, samples.lower), samples.upper
+        return max(_LEAST, samples.lower), samples.upper
     lower = floor(samples.lower * (1 - margin) / samples.step) * samples.step
     upper = ceil(samples.upper * (1 + margin) / samples.step) * samples.step
-    return max(1, _with_few_digits(lower, floor)), _with_few_digits(upper, ceil)
+    return max(_LEAST, _with_few_digits(lower, floor)), _with_few_digits(upper, ceil)
 
 
 def _with_few_digits(time: Time, round_to: Callable[[Fraction], int]) -> Time:

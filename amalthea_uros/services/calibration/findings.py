@@ -6,13 +6,16 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.measure.series import Kind
 from amalthea_uros.names import listed
 from amalthea_uros.services.calibration.options import CalibrationOptions, Form
 from amalthea_uros.services.calibration.samples import Measured
 from amalthea_uros.services.calibration.values import CalibratedValue, Outcome
 from amalthea_uros.services.calibration.wording import statistics_text
 from amalthea_uros.services.description_edits.described import Described
+from amalthea_uros.services.description_edits.places import Places
 from amalthea_uros.timing.job_metric import JobMetric
 
 
@@ -22,6 +25,7 @@ def findings_of(
     values: Sequence[CalibratedValue],
     measured: Sequence[Measured],
     description: Described,
+    places: Places,
     options: CalibrationOptions,
 ) -> Iterator[Finding]:
     """What has to be said about a calibration."""
@@ -42,10 +46,24 @@ def findings_of(
         message = f"gross times, which include preemption by other processes, count as execution times of {listed(gross)}"
         advice = "Trace the processes so that net execution times are known, or measure while nothing preempts them."
         yield Finding("CAL005", Severity.WARNING, message, Location(path), advice)
+    yield from _unknown(path, measured, description, places)
     missing = sorted(description.assembly.system.processes.keys() - {name for value in values for name in _names(value)})
     if missing:
         message = f"not measured: {listed(missing)}"
         yield Finding("CAL006", Severity.INFO, message, Location(path))
+
+
+def _unknown(path: Path, measured: Sequence[Measured], description: Described, places: Places) -> Iterator[Finding]:
+    """The objects of the trace that have no place in the description, with what they may be."""
+    known = description.assembly.system.processes
+    topics = {message.topic for callback in places.callbacks for message in (callback.incoming, *callback.outgoing) if message}
+    names = dict.fromkeys(each.series.name for each in measured if each.series.kind is not Kind.CHAIN)
+    for name in names:
+        if not places.knows(name) and name not in known and name not in topics:
+            advice = did_you_mean(name, known)
+            message = f"the description has no process or function {name!r}, so what was measured of it is not used"
+            severity = Severity.WARNING if advice else Severity.INFO
+            yield Finding("CAL008", severity, message, Location(path), f"{advice[:1].upper()}{advice[1:]}" if advice else "")
 
 
 def _about(value: CalibratedValue, place: Location | None) -> Iterator[Finding]:

@@ -6,10 +6,17 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
+from typing import TYPE_CHECKING
 
 from amalthea_uros.services.calibration.samples import Samples
 from amalthea_uros.units import Time
 
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+#: Each step of the search for the drift leaves two thirds of the range.
+_STEPS = 40
 #: Two clocks of controllers and adapters differ by up to 100 parts in a million: 50 each.
 CLOCK_ERROR = Fraction(100, 10**6)
 
@@ -48,20 +55,34 @@ def jitter_of(samples: Samples, period: Time) -> Time:
     """The least jitter with which events at measured distances have a period, rounded up to the resolution.
 
     Delays between 0 and J against a grid make neighbouring events T - J to T + J apart. The positions of all events against one grid
-    show more: their spread. The period of that grid is the measured one, so that a clock that is off by some parts in a million does
-    not count.
+    show more: their spread. The period of that grid may differ by the error of the clocks.
     """
     import numpy as np
 
     statistics = samples.statistics
     jitter = max(period - statistics.min, statistics.max - period, 0)
     for each in samples.measured:
-        distances = each.series.values
-        if distances is None:
-            continue
-        numbers = np.cumsum(np.rint(distances / period)).astype(np.int64)
-        if numbers[-1]:
-            ends = np.cumsum(distances)
-            positions = ends - numbers * (int(ends[-1]) / int(numbers[-1]))
-            jitter = max(jitter, floor(np.ptp(np.append(positions, 0.0))))
+        if each.series.values is not None:
+            distances = np.concatenate(([0], each.series.values))
+            numbers = np.cumsum(np.rint(distances / period))
+            jitter = max(
+                jitter, floor(_least_spread(np.cumsum(distances) - numbers * period, numbers * float(period * CLOCK_ERROR)))
+            )
     return ceil(Fraction(jitter, samples.step)) * samples.step
+
+
+def _least_spread(positions: NDArray[np.float64], drift: NDArray[np.float64]) -> float:
+    """The least spread of positions with a drift of -1 to 1 times the greatest one; the spread is a convex function of it."""
+    import numpy as np
+
+    def spread(share: float) -> float:
+        return float(np.ptp(positions + share * drift))
+
+    lower, upper = -1.0, 1.0
+    for _ in range(_STEPS):
+        third = (upper - lower) / 3
+        if spread(lower + third) <= spread(upper - third):
+            upper -= third
+        else:
+            lower += third
+    return min(spread(lower), spread(upper), spread(0.0))

@@ -24,11 +24,13 @@ class Measured:
     Attributes
     ----------
     others : what was subtracted because the description states it elsewhere
+    note : which of the values of the trace these are, if not all
     """
 
     series: Series
     source: Measurement
     others: Time = 0
+    note: str = ""
 
 
 @dataclass(frozen=True, slots=True)

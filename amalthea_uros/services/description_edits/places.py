@@ -86,6 +86,10 @@ class Places:
             raise InvalidArgumentError(self._refusal(Change(name, "execution_time", "")))
         return [self._execution_time(owner) for owner in found]
 
+    def knows(self, name: str) -> bool:
+        """Whether the description has an object of a name."""
+        return bool(self._owners(name))
+
     def _owners(self, name: str) -> list[Owner]:
         everything = list(owners(self.description))
         return [owner for owner in everything if owner.name == name]
