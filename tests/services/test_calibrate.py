@@ -74,9 +74,10 @@ def test_the_values_of_the_measured_system_come_back(trace):
 def test_the_analysis_of_the_calibrated_file_bounds_what_was_measured(trace):
     result = calibrate(GUESSED, trace, tighten=True)
     predicted = {each.name: each.response.worst for each in analyze(result.text).processes}
-    for name in ("Executor_Task", "Control_Function", "Message_Factor"):
+    for name in ("Executor_Task", "Control_Function"):  # no job of Message_Factor comes with a message in this run
         longest = measure(trace).find(name, "response_time").statistics.max
-        assert longest <= predicted[name] <= longest * Fraction(6, 5)
+        # Each of up to four parts is rounded up to a tick of 1 us.
+        assert longest <= predicted[name] <= longest * Fraction(6, 5) + 4 * MICROSECOND
 
 
 def test_a_histogram_predicts_the_mean(trace):
