@@ -45,6 +45,11 @@ RUNS = {
             "Control_Function.period=2ms",
         ),
     ),
+    "amuros measure": (
+        ("measure", "bodas-test-measured.log", "--markers", "bodas-test-measured.markers.yml"),
+        ("measure", "bodas-test-measured.log", "--start", "18000001", "--end", "18000002", "--from", "10ms"),
+        ("measure", "bodas-test-measured.log", "--start", "18000001", "--end", "1"),
+    ),
     "amuros check": (("check", ADVANCED, "--profile", "inchron,ta"),),
     "amuros build": (
         ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),
@@ -64,6 +69,7 @@ SHARED = {
     "finding": "amuros check",
     "metric": "amuros analyze",
     "observation": "amuros simulate",
+    "statistics": "amuros measure",
     "change": "amuros analyze",
     "impact": "amuros analyze",
 }

@@ -55,7 +55,8 @@ class Collector:
     window : only frames in it are used
     frames, gaps : numbers in the window
     channels : names of the buses
-    first, last : time of the first frame, and the latest one, in picoseconds as the log states them; None: there is none
+    origin : time of the first frame of the log, in picoseconds as the log states it; None: there is none
+    first, last : times of the first and the latest frame in the window, from `origin` on; None: there is none
     seen : how often identifiers occur on which bus: (channel, identifier) -> number
     """
 
@@ -64,6 +65,7 @@ class Collector:
     frames: int = 0
     gaps: int = 0
     channels: Sequence[str] = ()
+    origin: int | None = None
     first: int | None = None
     last: int | None = None
     seen: dict[tuple[int, int], int] = field(default_factory=dict)
@@ -77,9 +79,9 @@ class Collector:
 
     def _add(self, table: FrameTable) -> None:
         self.channels = table.channels
-        if self.first is None:
-            self.first = int(table.time[0])
-        time = table.time - self.first
+        if self.origin is None:
+            self.origin = int(table.time[0])
+        time = table.time - self.origin
         is_inside = self.window.holds(time)
         if not is_inside.any():
             return
@@ -89,8 +91,9 @@ class Collector:
         is_frame = (table.kind == FrameKind.DATA) & is_inside
         self.frames += int(np.count_nonzero(is_frame))
         if is_frame.any():
-            latest = int(table.time[is_frame].max())
-            self.last = latest if self.last is None else max(self.last, latest)
+            inside = time[is_frame]
+            self.first = int(inside[0]) if self.first is None else self.first
+            self.last = max(int(inside.max()), self.last or 0)
         self._count(table, is_frame)
         found = [self._found(table, is_frame, marker) for marker in self.markers]
         rows = np.concatenate([np.empty(0, np.int64), *found])

@@ -10,12 +10,14 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.measure.series import Counts, Measurement, Series
 from amalthea_uros.report.simulated import duration_text
 from amalthea_uros.simulate.results import Histogram
+from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 #: The numbers that are shown of each series.
-COLUMNS = ("object", "quantity", "n", "min", "mean", "max", "std", "peak to peak", "p99", "mean sq. deviation")
+COLUMNS = ("object", "quantity", "n", "min", "mean", "max", "std", "peak to peak", "p99", "variance")
 RIGHT = range(2, len(COLUMNS))
 P99 = Fraction(99, 100)
+_RARE = (JobMetric.WAITING_TIME, JobMetric.POLLING_TIME, JobMetric.PARKING_TIME)
 #: With this probability no more exceed the maximum than `exceedance` says, if the values are independent: 1 - 0.05^(1/n) < 3/n.
 _RULE_OF_THREE = 3
 
@@ -136,6 +138,14 @@ def histogram_of(series: Series, resolution: Time | None) -> Histogram | None:
     )
 
 
-def resolution_text(resolution: Time | None) -> str:
-    """The step of the time stamps."""
-    return "unknown" if resolution is None else time_text(resolution)
+def trace_text(measurement: Measurement) -> str:
+    """What was measured, and the step of its time stamps if that is known."""
+    steps = "" if measurement.resolution is None else f", clock steps of {time_text(measurement.resolution)}"
+    return f"{measurement.source} ({measurement.format}{steps})"
+
+
+def rows(measurement: Measurement) -> Iterator[tuple[str, ...]]:
+    """The figures of all series, for `COLUMNS`; without states that no job is ever in."""
+    for series in measurement.series:
+        if series.quantity not in _RARE or series.statistics is None or series.statistics.max:
+            yield row(series)

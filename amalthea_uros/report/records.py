@@ -19,6 +19,7 @@ from amalthea_uros.analyze.results import (
     RequirementResult,
 )
 from amalthea_uros.analyze.sensitivity import Sensitivity
+from amalthea_uros.measure.series import Measurement
 from amalthea_uros.report.json import (
     analysis_result,
     build_result,
@@ -26,6 +27,7 @@ from amalthea_uros.report.json import (
     check_result,
     diff_result,
     impact,
+    measurement,
     migration_result,
     simulation_result,
 )
@@ -49,6 +51,11 @@ from amalthea_uros.simulate.results import (
 
 #: The most important columns of the results that have too many for a table.
 _LEAN: Mapping[type, tuple[str, ...]] = {
+    Measurement: (
+        *("object", "quantity", "samples"),
+        *(f"latency.{figure}_ps" for figure in ("min", "avg", "max", "std", "p99")),
+        "jitter.peak_to_peak_ps",
+    ),
     ProcessResult: (
         *("name", "processor", "priority", "bcet_ps", "wcet_ps", "bcrt_ps", "wcrt_ps", "deadline_ps"),
         *("verdict", "claim", "reason"),
@@ -189,6 +196,12 @@ def _(result: BuildResult) -> list[Record]:
 def _(result: Calibration) -> list[Record]:
     """The measured values."""
     return [flat(calibration.value_json(value)) for value in result.values]
+
+
+@all_records.register
+def _(result: Measurement) -> list[Record]:
+    """The series, without histograms."""
+    return [flat({**measurement.series_json(series), "histogram": None}) for series in result.series]
 
 
 @all_records.register

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from hashlib import file_digest
 from pathlib import Path
 
-from amalthea_uros._internal.files import is_stream
+from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.measure.baselines import WITH_COST, without
+from amalthea_uros.measure.baselines import Baselines, names_of
 from amalthea_uros.measure.findings import judged
 from amalthea_uros.measure.markers import Marker, MarkerChain, MarkerPair, Measurable, parse_marker, refuse_overlap
 from amalthea_uros.measure.series import Measurement, Series
@@ -112,8 +112,8 @@ def measure(
     period : the standard period; the deviation of the distances of starts from it is the jitter of AUTOSAR
     window : the part of the trace that is measured, from its first event on
     select : the objects of the result; by default all
-    model : what describes the system of a trace of events, so that chains begin as they do in it; by default, at the activation of the job
-        with their first step
+    model : what describes the system of a trace of events, so that chains begin as they do in it; by default, at the activation of the
+        job with their first step
 
     Raises
     ------
@@ -151,6 +151,9 @@ def measure_file(path: Path, options: MeasureOptions) -> Measurement:
     baselines |= options.baselines
     if baselines:
         from_trace = found if options.baseline_from is None else _measured(options.baseline_from, objects, options)
+        known = {item.name for item in objects} | {name for each in (found, from_trace) for name in names_of(each.series)}
+        if known:
+            require("object", [*options.baselines.values(), *filter(None, options.baselines)], known)
         found = _net(found, from_trace, baselines)
     if options.period is not None:
         found = replace(found, series=tuple(_with_period(series, options.period) for series in found.series))
@@ -185,26 +188,31 @@ def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions
 
 
 def _digest(path: Path) -> str:
-    if is_stream(path):
+    if not path.is_file():  # a folder, or a stream that has been read
         return ""
     with path.open("rb") as stream:
         return file_digest(stream, "sha256").hexdigest()
 
 
 def _net(found: Measurement, empty: Measurement, baselines: Mapping[str, str]) -> Measurement:
-    """A measurement with the times of the empty objects subtracted from those of others."""
-    require("baseline", baselines.values(), dict.fromkeys(series.name for series in empty.series))
-    require("measured object", (name for name in baselines if name), dict.fromkeys(series.name for series in found.series))
-    empties = set(baselines.values())
+    """A measurement with the times of the empty objects subtracted from those of others; a missing one is told."""
+    subtracted = Baselines(baselines, empty.series)
+    series = tuple(map(subtracted.net, found.series))
+    place = Location(Path(empty.source))
+    findings = (
+        Finding(
+            "MEA012",
+            Severity.ERROR,
+            f"{name!r} was not measured; nothing is subtracted from the times of others",
+            place,
+            _ADVICE,
+        )
+        for name in subtracted.missing
+    )
+    return replace(found, series=series, findings=(*found.findings, *findings))
 
-    def net(series: Series) -> Series:
-        name = baselines.get(series.name, "" if series.name in empties else baselines.get("", ""))
-        if not name or series.quantity not in WITH_COST:
-            return series
-        cost = next((each for each in empty.series if each.name == name and each.quantity in WITH_COST), None)
-        return series if cost is None or cost.statistics is None else without(series, cost.statistics)
 
-    return replace(found, series=tuple(map(net, found.series)))
+_ADVICE = "Check the markers of the empty object, or give the trace with it: --baseline-from TRACE."
 
 
 def _with_period(series: Series, period: Time) -> Series:

@@ -52,20 +52,19 @@ def measured_events(path: Path, window: Window, starts: Mapping[str, EventKind])
 
     reader = open_trace(path)
     jobs, chains = JobWalk(), ChainSteps(starts)
-    first: int | None = None
-    last = 0
+    origin: int | None = None
     times = []
     for table in reader:
         if not len(table):
             continue
-        first = int(table.time[0]) if first is None else first
-        part = _from(table, first)
+        origin = int(table.time[0]) if origin is None else origin
+        part = _from(table, origin)
         part = part.where(window.holds(part.time))
         jobs.add(part)
         chains.add(part)
         times.append(np.unique(part.time))
-        last = max(last, int(part.time[-1])) if len(part) else last
     jobs.finish()
+    stamps = np.concatenate([np.empty(0, np.int64), *times])
     names = [entity.name for entity in reader.entities]
     findings = [*reader.findings]
     if jobs.illegal:
@@ -81,8 +80,8 @@ def measured_events(path: Path, window: Window, starts: Mapping[str, EventKind])
         source=str(path),
         format=path.name.lower().removesuffix(".gz").rpartition(".")[2].upper(),
         digest="",
-        duration=last,
-        resolution=resolution_of(np.concatenate([np.empty(0, np.int64), *times])),
+        duration=int(np.ptp(stamps)) if len(stamps) else 0,
+        resolution=resolution_of(stamps),
         series=series,
         findings=tuple(findings),
     )

@@ -7,7 +7,6 @@ sending nor the bus is modelled: a stamp is when the event occurs.
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Sequence
 
@@ -70,5 +69,8 @@ def _identifiers(entity: int) -> tuple[int, int]:
 
 def _key(name: str) -> str:
     """A name as a key in YAML."""
-    is_plain = _PLAIN.fullmatch(name) and name.lower() not in _WORDS
-    return name if is_plain else json.dumps(name, ensure_ascii=False)
+    if _PLAIN.fullmatch(name) and name.lower() not in _WORDS:
+        return name
+    # Characters that YAML does not allow in a file have a number of eight digits.
+    characters = (f"\\U{ord(each):08X}" if not each.isprintable() or each in '"\\' else each for each in name)
+    return f'"{"".join(characters)}"'

@@ -26,6 +26,7 @@ WITH_A_FILE = {
     "diff": ["{}", str(BRAKE)],
     "fmt": ["{}"],
     "info": ["{}"],
+    "measure": ["{}", "--start", "1", "--end", "2"],
     "migrate": ["{}"],
     "report": ["{}", "-o", "-", "--format", "md"],
     "simulate": ["{}", "--duration", "1ms"],

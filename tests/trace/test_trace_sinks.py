@@ -19,6 +19,7 @@ TRACE = table(ENTITIES, [(5, EventKind.TRIGGER, 0, 0, 0, 0)])
 FORMATS = {
     "run.btf": b"#version 2.3.0\n",
     "run.csv": b"time_ps,",
+    "run.log": b"",
     "run.json": b'{"traceEvents"',
     "run.perfetto.json": b'{"traceEvents"',
     "run.pftrace": b"\x0a",

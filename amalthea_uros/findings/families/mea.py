@@ -86,4 +86,11 @@ KINDS = (
         rationale="The stimuli of each route are numbered on their own, so that it is not known which of them a response shows.",
         remedy="Measure the chain between markers at its start and its end.",
     ),
+    FindingKind(
+        id="MEA012",
+        title="empty object that was not measured",
+        severity=Severity.ERROR,
+        rationale="Its times are to be subtracted from those of others, which therefore still contain the cost of measuring.",
+        remedy="Check the markers of the empty object, or give the trace with it: `--baseline-from TRACE`.",
+    ),
 )

@@ -13,7 +13,7 @@ from amalthea_uros.report.text.measurement import COUNTS, NET, PERIODS
 def lines(measurement: Measurement) -> Iterator[str]:
     """The times, what was subtracted, and what could not be used."""
     yield from (f"# Measurement of {escaped(measurement.source)}", "", escaped(measured.closing_line(measurement)), "")
-    yield from table(measured.COLUMNS, map(measured.row, measurement.series), right=measured.RIGHT)
+    yield from table(measured.COLUMNS, measured.rows(measurement), right=measured.RIGHT)
     parts = (
         ("Baselines", NET, measured.net_rows(measurement)),
         ("Deviation from the standard period", PERIODS, measured.period_rows(measurement)),

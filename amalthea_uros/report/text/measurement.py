@@ -9,11 +9,9 @@ from amalthea_uros.report.terminal import Terminal
 
 def write(measurement: Measurement, terminal: Terminal) -> None:
     """Write a table of the times, and of what was subtracted or could not be used."""
-    resolution = measured.resolution_text(measurement.resolution)
-    trace = f"{measurement.source} ({measurement.format}, clock steps of {resolution})"
-    terminal.line(f"{terminal.style('Measurement', '1')} of {trace}")
+    terminal.line(f"{terminal.style('Measurement', '1')} of {measured.trace_text(measurement)}")
     terminal.heading("Measured times")
-    terminal.table(measured.COLUMNS, map(measured.row, measurement.series), right=measured.RIGHT)
+    terminal.table(measured.COLUMNS, measured.rows(measurement), right=measured.RIGHT)
     _table(
         terminal,
         "Baselines (their means are subtracted above; single net times are within the last two columns)",

@@ -62,8 +62,9 @@ def _unknown(path: Path, measured: Sequence[Measured], description: Described, p
         if not places.knows(name) and name not in known and name not in topics:
             advice = did_you_mean(name, known)
             message = f"the description has no process or function {name!r}, so what was measured of it is not used"
-            severity = Severity.WARNING if advice else Severity.INFO
-            yield Finding("CAL008", severity, message, Location(path), f"{advice[:1].upper()}{advice[1:]}" if advice else "")
+            yield Finding(
+                "CAL008", Severity.INFO, message, Location(path), f"{advice[:1].upper()}{advice[1:]}" if advice else ""
+            )
 
 
 def _about(value: CalibratedValue, place: Location | None) -> Iterator[Finding]:

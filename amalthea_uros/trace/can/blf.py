@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.trace.can.blf_containers import TooLargeError, damages
 from amalthea_uros.trace.can.python_can import PythonCanLog, Row, python_can
 from amalthea_uros.trace.problems import Place
 from amalthea_uros.trace.text_lines import opened_bytes
@@ -21,6 +22,8 @@ class BlfLog(PythonCanLog):
 
     def _rows(self) -> Iterator[Row]:
         can = python_can()
+        if not self._is_safe():
+            return
         number = 0
         with opened_bytes(self._path, self._problems) as stream:
             try:
@@ -41,6 +44,18 @@ class BlfLog(PythonCanLog):
                 self._report_end(error, Place(number))
                 return
         self._check_size(reader)
+
+    def _is_safe(self) -> bool:
+        """Whether all containers may be unpacked; reports those that are damaged."""
+        with opened_bytes(self._path, self._problems) as stream:
+            try:
+                for damage in damages(stream):
+                    self._report_damage(damage, Place())
+            except TooLargeError as error:
+                message = "a container of the file is too large to be unpacked; nothing is read"
+                self._problems.add("CAN008", Severity.ERROR, message, advice=str(error))
+                return False
+        return True
 
     def _check_size(self, reader: BLFReader) -> None:
         """Check that the file has not become shorter; python-can stops at its end without a word."""

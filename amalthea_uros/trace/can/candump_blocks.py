@@ -140,7 +140,7 @@ def _identifiers(text: NDArray[np.uint8], start: Ints, end: Ints) -> tuple[Ints,
 def _data(text: NDArray[np.uint8], start: Ints, end: Ints, is_plain: Bools) -> tuple[NDArray[np.uint8], Ints, Bools]:
     digits = end - start
     is_valid = (digits >= 0) & (digits % 2 == 0) & (digits <= _MAX_DATA_DIGITS)
-    width = int(digits[is_valid & is_plain].max(initial=0)) // 2
+    width = max(int(digits[is_valid & is_plain].max(initial=0)) // 2, 1)
     data = np.zeros((len(start), width), np.uint8)
     for byte in range(width):
         is_there = start + 2 * byte < end

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -46,7 +47,7 @@ class Signal:
     def raw(self, data: bytes) -> Fraction | None:
         """The value before scaling; None if the payload is too short, or has another signal in this place (multiplexing)."""
         value = self._decode(data).get(self.name)
-        return None if value is None else Fraction(value)
+        return None if value is None or not isfinite(value) else Fraction(value)
 
     def value(self, data: bytes) -> Fraction | None:
         """The value, exactly; None as for `raw`."""
@@ -119,9 +120,9 @@ def read_dbc(path: Path) -> Database:
     database = CantoolsDatabase()
     try:
         database.add_dbc_string(text)
+        return Database(path, {message.name: _message(message) for message in database.messages})
     except Exception as error:  # of many kinds: of the parser, of cantools, and of what it uses
         raise ReadError([_not_dbc(path, error)]) from None
-    return Database(path, {message.name: _message(message) for message in database.messages})
 
 
 def _message(message: CantoolsMessage) -> Message:

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import gc
+import logging
+import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.python_can import PythonCanLog, Row, python_can
 from amalthea_uros.trace.problems import Place
 from amalthea_uros.trace.text_lines import opened_bytes
+
+if TYPE_CHECKING:
+    from can import MF4Reader
 
 _MICROSECOND = 10**6
 _SECOND = 10**12
@@ -20,13 +28,16 @@ class Mf4Log(PythonCanLog):
     """
 
     def _rows(self) -> Iterator[Row]:
-        can = python_can()
+        python_can()
         _require_asammdf()
-        number = 0
         with opened_bytes(self._path, self._problems):
             pass  # a file that cannot be opened is reported as for other formats
+        reader = self._reader()
+        if reader is None:
+            return
+        number = 0
         try:
-            with can.MF4Reader(self._path) as reader:
+            with reader:
                 for number, message in enumerate(reader, 1):
                     micros = round(message.timestamp * 10**6)
                     if self._origin is None:
@@ -39,9 +50,30 @@ class Mf4Log(PythonCanLog):
         except Exception as error:  # of many kinds, which asammdf does not document
             self._report_end(error, Place(number))
 
+    def _reader(self) -> MF4Reader | None:
+        """The reader of python-can; None, and a finding, if the file is none of the format."""
+        with _ignoring_destructors():
+            try:
+                return python_can().MF4Reader(self._path)  # type: ignore[no-any-return]
+            except Exception as error:  # of many kinds, which asammdf does not document
+                self._report_end(error, Place())
+            gc.collect()  # the object is in a circle of references
+        return None
+
+
+@contextmanager
+def _ignoring_destructors() -> Iterator[None]:
+    """Print nothing about errors in destructors: that of an object of asammdf whose initialization fails does so itself."""
+    hook, sys.unraisablehook = sys.unraisablehook, lambda _: None
+    try:
+        yield
+    finally:
+        sys.unraisablehook = hook
+
 
 def _require_asammdf() -> None:
     try:
         import asammdf  # noqa: F401
     except ImportError as error:
         raise InvalidArgumentError(".mf4 files need asammdf; install it with: pip install asammdf") from error
+    logging.getLogger("asammdf").addHandler(logging.NullHandler())

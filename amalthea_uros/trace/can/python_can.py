@@ -6,6 +6,7 @@ one step is 238 ns.
 
 from __future__ import annotations
 
+import logging
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from itertools import islice
@@ -52,6 +53,8 @@ def python_can() -> ModuleType:
         import can
     except ImportError as error:
         raise InvalidArgumentError("this format needs python-can; install it with: pip install amuros[can]") from error
+    # Else what it logs of damaged files goes to standard error, besides our findings.
+    logging.getLogger("can").addHandler(logging.NullHandler())
     return can
 
 

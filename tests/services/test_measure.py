@@ -1,0 +1,300 @@
+"""Measuring files: logs of a CAN bus with markers, traces of events, tables of values."""
+
+import random
+import shutil
+from fractions import Fraction
+
+import pytest
+from command import amuros as command
+from support import ROOT
+
+import amalthea_uros as amuros
+from amalthea_uros.errors import ReadError
+from amalthea_uros.measure.series import Kind
+from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import MILLISECOND as MS
+
+LOG, MARKERS = (ROOT / "samples" / f"bodas-test-measured.{end}" for end in ("log", "markers.yml"))
+
+
+def log(folder, *frames, name="a.log"):
+    """A log of frames: microseconds, identifier with payload, bus."""
+    path = folder / name
+    rows = ((time, frame if "#" in frame else f"{frame}#", *bus) for time, frame, *bus in frames)
+    path.write_text("".join(f"(1600000000.{time:06}) {(*bus, 'can0')[0]} {frame}\n" for time, frame, *bus in rows))
+    return path
+
+
+def rules(measurement):
+    return [finding.rule for finding in measurement.findings]
+
+
+def microseconds(series):
+    return [value // US for value in series.values.tolist()]
+
+
+def test_the_sample_has_what_was_put_into_it():
+    """12 us, and 25 us with each 20th message, beside 41 us and 31 us of empty tasks: the figures of the thesis."""
+    found = amuros.measure(LOG, markers=MARKERS)
+    fast, slow = (found.find(name, "duration").statistics for name in ("Empty_1kHz", "Empty_50Hz"))
+    assert abs(fast.mean - 41 * US) < US / 4
+    assert abs(slow.mean - 31 * US) < US / 2
+    executor = found.find("Executor_Task", "net_execution_time")
+    assert abs(executor.statistics.mean - Fraction(1265, 100) * US) < US / 4
+    low, high = executor.net_range
+    assert low <= 12 * US <= 25 * US <= high
+    assert found.find("Control_Function", "start_to_start").statistics.count == 199
+
+
+def test_a_baseline_is_a_distribution(tmp_path):
+    """The interval of the net times is [min a - max o, max a - min o]; the thesis subtracts the mean."""
+    works = [(1000 * job, "101") for job in range(3)] + [(1000 * job + time, "102") for job, time in enumerate((50, 60, 70))]
+    empties = [(1000 * job + 500, "103") for job in range(2)] + [
+        (1000 * job + 500 + time, "104") for job, time in enumerate((10, 14))
+    ]
+    path = log(tmp_path, *sorted(works + empties))
+    (tmp_path / "m.yaml").write_text("Work: {start: 101, end: '102'}\nEmpty: {start: '103', end: '104'}\n")
+    found = amuros.measure(path, markers=tmp_path / "m.yaml", baseline="Empty")
+    work = found.find("Work", "duration")
+    assert work.net_range == (36 * US, 60 * US)
+    assert (work.statistics.min, work.statistics.mean, work.statistics.max) == (38 * US, 48 * US, 58 * US)
+    assert work.baseline.mean == 12 * US
+    # Neither the empty object itself nor distances contain the cost.
+    assert found.find("Empty", "duration").baseline is None
+    assert found.find("Work", "start_to_start").baseline is None
+
+
+def test_a_baseline_can_be_in_another_log(tmp_path):
+    work = log(tmp_path, (0, "101"), (50, "102"), name="work.log")
+    empty = log(tmp_path, (0, "103"), (10, "104"), name="empty.log")
+    (tmp_path / "m.yaml").write_text("Work: {start: '101', end: '102'}\nEmpty: {start: '103', end: '104'}\n")
+    found = amuros.measure(work, markers=tmp_path / "m.yaml", baseline="Empty", baseline_from=empty)
+    assert microseconds(found.find("Work", "duration")) == [40]
+
+
+def test_a_missing_baseline_is_an_error(tmp_path):
+    path = log(tmp_path, (0, "101"), (50, "102"))
+    (tmp_path / "m.yaml").write_text("Work: {start: '101', end: '102', baseline: Empty}\nEmpty: {start: '103', end: '104'}\n")
+    found = amuros.measure(path, markers=tmp_path / "m.yaml")
+    assert "MEA012" in rules(found)
+    assert found.find("Work", "duration").baseline is None
+
+
+def test_the_same_identifiers_on_two_buses_are_never_mixed(tmp_path):
+    path = log(tmp_path, (0, "101", "can0"), (10, "101", "can1"), (30, "102", "can0"), (70, "102", "can1"))
+    found = amuros.measure(path, start="101", end="102", name="Task")
+    assert {series.name: microseconds(series) for series in found.series} == {"can0:Task": [30], "can1:Task": [60]}
+    assert "MEA002" in rules(found)
+    only = amuros.measure(path, start="101", end="102", name="Task", channel="can1")
+    assert microseconds(only.find("Task", "duration")) == [60]
+    assert "MEA002" not in rules(only)
+
+
+def test_a_frame_that_is_logged_twice_counts_once(tmp_path):
+    path = log(tmp_path, (0, "101#01"), (0, "101#01"), (30, "102#01"), (30, "102#01"))
+    found = amuros.measure(path, start="101", end="102").series[0]
+    assert microseconds(found) == [30]
+    assert found.counts.duplicated == 2
+
+
+def test_a_marker_that_does_not_occur_is_an_error_with_advice(tmp_path):
+    found = amuros.measure(log(tmp_path, (0, "101"), (5, "102")), start="101", end="00000102")
+    missing = next(finding for finding in found.findings if finding.rule == "MEA001")
+    assert "all eight digits" in missing.help
+    assert "MEA005" in rules(found)
+
+
+def test_damaged_lines_are_counted_and_the_rest_is_measured(tmp_path):
+    path = log(tmp_path, (0, "101"), (30, "102"), (100, "101"), (140, "102"))
+    path.write_text(path.read_text() + "garbage\n(16000000\n")
+    found = amuros.measure(path, start="101", end="102")
+    assert microseconds(found.series[0]) == [30, 40]
+    assert any(rule.startswith("CAN") for rule in rules(found))
+
+
+def test_a_window_leaves_out_the_start_up(tmp_path):
+    frames = [
+        (10_000 * job + time, marker) for job in range(5) for time, marker in ((0, "101"), (90 if job == 0 else 40, "102"))
+    ]
+    found = amuros.measure(log(tmp_path, *frames), start="101", end="102", window=("5 ms", "35 ms"))
+    assert microseconds(found.series[0]) == [40, 40, 40]
+    assert found.duration == 20 * MS + 40 * US
+
+
+def test_times_of_few_steps_are_reported(tmp_path):
+    """4 us in steps of 1 us are known to 25 %."""
+    frames = [(1000 * job + time, marker) for job in range(5) for time, marker in ((0, "101"), (4, "102"))]
+    found = amuros.measure(log(tmp_path, *frames), start="101", end="102", name="Task")
+    (finding,) = (finding for finding in found.findings if finding.rule == "MEA007")
+    assert "4 steps of the clock (1 us)" in finding.message
+    assert "+-25 %" in finding.message
+
+
+def test_reported_statistics_merge_exactly(tmp_path):
+    """Two seconds of a controller: 10 values of mean 20, and 30 of mean 40, have the mean 35."""
+    path = log(tmp_path, (0, "100#0A141E0A00"), (1000, "100#1E283C1E00"))
+    (tmp_path / "m.yaml").write_text(
+        "Task: {mean: byte 1, min: byte 0, max: byte 2, count: bytes 3..4, frame: '100', unit: us, kind: process, "
+        "quantity: net_execution_time}\n"
+    )
+    (series,) = amuros.measure(path, markers=tmp_path / "m.yaml").series
+    found = series.statistics
+    assert (found.count, found.min, found.mean, found.max) == (40, 10 * US, 35 * US, 60 * US)
+    assert found.variance is None
+    assert found.percentiles == {}
+    assert series.values is None
+    assert series.kind is Kind.PROCESS
+
+
+def test_reported_values_have_the_scale_of_their_unit(tmp_path):
+    path = log(tmp_path, (0, "100#E803"), (1000, "100#D007"), (2000, "100#01"))
+    (tmp_path / "m.yaml").write_text("Task: {value: bytes 0..1, unit: 0.1 us, frame: '100'}\n")
+    found = amuros.measure(path, markers=tmp_path / "m.yaml")
+    assert microseconds(found.series[0]) == [100, 200]
+    assert "MEA003" in rules(found)
+
+
+def test_signals_of_a_dbc_file_are_values(tmp_path):
+    pytest.importorskip("cantools")
+    (tmp_path / "bus.dbc").write_text(
+        'VERSION ""\n\nNS_ :\n\nBS_:\n\nBU_: ECU\n\nBO_ 256 Debug: 4 ECU\n SG_ Time : 0|16@1+ (0.5,0) [0|0] "us" ECU\n'
+        ' SG_ Job : 16|8@1+ (1,0) [0|0] "" ECU\n'
+    )
+    path = log(tmp_path, (0, "100#50000100"), (1000, "100#52000200"))
+    (tmp_path / "m.yaml").write_text("Task: {value: Debug.Time, unit: us}\n")
+    found = amuros.measure(path, markers=tmp_path / "m.yaml", dbc=tmp_path / "bus.dbc")
+    assert microseconds(found.series[0]) == [40, 41]
+    with pytest.raises(ReadError, match="--dbc FILE"):
+        amuros.measure(path, markers=tmp_path / "m.yaml")
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "says"),
+    [
+        ("Task: {start: 101}\n", "1:7", "no key 'end'"),
+        ("Task: {start: 101, end: 1x2}\n", "1:25", "not a marker"),
+        ("A: {start: '1', end: '2'}\nB: {start: '1', end: '2', counted: x}\n", "2:27", "unknown key 'counted'"),
+        ("Task: {start: '1', end: '1'}\n", "1:25", "can be both"),
+        ("Task: {start: '1', end: '2', counter: byte 99}\n", "1:39", "not a range"),
+        ("Task: {start: '1', end: '2', baseline: Empti}\n", "1:40", "not an object"),
+        ("Task: {start: '1', end: '2', kind: chain}\n", "1:36", "no kind"),
+        ("C: {from: Taks, to: '2'}\n", "1:11", "neither a marker nor an object"),
+        ("Task: {value: byte 0, frame: '1'}\n", "1:7", "has no unit"),
+        ("Task: {value: byte 0, unit: us}\n", "1:7", "names no frame"),
+        ("Task: 5\n", "1:7", "must have keys"),
+        ("[]\n", "1:1", "names objects"),
+        ("Task: {kind: process}\n", "1:7", "no markers"),
+    ],
+)
+def test_a_mistake_in_the_markers_has_its_place(text, place, says, tmp_path):
+    path = tmp_path / "m.yaml"
+    path.write_text(text)
+    with pytest.raises(ReadError) as error:
+        amuros.measure(LOG, markers=path)
+    (finding,) = error.value.findings
+    assert str(finding.location).endswith(f"m.yaml:{place}")
+    assert says in finding.message
+
+
+def test_values_in_a_table_are_read_and_written_again(tmp_path):
+    found = amuros.measure(LOG, markers=MARKERS)
+    run = command("measure", LOG, "--markers", MARKERS, "--output", f"csv={tmp_path / 'values.csv'}")
+    assert run.returncode == 0, run.stderr
+    again = amuros.measure(tmp_path / "values.csv")
+    for series in found.series:
+        same = again.find(series.name, series.quantity)
+        assert same.statistics == series.statistics
+        assert same.kind == series.kind
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("object,value_us\nTask,1.5\nTask,2\n", [1_500_000, 2_000_000]),
+        ("object,start_ms,end_ms\nTask,1,1.25\n", [250 * US]),
+        # What is no time is counted, and the rest is used.
+        ("object,value_ns\nTask,7\nTask,x\nTask\nTask,-1\nTask,1e999\nTask,9\n", [7000, 9000]),
+        ("time_s,object,quantity,kind,value_us\n1,Task,duration,interval,3\n", [3 * US]),
+    ],
+)
+def test_a_table_has_its_unit_in_the_header(text, values, tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text(text)
+    found = amuros.measure(path)
+    assert found.find("Task", "duration").values.tolist() == values
+
+
+def test_a_trace_of_a_simulation_has_what_it_observed(tmp_path):
+    """The figures of the thesis (figure 6.6), of a log that is written with the resolution of candump."""
+    trace = tmp_path / "run.log"
+    run = command("simulate", ROOT / "samples" / "bodas-test-advanced.yaml", "--duration", "1s", "--trace", trace)
+    assert run.returncode == 0, run.stderr
+    found = amuros.measure(trace, markers=tmp_path / "run.log.markers.yaml")
+    executor = found.find("Executor_Task", "gross_execution_time").statistics
+    assert (executor.min, executor.mean, executor.max) == (12 * US, Fraction(1265, 100) * US, 25 * US)
+    control = found.find("Control_Function", "start_to_start").statistics
+    assert (control.min, control.max) == (987 * US, 1013 * US)
+
+
+def test_hostile_logs_are_measured_or_refused_in_words(tmp_path):
+    shuffled = random.Random(1)
+    lines = LOG.read_bytes().splitlines(keepends=True)[:300]
+    for round_number in range(20):
+        text = bytearray(b"".join(shuffled.sample(lines, 200)))
+        for _ in range(50):
+            text[shuffled.randrange(len(text))] = shuffled.randrange(256)
+        path = tmp_path / f"{round_number}.log"
+        path.write_bytes(bytes(text))
+        found = amuros.measure(path, markers=MARKERS)
+        assert found.findings
+        for series in found.series:
+            assert series.statistics is None or series.kind is not Kind.INTERVAL or series.statistics.min >= 0
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({}, "--start ID and --end ID"),
+        ({"start": "1"}, "add --end"),
+        ({"start": "1", "end": "1"}, "can be both"),
+        ({"start": "1", "end": "2", "window": ("2 s", "1 s")}, "must end later"),
+        ({"start": "18000001", "end": "18000002", "select": ["Task"]}, "unknown measured object 'Task'"),
+        ({"start": "18000001", "end": "18000002", "baseline": "Empty"}, "unknown object 'Empty'"),
+        ({"counter": "byte 0", "markers": MARKERS}, "a counter belongs to"),
+    ],
+)
+def test_options_that_cannot_be_right_are_refused(options, says):
+    with pytest.raises(ValueError, match=says):
+        amuros.measure(LOG, **options)
+
+
+def test_the_command_shows_a_table_and_draws_a_picture(tmp_path):
+    shutil.copy(LOG, tmp_path)
+    shutil.copy(MARKERS, tmp_path)
+    run = command(
+        "measure",
+        LOG.name,
+        "--markers",
+        MARKERS.name,
+        "--histogram",
+        "Executor_Task=e.svg",
+        "--output",
+        "markdown",
+        cwd=tmp_path,
+    )
+    assert run.returncode == 0, run.stderr
+    assert "| Empty_1kHz | duration | 200 | 40 us | 40.98 us | 42 us |" in run.stdout
+    assert "net execution time of Executor_Task" in (tmp_path / "e.svg").read_text()
+
+
+def test_the_command_refuses_an_unknown_histogram_before_it_writes(tmp_path):
+    run = command("measure", LOG, "--markers", MARKERS, "--histogram", f"Executer_Task={tmp_path / 'e.svg'}")
+    assert run.returncode == 2
+    assert "did you mean 'Executor_Task'" in run.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_exit_code_says_that_nothing_was_measured():
+    run = command("measure", LOG, "--start", "7FF", "--end", "7FE")
+    assert run.returncode == 1
+    assert "Nothing was measured" in run.stdout

@@ -1,0 +1,279 @@
+"""Lines of candump: each form of `candump.c` and `lib.c` of can-utils, with what it means."""
+
+import gzip
+from contextlib import suppress
+
+import pytest
+from can_frames import DATA, ERROR, EXTENDED, GAP, MS, REMOTE, SECOND, US, read, rows, rules
+from hypothesis import given
+from hypothesis import strategies as st
+
+from amalthea_uros.errors import InvalidArgumentError, ReadError
+from amalthea_uros.trace.can.candump_blocks import read_lines
+from amalthea_uros.trace.can.candump_lines import NotAFrameError, parse
+from amalthea_uros.trace.can.frames import XL
+from amalthea_uros.trace.can.logs import open_can_log
+
+HEAD = "(1436509052.000000) can0 "
+
+
+@pytest.fixture
+def log(tmp_path):
+    return lambda content, name="run.log", **options: read(tmp_path / name, content, **options)
+
+
+@pytest.mark.parametrize(
+    ("frame", "expected"),
+    [
+        ("123#11223344", (0x123, DATA, "11223344")),
+        ("123#", (0x123, DATA, "")),
+        ("12345678#1122", (0x12345678 | EXTENDED, DATA, "1122")),
+        ("00000123#1122", (0x123 | EXTENDED, DATA, "1122")),
+        ("7ff#aabbccddeeff0011", (0x7FF, DATA, "AABBCCDDEEFF0011")),
+        ("123#11.22.33", (0x123, DATA, "112233")),
+        ("123#1122334455667788_B", (0x123, DATA, "1122334455667788")),
+        ("123#R", (0x123, REMOTE, "")),
+        ("123#R8", (0x123, REMOTE, "")),
+        ("123#R8_9", (0x123, REMOTE, "")),
+        ("123##0112233", (0x123, DATA, "112233")),
+        ("123##4112233", (0x123, DATA, "112233")),
+        ("12345678##F" + "5A" * 64, (0x12345678 | EXTENDED, DATA, "5A" * 64)),
+        ("00123#81:01:0000ABCD#11223344556677889900", (0x123 | XL, DATA, "11223344556677889900")),
+        ("20000080#0000000000000000", (0x80, ERROR, "00" * 8)),
+        ("20000004#0004000000000000", (0x4, ERROR, "0004000000000000")),
+        ("20000004#0001000000000000", (0, GAP, "0001000000000000")),  # receive overflow: frames are lost
+        ("123#1122 R", (0x123, DATA, "1122")),
+        ("123#1122 T", (0x123, DATA, "1122")),
+        ("123##51122 T", (0x123, DATA, "1122")),
+    ],
+)
+def test_the_frames_of_log_files(log, frame, expected):
+    identifier, kind, data = expected
+    [row], _ = log(f"{HEAD}{frame}\n")
+    assert row == (0, "can0", identifier, kind, bytes.fromhex(data))
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        (" (1436509052.249713)  can0  123   [4]  11 22 33 44", (0x123, DATA, "11223344")),
+        (" (1436509052.249713)    can0       123   [2]  11 22", (0x123, DATA, "1122")),
+        (" (1436509052.249713)  can0  12345678   [0] ", (0x12345678 | EXTENDED, DATA, "")),
+        (" (1436509052.249713)  can0  123   [8]  remote request", (0x123, REMOTE, "")),
+        (
+            " (1436509052.249713)  can0  123  [12]  11 22 33 44 55 66 77 88 99 AA BB CC",
+            (0x123, DATA, "112233445566778899AABBCC"),
+        ),
+        (" (1436509052.249713)  can0  RX - -  123   [2]  11 22", (0x123, DATA, "1122")),
+        (" (1436509052.249713)  can0  TX B E  123  [02]  11 22", (0x123, DATA, "1122")),
+        (" (1436509052.249713)  can0  123   {B}  11 22 33 44 55 66 77 88", (0x123, DATA, "1122334455667788")),
+        (" (1436509052.249713)  can0  123   [2]  11 41                     '.A'", (0x123, DATA, "1141")),
+        (" (1436509052.249713)  can0  123   [2]  41`11                     `A.`", (0x123, DATA, "1141")),
+        (" (1436509052.249713)  can0  123   [2]  00010001 01000001", (0x123, DATA, "1141")),
+        (" (1436509052.249713)  can0  20000080   [8]  00 00 00 00 00 00 00 00   ERRORFRAME", (0x80, ERROR, "00" * 8)),
+        (" \x1b[31m(1436509052.249713)  can0  123   [1]  11\x1b[0m", (0x123, DATA, "11")),
+    ],
+)
+def test_the_lines_of_the_console(log, line, expected):
+    identifier, kind, data = expected
+    [row], found = log(line + "\n")
+    assert row == (249713 * US, "can0", identifier, kind, bytes.fromhex(data))
+    assert set(rules(found)) <= {"CAN004"}
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "garbage",
+        "(1436509052.249713) can0",
+        "(1436509052) can0 123#11",
+        "(1436509052.249713) can0 1234#11",
+        "(1436509052.249713) can0 823#11",  # 11 bits end at 7FF
+        "(1436509052.249713) can0 40000000#11",
+        "(1436509052.249713) can0 123#1",
+        "(1436509052.249713) can0 123#112233445566778899",
+        "(1436509052.249713) can0 123##4" + "00" * 65,
+        "(1436509052.249713) can0 123#11G2",
+        "(1436509052.249713) can0 123#11 X",
+        "(14365o9052.249713) can0 123#11",
+        "(1436509052.24971x) can0 123#11",
+        " (1436509052.249713)  can0  123   [4]  11 22 33",
+        " (1436509052.249713)  can0  123   [2]  11 22 33",
+        " (2026-13-21 10:00:00.123456)  can0  123   [1]  11",
+        "DROPCOUNT: dropped",
+    ],
+)
+def test_other_lines_are_counted_and_the_rest_is_read(log, line):
+    frames, found = log(f"{HEAD}123#11\n{line}\n{line}\n{HEAD}123#22\n")
+    assert [data for *_, data in frames] == [b"\x11", b"\x22"]
+    [finding] = found.findings
+    assert (finding.rule, finding.location.line, finding.location.text) == ("CAN001", 2, line)
+    assert "(2 times, this is the first)" in finding.message
+
+
+def test_frames_without_time_are_refused_with_what_to_do(log):
+    frames, found = log(" can0  123   [1]  11\n")
+    assert frames == []
+    [finding] = found.findings
+    assert "no time stamp" in finding.message
+    assert "candump" in finding.help
+
+
+def test_times_are_exact(log):
+    frames, found = log("(1700000000.000001) can0 123#\n(1700000000.999999) can0 123#\n(1700000001.000000) can0 123#\n")
+    assert [time for time, *_ in frames] == [US, 999999 * US, SECOND]
+    assert (found.origin, found.resolution) == (1700000000 * SECOND, US)
+
+
+def test_nanoseconds_of_newer_versions(log):
+    frames, found = log("(1700000000.000000001) can0 123#\n(1700000000.123456789) can0 123##4\n")
+    assert [time for time, *_ in frames] == [1000, 123456789000]
+    assert found.resolution == 1000
+
+
+def test_the_resolution_is_the_coarsest(log):
+    _, found = log("(1700000000.000000001) can0 123#\n(1700000000.123456) can0 123#\n")
+    assert found.resolution == US
+
+
+def test_times_since_the_first_frame(log):
+    frames, found = log(" (000.000000)  can0  123   [0] \n (000.001234)  can0  123   [0] \n (001.000000)  can0  123   [0] \n")
+    assert [time for time, *_ in frames] == [0, 1234 * US, SECOND]
+    assert rules(found) == []
+
+
+def test_differences_are_added_up_and_that_is_told(log):
+    frames, found = log(" (000.000000)  can0  123   [0] \n (000.002000)  can0  123   [0] \n (000.001000)  can0  123   [0] \n")
+    assert [time for time, *_ in frames] == [0, 2 * MS, 3 * MS]
+    assert rules(found) == ["CAN005"]
+
+
+def test_dates_have_no_zone(log):
+    frames, found = log(" (2026-09-21 10:00:00.123456)  can0  123   [0] \n (2026-09-21 11:00:00.000000)  can0  123   [0] \n")
+    assert frames[1][0] - frames[0][0] == 3600 * SECOND - 123456 * US
+    assert rules(found) == ["CAN005"]
+
+
+def test_dropped_frames_are_a_gap_at_the_time_of_the_frame_before(log):
+    frames, found = log(
+        f"{HEAD}123#11\nDROPCOUNT: dropped 12 CAN frames on 'can0,123:7FF' socket (total drops 12)\n(1436509053.000000) can0 123#\n"
+    )
+    assert [(time, channel, kind) for time, channel, _, kind, _ in frames] == [
+        (0, "can0", DATA),
+        (0, "can0", GAP),
+        (SECOND, "can0", DATA),
+    ]
+    assert rules(found) == ["CAN003"]
+
+
+def test_error_frames_of_the_controller_are_told_by_their_class(log):
+    _, found = log(f"{HEAD}20000040#0000000000000000\n{HEAD}20000024#0004000000000000\n")
+    assert [finding.message for finding in found.findings] == [
+        "error frame: bus off",
+        "error frame: problem of the controller, no acknowledgement",
+    ]
+
+
+@pytest.mark.parametrize("name", ["run.log", "run.LOG.gz"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_files_may_be_packed_and_from_other_systems(log, name, end):
+    text = f"{HEAD}123#11{end}{end}(1436509053.000000)  can1 7FF#22 T{end}".encode()
+    frames, found = log(gzip.compress(text) if name.endswith("gz") else b"\xef\xbb\xbf" + text, name)
+    assert frames == [(0, "can0", 0x123, DATA, b"\x11"), (SECOND, "can1", 0x7FF, DATA, b"\x22")]
+    assert rules(found) == []
+
+
+def test_a_last_line_without_end_may_have_been_cut(log):
+    frames, found = log(f"{HEAD}123#1122\n{HEAD}123#11")
+    assert len(frames) == 1
+    assert rules(found) == ["CAN002"]
+    assert found.findings[0].location.line == 2
+
+
+def test_a_damaged_packed_file_is_read_up_to_the_damage(log):
+    packed = gzip.compress("".join(f"(1436509052.{number:06}) can0 123#\n" for number in range(100_000)).encode())
+    frames, found = log(packed[: len(packed) // 2], "run.log.gz")
+    assert 10_000 < len(frames) < 100_000
+    assert "TRC006" in rules(found)
+
+
+def test_a_file_without_lines_is_read_up_to_a_limit(tmp_path):
+    path = tmp_path / "endless.log"
+    path.symlink_to("/dev/zero")
+    found = open_can_log(path)
+    assert list(found) == []
+    assert rules(found) == ["TRC002"]
+
+
+def test_a_missing_file_and_an_unknown_format(tmp_path):
+    with pytest.raises(ReadError):
+        list(open_can_log(tmp_path / "missing.log"))
+    with pytest.raises(InvalidArgumentError, match=r"'run\.txt'.*\.log, \.asc.*e\.g\. run\.log\.gz"):
+        open_can_log(tmp_path / "run.txt")
+
+
+def test_one_channel_can_be_chosen(log):
+    text = f"{HEAD}123#11\n(1436509052.000000) can1 123#22\nDROPCOUNT: dropped 1 CAN frame on 'can1' socket (total drops 1)\n"
+    frames, _ = log(text, channel="can0")
+    assert frames == [(0, "can0", 0x123, DATA, b"\x11")]
+    frames, found = log(text, channel="can7")
+    assert frames == []
+    assert "CAN007" in rules(found)
+    assert "can0, can1" in found.findings[-1].message
+
+
+def test_a_time_that_cannot_be_right_does_not_move_all_others(log):
+    frames, found = log("(9999999999.000000) can0 123#\n" + f"{HEAD}123#\n" * 3 + "(0000000001.000000) can0 123##4\n")
+    assert [time for time, *_ in frames] == [0, 0, 0]
+    assert rules(found) == ["CAN001"]
+
+
+def test_blocks_do_not_cut_lines(tmp_path):
+    lines = [
+        f"(1436509052.{number % 10**6:06}) can{number % 3} {number % 2048:03X}#{number:016X}\n" for number in range(60_000)
+    ]
+    frames, _ = read(tmp_path / "run.log", "".join(lines))
+    assert [data for *_, data in frames] == [number.to_bytes(8, "big") for number in range(60_000)]
+    assert [channel for _, channel, *_ in frames[:3]] == ["can0", "can1", "can2"]
+
+
+FRAMES = st.one_of(
+    st.builds("{:03X}#{}".format, st.integers(0, 0x7FF), st.binary(max_size=8).map(bytes.hex)),
+    st.builds("{:08X}#{}".format, st.integers(0, 0x1FFFFFFF), st.binary(max_size=8).map(lambda data: data.hex().upper())),
+)
+
+
+@given(
+    seconds=st.integers(0, 10**10 - 1),
+    fraction=st.integers(0, 999999),
+    channel=st.sampled_from(["can0", "  vcan12", "slcan0", "c"]),
+    frame=FRAMES,
+    direction=st.sampled_from(["", " R", " T"]),
+    damage=st.one_of(st.none(), st.tuples(st.integers(0, 50), st.sampled_from(" #().09aAFRgZ_\t\x00"))),
+)
+def test_columns_and_single_lines_are_read_alike(seconds, fraction, channel, frame, direction, damage):
+    text = f"({seconds:010}.{fraction:06}) {channel} {frame}{direction}"
+    if damage is not None:
+        place, character = damage
+        text = text[:place] + character + text[place + 1 :]
+    names = []
+    lines = read_lines(f"{text}\n".encode(), lambda name: names.append(name) or len(names) - 1)
+    if not lines.is_plain[0]:
+        assert damage is not None
+        return
+    line = parse(text)
+    assert line.stamp.time == int(lines.seconds[0]) * SECOND + int(lines.fraction[0]) * 1000
+    assert (line.channel, line.identifier, line.data) == (names[0], lines.identifier[0], lines.payloads()[0])
+    assert line.kind is DATA
+
+
+@given(st.text(max_size=80))
+def test_any_text_is_a_line_or_not(text):
+    with suppress(NotAFrameError):
+        parse(text)
+
+
+def test_reading_twice_is_the_same(tmp_path):
+    text = f"{HEAD}123#11\n{HEAD}123##411\n"
+    first, _ = read(tmp_path / "run.log", text)
+    assert rows(open_can_log(tmp_path / "run.log")) == first
