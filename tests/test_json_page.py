@@ -56,7 +56,7 @@ RUNS = {
         ("build", "drive-and-lift.yaml", "-o", "too.amxmi"),
     ),
     "amuros calibrate": (
-        ("calibrate", "bodas-test-measured.yaml", "bodas-test-measured.log", "--markers", "bodas-test-measured.markers.yaml"),
+        ("calibrate", "bodas-test-measured.yaml", "bodas-test-measured.log", "--markers", "bodas-test-measured.markers.yml"),
     ),
     "amuros diff": (("diff", "bodas-test-advanced.amxmi", "bodas-test-simple.amxmi", "--impact"),),
     "amuros migrate": (("migrate", "pump-1.2.0.amxmi", "-o", "migrated.amxmi"),),

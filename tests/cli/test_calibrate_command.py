@@ -7,7 +7,7 @@ import pytest
 from command import amuros
 from support import ROOT
 
-NAMES = ("bodas-test-measured.yaml", "bodas-test-measured.log", "bodas-test-measured.markers.yaml")
+NAMES = ("bodas-test-measured.yaml", "bodas-test-measured.log", "bodas-test-measured.markers.yml")
 
 
 @pytest.fixture

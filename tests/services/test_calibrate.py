@@ -89,7 +89,7 @@ def test_a_histogram_predicts_the_mean(trace):
 
 def test_the_thesis_subtracts_empty_tasks_before_the_times_go_into_the_model():
     log = SAMPLES / "bodas-test-measured.log"
-    found = measure(log, markers=SAMPLES / "bodas-test-measured.markers.yaml")
+    found = measure(log, markers=SAMPLES / "bodas-test-measured.markers.yml")
     result = calibrate(SAMPLES / "bodas-test-measured.yaml", found, form="histogram", tighten=True)
     observed = {each.name: each for each in simulate(result.text, duration="1 s").processes}
     # 41 + 12.65 + 4 us: the prediction of the thesis for executor and control function.
