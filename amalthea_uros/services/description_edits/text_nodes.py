@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 import yaml
@@ -125,8 +126,9 @@ class Document:
                 yield inner
 
 
+@lru_cache(maxsize=2)
 def read_document(text: str) -> Document:
-    """The only document of a valid text."""
+    """The only document of a valid text; the places of many values are looked up in the same one."""
     loader = _Loader(text)
     try:
         events = iter(loader.get_event, None)
