@@ -14,6 +14,7 @@ This module is the public interface:
 - synthetic tasks and chains without any file: `taskset`, `task`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
+- measured times in a description: `calibrate`
 - reports of all of these as one HTML page: `report`
 - events of simulations: `EventTable`; changes of values: `parse_change`, `parse_sweep`
 - AMALTHEA models: `Model` (`Model.new()` is an empty one), `check`, `extract`; all AMALTHEA classes are in `amuros.am`
@@ -93,6 +94,8 @@ if TYPE_CHECKING:
     from amalthea_uros.services.build import BuildResult as BuildResult
     from amalthea_uros.services.build import build as build
     from amalthea_uros.services.build import describe as describe
+    from amalthea_uros.services.calibrate import Calibration as Calibration
+    from amalthea_uros.services.calibrate import calibrate as calibrate
     from amalthea_uros.services.campaign.run import Outcome as Outcome
     from amalthea_uros.services.campaign.run import Run as Run
     from amalthea_uros.services.campaign.tables import write_table as write_table
@@ -175,6 +178,7 @@ _NAMES = {
     "report.library": ("Report", "report"),
     "services.analyze": ("AnalysisResult", "Explanation", "analyze", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
+    "services.calibrate": ("Calibration", "calibrate"),
     "services.campaign.run": ("Outcome", "Run"),
     "services.campaign.tables": ("write_table",),
     "changes.change": ("Change", "parse_change"),

@@ -64,6 +64,9 @@ RUNS = {
         ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),
         ("build", "drive-and-lift.yaml", "-o", "too.amxmi"),
     ),
+    "amuros calibrate": (
+        ("calibrate", "bodas-test-measured.yaml", "bodas-test-measured.log", "--markers", "bodas-test-measured.markers.yml"),
+    ),
     "amuros diff": (("diff", "bodas-test-advanced.amxmi", "bodas-test-simple.amxmi", "--impact"),),
     "amuros migrate": (("migrate", "pump-1.2.0.amxmi", "-o", "migrated.amxmi"),),
     "amuros info": (("info", "bodas-test-hardware.amxmi"), ("info", "pump-1.2.0.amxmi")),

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 COMMANDS = {
     "analyze": "Compute response times, loads, chain latencies and verdicts.",
     "build": "Build an AMALTHEA model from an app.yaml.",
+    "calibrate": "Put measured times into an app.yaml.",
     "chains": "List the paths from one process to another, with their latencies.",
     "check": "Check models by rules.",
     "compare": "Compare predictions with what was measured.",

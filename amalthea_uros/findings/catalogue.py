@@ -23,6 +23,7 @@ FAMILIES = {
     "CMP": "Comparing predictions with measurements",
     "TRC": "Reading, checking and writing traces",
     "MEA": "Measuring times in traces",
+    "CAL": "Putting measured values into a description",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",
 }

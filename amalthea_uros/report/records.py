@@ -24,6 +24,7 @@ from amalthea_uros.measure.series import Measurement
 from amalthea_uros.report.json import (
     analysis_result,
     build_result,
+    calibration,
     check_result,
     comparison,
     diff_result,
@@ -34,6 +35,7 @@ from amalthea_uros.report.json import (
 )
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
 from amalthea_uros.services.build import BuildResult
+from amalthea_uros.services.calibrate import Calibration
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.comparison.results import Comparison, ComparisonRow, DistributionRow, MeasuredLimit
 from amalthea_uros.services.diff import DiffResult
@@ -197,6 +199,12 @@ def _(result: CheckResult) -> list[Record]:
 def _(result: BuildResult) -> list[Record]:
     """The periods that were chosen, with reasons."""
     return [flat(choice) for choice in build_result.content(result)["choices"]]
+
+
+@all_records.register
+def _(result: Calibration) -> list[Record]:
+    """The measured values."""
+    return [flat(calibration.value_json(value)) for value in result.values]
 
 
 @all_records.register
