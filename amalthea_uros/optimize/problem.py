@@ -31,6 +31,7 @@ class Evaluation:
     violations : deadline or limit -> by how many picoseconds it is exceeded; None if that is not known
     values : of the goals in their order, less is better; None if unknown
     is_exact : whether all verdicts and values are exact, not bounds
+    broken_rule : the rule of the space that the design breaks, so that it is not analysed; "" if there is none
     reason : why there is no analysis, "" if there is one
     """
 
@@ -39,6 +40,7 @@ class Evaluation:
     violations: Mapping[str, int | None] = field(default_factory=dict)
     values: tuple[Fraction | None, ...] = ()
     is_exact: bool = False
+    broken_rule: str = ""
     reason: str = ""
 
     @property
@@ -104,7 +106,10 @@ class SearchResult:
     front : designs of which none is better in every goal than another one
     tried : number of designs that were judged
     excluded : number of designs of the space that a proof excludes without judging each
+    broken : rule of the space -> number of designs that break it; they are neither tried nor excluded
+    undecided : number of the designs that were tried of which it is unknown whether all limits hold
     proof : why it is optimal, or why none exists, in words that can be checked
+    ended : why the search ended early, such as "time limit"; "" if it did not
     """
 
     best: tuple[Evaluation, ...]
@@ -112,4 +117,7 @@ class SearchResult:
     conclusion: Conclusion
     tried: int
     excluded: int = 0
+    broken: Mapping[str, int] = field(default_factory=dict)
+    undecided: int = 0
     proof: str = ""
+    ended: str = ""

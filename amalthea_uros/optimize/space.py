@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from math import factorial, prod
+
+from amalthea_uros.changes.change import Change
 
 
 class Kind(StrEnum):
@@ -50,10 +53,16 @@ class PriorityOrder:
     Attributes
     ----------
     tasks : whose priorities may change, in the present order, the most important first
+    numbers : the priorities that they share out, the highest first; as many as there are tasks
     """
 
     scheduler: str
     tasks: tuple[str, ...]
+    numbers: tuple[int, ...]
+
+    def changes(self, tasks: Sequence[str]) -> tuple[Change, ...]:
+        """The priorities of an order of the tasks, the most important first."""
+        return tuple(Change(task, "priority", str(number)) for task, number in zip(tasks, self.numbers, strict=True))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
