@@ -32,6 +32,7 @@ COMMANDS = {
     "init": "Write a commented app.yaml to begin with, or copy an example.",
     "lsp": "Run the language server, for editors.",
     "migrate": "Convert models to another AMALTHEA version.",
+    "optimize": "Search for changes with which all limits are met, each proved by the analysis.",
     "report": "Write a report: one HTML page, or a summary in Markdown.",
     "rules": "List the rules of check.",
     "schema": "Print the JSON Schema of app.yaml.",

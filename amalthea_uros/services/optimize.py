@@ -8,7 +8,7 @@ from pathlib import Path
 from time import monotonic
 
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.impact import Effect, Impact, ImpactRow, Part, impact
+from amalthea_uros.analyze.impact import Effect, Impact, ImpactRow, impact
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.changes.apply import Difference, describe
@@ -27,7 +27,7 @@ from amalthea_uros.optimize.quantities import FROM_ARRIVAL, Figures, Range, take
 from amalthea_uros.optimize.space import Space
 from amalthea_uros.services.design_space import DEFAULT, Vary, Wishes, design_space
 from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.subject import Subject, open_subject, paths_of
+from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
 from amalthea_uros.timing.settings import Settings
 
 #: So many proposals are shown, unless more are asked for.
@@ -51,7 +51,7 @@ class LimitRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Proposal(Shown):
+class DesignProposal(Shown):
     """A design that meets all limits, with its full analysis.
 
     Attributes
@@ -73,7 +73,7 @@ class Proposal(Shown):
     limits: tuple[LimitRow, ...]
 
     def __repr__(self) -> str:
-        return f"<Proposal {'; '.join(map(str, self.differences)) or 'no change'}>"
+        return f"<DesignProposal {'; '.join(map(str, self.differences)) or 'no change'}>"
 
     @property
     def worse(self) -> tuple[ImpactRow, ...]:
@@ -101,13 +101,14 @@ class Optimization(Shown):
     search : everything that was found
     """
 
+    subject: Subject = field(compare=False)
     paths: tuple[Path, ...]
     space: Space
     limits: tuple[Limit, ...]
     goals: tuple[Goal, ...]
     before: Analysis
     present: Evaluation
-    proposals: tuple[Proposal, ...]
+    proposals: tuple[DesignProposal, ...]
     search: SearchResult
     findings: tuple[Finding, ...] = ()
     settings: Settings = field(default_factory=Settings)
@@ -115,7 +116,7 @@ class Optimization(Shown):
     def __repr__(self) -> str:
         return f"<Optimization: {self.search.conclusion}, {len(self.proposals)} proposals of {self.search.tried} designs>"
 
-    def __getitem__(self, number: int) -> Proposal:
+    def __getitem__(self, number: int) -> DesignProposal:
         """A proposal; 0 is the best one."""
         return self.proposals[number]
 
@@ -164,6 +165,7 @@ def optimize(
     ReadError : a file cannot be read, or something in a description is wrong.
     InvalidArgumentError : something that is named does not exist, or a value is wrong.
     """
+    subject = reusable(subject)
     opened = open_subject(subject)
     settings = settings or Settings()
     require_settings(settings, opened.system)
@@ -192,6 +194,7 @@ def optimize(
     search = try_all(problem, effort)
     confirmed = [_proposal(each, evaluator, before) for each in search.best[:proposals]]
     return Optimization(
+        subject=subject,
         paths=paths_of(subject) or (),
         space=space,
         limits=every,
@@ -230,14 +233,14 @@ def _clock(time_limit: float | None) -> Callable[[], str]:
     return ended
 
 
-def _proposal(evaluation: Evaluation, evaluator: DesignEvaluator, before: Analysis) -> Proposal:
+def _proposal(evaluation: Evaluation, evaluator: DesignEvaluator, before: Analysis) -> DesignProposal:
     """A proposal, proved by a full analysis of its own."""
     configuration = evaluator.designs.configure(evaluation.candidate)
     analysis = analyze_system(*configuration)
     again = evaluator.judged(evaluation.candidate, analysis)
     assert again == evaluation, "a design was judged in two ways"
     figures = evaluator.scale.figures
-    return Proposal(
+    return DesignProposal(
         evaluation=evaluation,
         differences=describe(*evaluator.designs.present, evaluation.candidate),
         changes=evaluator.designs.changes(evaluation.candidate),
