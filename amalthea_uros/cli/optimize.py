@@ -70,15 +70,15 @@ def _vary(text: str) -> tuple[Vary, ...]:
     type=Parsed("OBJECT.KEY=VALUES", sweeping.parse_sweep),
     help=f"Values that a property may have, a range or a list, e.g. {sweeping.EXAMPLE}; may be repeated.",
 )
-@click.option("--keep", multiple=True, metavar="OBJECT[.KEY]", help="What must not change, e.g. a supplier's task; may be repeated.")
+@click.option(
+    "--keep", multiple=True, metavar="OBJECT[.KEY]", help="What must not change, e.g. a supplier's task; may be repeated."
+)
 @click.option("--rate-monotonic", "is_rate_monotonic", is_flag=True, help="Let priorities follow the periods.")
 @click.option(
     "--may-be-later", is_flag=True, help="Allow that a chain answers later than now, counted from the arrival of its message."
 )
 @settings_options
-@click.option(
-    "--all", "is_complete", is_flag=True, help="Judge all designs, also if some with few changes meet all limits."
-)
+@click.option("--all", "is_complete", is_flag=True, help="Judge all designs, also if some with few changes meet all limits.")
 @click.option(
     "--designs",
     type=click.IntRange(min=1),

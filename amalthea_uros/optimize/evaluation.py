@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from amalthea_uros.analyze.results import Analysis, Claim, Quantity
@@ -12,11 +12,15 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.optimize.candidate import Candidate
 from amalthea_uros.optimize.designs import Designs
-from amalthea_uros.optimize.goals import Scale, value_of
+from amalthea_uros.optimize.goals import Scale, constraints_of, value_of
 from amalthea_uros.optimize.limits import Limit
+from amalthea_uros.optimize.lower_bounds import SampledChain
 from amalthea_uros.optimize.problem import Evaluation, Feasibility, Goal
-from amalthea_uros.optimize.quantities import Figures, Range
+from amalthea_uros.optimize.quantities import FROM_ARRIVAL, Figures, Range
+from amalthea_uros.perf.system import System
 
+#: No less than the reduced reaction time.
+_AT_LEAST_REACTION = (Quantity.MAX_REDUCED_REACTION_TIME, Quantity.MAX_REACTION_TIME, FROM_ARRIVAL)
 #: A share is exceeded by so many picoseconds per second.
 _SECOND = 10**12
 
@@ -28,10 +32,12 @@ class DesignEvaluator:
     Attributes
     ----------
     limits : beside those of the model
+    chains : those of which there are lower bounds
     """
 
     designs: Designs
     limits: tuple[Limit, ...]
+    chains: Mapping[str, SampledChain] = field(default_factory=dict)
     goals: tuple[Goal, ...]
     scale: Scale
 
@@ -47,11 +53,22 @@ class DesignEvaluator:
             return Evaluation(candidate=candidate, feasible=Feasibility.NO, reason=str(error))
         if rule := self.designs.broken_rule(configuration.system):
             return Evaluation(candidate=candidate, feasible=Feasibility.NO, broken_rule=rule)
+        if exceeded := dict(self._exceeded(configuration.system)):
+            return Evaluation(candidate=candidate, feasible=Feasibility.NO, violations=exceeded, is_excluded=True)
         try:
             analysis = analyze_system(*configuration)
         except InvalidArgumentError as error:
             return Evaluation(candidate=candidate, feasible=Feasibility.NO, reason=str(error))
         return self.judged(candidate, analysis)
+
+    def _exceeded(self, system: System) -> Iterator[tuple[str, int]]:
+        """The limits of latencies that lower bounds exceed, and by how much at least."""
+        for limit in (*self.limits, *constraints_of(system)):
+            chain = self.chains.get(limit.object)
+            if chain is not None and limit.quantity in _AT_LEAST_REACTION:
+                bound = chain.shortest_maximum(system)
+                if bound is not None and bound > limit.maximum:
+                    yield limit.target, int(bound - limit.maximum)
 
     def judged(self, candidate: Candidate, analysis: Analysis) -> Evaluation:
         """The evaluation of a design by its analysis."""

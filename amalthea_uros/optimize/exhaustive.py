@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import islice
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.optimize.candidate import Candidate
 from amalthea_uros.optimize.enumeration import count_with, designs_with, most_changes
 from amalthea_uros.optimize.front import pareto_front
@@ -41,14 +42,22 @@ class _Progress:
     """What was found so far."""
 
     judged: list[Evaluation] = field(default_factory=list)
+    excluded: int = 0
     broken: Counter[str] = field(default_factory=Counter)
     ended: str = ""
 
     def add(self, evaluation: Evaluation) -> None:
         if evaluation.broken_rule:
             self.broken[evaluation.broken_rule] += 1
+        elif evaluation.is_excluded:
+            self.excluded += 1
         else:
             self.judged.append(evaluation)
+
+    @property
+    def seen(self) -> int:
+        """The number of designs about which something is known."""
+        return len(self.judged) + self.excluded + self.broken.total()
 
     @property
     def is_found(self) -> bool:
@@ -85,7 +94,7 @@ def _try_level(problem: Problem, level: int, effort: Effort, found: _Progress) -
         except KeyboardInterrupt:
             found.ended = "interrupted"
             return
-        effort.progress(len(found.judged) + found.broken.total(), total)
+        effort.progress(found.seen, total)
         if len(batch) > rest:
             found.ended = f"{effort.designs} designs were judged"
             return
@@ -100,21 +109,26 @@ def _result(problem: Problem, found: _Progress, level: int, is_everything: bool)
     feasible = ranked(each for each in found.judged if each.feasible is Feasibility.YES)
     undecided = sum(each.feasible is Feasibility.UNKNOWN for each in found.judged)
     count = len(found.judged)
-    broken = f", and {found.broken.total()} that break a rule are not allowed" if found.broken else ""
-    everything = f"all {count} designs that may be proposed were judged{broken}"
+    parts = [f"{count} judged by the analysis"]
+    parts += [f"{found.excluded} excluded by lower bounds"] if found.excluded else []
+    parts += [f"{found.broken.total()} not allowed"] if found.broken else []
+    designs = (
+        f"{found.seen} designs ({', '.join(parts)})" if len(parts) > 1 else f"{counted(count, 'design')} judged by the analysis"
+    )
     conclusion, proof = Conclusion.NOT_FOUND, ""
-    if found.ended:
+    if found.ended or undecided:
         conclusion = Conclusion.BEST_FOUND if feasible else Conclusion.NOT_FOUND
     elif feasible:
         conclusion = Conclusion.OPTIMAL
-        proof = everything if is_everything else f"all designs with at most {level} changed values were judged: {count}{broken}"
-    elif not undecided:
-        conclusion, proof = Conclusion.NONE, everything
+        proof = f"all {designs}" if is_everything else f"all {designs} with at most {counted(level, 'changed value')}"
+    else:
+        conclusion, proof = Conclusion.NONE, f"all {designs}"
     return SearchResult(
         best=tuple(feasible),
         front=pareto_front(feasible),
         conclusion=conclusion,
         tried=count,
+        excluded=found.excluded,
         broken=dict(found.broken),
         undecided=undecided,
         proof=proof,

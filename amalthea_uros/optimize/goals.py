@@ -40,7 +40,9 @@ class Scale:
 def _latency(analysis: Analysis, scale: Scale) -> Fraction | None:
     """The largest latency of a chain relative to its limit, or to its present value."""
     return _largest(
-        None if (upper := limit.range(analysis, scale.figures).upper) is None or not limit.maximum else Fraction(upper) / limit.maximum
+        None
+        if (upper := limit.range(analysis, scale.figures).upper) is None or not limit.maximum
+        else Fraction(upper) / limit.maximum
         for limit in scale.latencies
     )
 
@@ -99,7 +101,9 @@ def _goal(name: str, system: System) -> Goal:
     if name in _NAMED:
         return Goal(name=name, unit=_NAMED[name].unit)
     if "." not in name:
-        raise InvalidArgumentError(f"unknown goal {name!r}; expected one of {', '.join(GOALS)}, or OBJECT.QUANTITY, e.g. {EXAMPLE}")
+        raise InvalidArgumentError(
+            f"unknown goal {name!r}; expected one of {', '.join(GOALS)}, or OBJECT.QUANTITY, e.g. {EXAMPLE}"
+        )
     obj, quantity = split_target(name, name, FORM, EXAMPLE)
     check_quantity(system, obj, quantity, name)
     return Goal(name=name, unit="ps" if dimension(quantity) is Dimension.TIME else "")
@@ -119,7 +123,7 @@ def value_of(goal: Goal, analysis: Analysis, candidate: Candidate, scale: Scale)
 def latency_limits(analysis: Analysis, limits: Iterable[Limit], figures: Figures) -> tuple[Limit, ...]:
     """The limited latencies of chains; if there are none, the reaction times of all chains with their present values as limits."""
     system = analysis.solution.context.system
-    found = [*(limit for limit in limits if limit.object in system.chains), *_constraints(system)]
+    found = [*(limit for limit in limits if limit.object in system.chains), *constraints_of(system)]
     return tuple(found or _present(analysis, figures))
 
 
@@ -129,7 +133,8 @@ _LIMITED = {
 }
 
 
-def _constraints(system: System) -> Iterator[Limit]:
+def constraints_of(system: System) -> Iterator[Limit]:
+    """The limits of latencies of chains that a model states."""
     for constraint in system.constraints.constraints:
         if isinstance(constraint, LatencyConstraint) and constraint.maximum and constraint.chain in system.chains:
             yield Limit(object=constraint.chain, quantity=_LIMITED[constraint.kind], maximum=constraint.maximum)

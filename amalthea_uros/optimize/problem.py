@@ -31,6 +31,7 @@ class Evaluation:
     violations : deadline or limit -> by how many picoseconds it is exceeded; None if that is not known
     values : of the goals in their order, less is better; None if unknown
     is_exact : whether all verdicts and values are exact, not bounds
+    is_excluded : whether a lower bound shows that a limit is exceeded, so that the design is not analysed
     broken_rule : the rule of the space that the design breaks, so that it is not analysed; "" if there is none
     reason : why there is no analysis, "" if there is one
     """
@@ -40,6 +41,7 @@ class Evaluation:
     violations: Mapping[str, int | None] = field(default_factory=dict)
     values: tuple[Fraction | None, ...] = ()
     is_exact: bool = False
+    is_excluded: bool = False
     broken_rule: str = ""
     reason: str = ""
 

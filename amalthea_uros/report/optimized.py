@@ -61,16 +61,20 @@ def closing_line(result: Optimization) -> str:
         case Conclusion.OPTIMAL if not search.best[0].candidate:
             return f"Nothing needs to change: the present design meets all limits{_and_best(result)}"
         case Conclusion.OPTIMAL:
-            return f"Optimal: proposal 1 is proved to be the best of the allowed designs: {search.proof}"
-        case Conclusion.BEST_FOUND:
-            return f"Best found, not proved to be optimal: {search.ended or 'not all designs were judged'}; {of}"
+            measure = "" if search.best[0].is_exact else ", by what the analysis can prove,"
+            return f"Optimal: no allowed design is better{measure} than proposal 1: {search.proof}"
         case Conclusion.NONE:
             return f"None exists: no allowed design meets all limits: {search.proof}"
-    if search.undecided:
-        reason = f"; of {counted(search.undecided, 'design')} it is unknown whether all limits are met"
-    else:
-        reason = ""
-    return f"None found, which proves nothing: {search.ended or 'all were judged'}; {of}{reason}"
+        case Conclusion.BEST_FOUND:
+            return f"Best found, not proved to be optimal: {_why_open(result)}; {of}"
+    return f"None found, which proves nothing: {_why_open(result)}; {of}"
+
+
+def _why_open(result: Optimization) -> str:
+    """Why the search proves nothing."""
+    search = result.search
+    unknown = f"it is unknown whether {counted(search.undecided, 'design')} meet all limits" if search.undecided else ""
+    return "; ".join(filter(None, (search.ended, unknown))) or "not all designs were judged"
 
 
 def _and_best(result: Optimization) -> str:

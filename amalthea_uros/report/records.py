@@ -26,6 +26,7 @@ from amalthea_uros.report.json import (
     diff_result,
     impact,
     migration_result,
+    optimization,
     simulation_result,
 )
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
@@ -34,6 +35,7 @@ from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.improvements import Improvements
 from amalthea_uros.services.migrate import MigrationResult
+from amalthea_uros.services.optimize import DesignProposal, Optimization
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult
 from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.simulate.results import (
@@ -135,6 +137,18 @@ def _(requirement: RequirementResult) -> list[Record]:
 @all_records.register
 def _(result: SimulationResult) -> list[Record]:
     return result.simulation.to_records()
+
+
+@all_records.register
+def _(proposal: DesignProposal) -> list[Record]:
+    """One row for each requirement and limit."""
+    return [flat(row) for row in optimization.demands_json(proposal)]
+
+
+@all_records.register
+def _(result: Optimization) -> list[Record]:
+    """One row for each proposal."""
+    return [flat(row) for row in optimization.rows_json(result)]
 
 
 @all_records.register

@@ -163,7 +163,10 @@ class _Builder:
                 others = [
                     name
                     for name, each in schedulers.items()
-                    if each.policy == own.policy and each.parent is None and scheduler_cores(name, self.system) and name != own.name
+                    if each.policy == own.policy
+                    and each.parent is None
+                    and scheduler_cores(name, self.system)
+                    and name != own.name
                 ]
                 yield _choice(allocation.task, "scheduler", Kind.CORE, [own.name, *others])
 

@@ -22,7 +22,8 @@ from amalthea_uros.optimize.evaluation import DesignEvaluator
 from amalthea_uros.optimize.exhaustive import Effort, try_all
 from amalthea_uros.optimize.goals import Scale, goals_of, latency_limits
 from amalthea_uros.optimize.limits import Limit, check_limit, parse_limit
-from amalthea_uros.optimize.problem import Conclusion, Evaluation, Feasibility, Goal, Problem, SearchResult
+from amalthea_uros.optimize.lower_bounds import sampled_chains
+from amalthea_uros.optimize.problem import Evaluation, Feasibility, Goal, Problem, SearchResult
 from amalthea_uros.optimize.quantities import FROM_ARRIVAL, Figures, Range, takers
 from amalthea_uros.optimize.space import Space
 from amalthea_uros.services.design_space import DEFAULT, Vary, Wishes, design_space
@@ -121,6 +122,59 @@ class Optimization(Shown):
         return self.proposals[number]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """A search that can be started.
+
+    Attributes
+    ----------
+    before : the analysis of the present design
+    evaluator : judges the designs of the problem
+    """
+
+    subject: Subject = field(compare=False)
+    problem: Problem
+    before: Analysis
+    evaluator: DesignEvaluator
+    findings: tuple[Finding, ...]
+
+
+def plan_optimization(
+    subject: Subject,
+    wishes: Wishes | None = None,
+    *,
+    limits: Iterable[str | Limit] = (),
+    goals: Sequence[str] = (),
+    settings: Settings | None = None,
+    may_be_later: bool = False,
+    seed: int = 1,
+) -> Plan:
+    """Read what describes a system, and find out what may change; parameters and errors as for `optimize`."""
+    subject = reusable(subject)
+    opened = open_subject(subject)
+    settings = settings or Settings()
+    require_settings(settings, opened.system)
+    present = Configuration(opened.system, settings)
+    before = analyze_system(*present)
+    figures = Figures(takers(before))
+    space, designs = design_space(opened, present, wishes or Wishes())
+    stated = tuple(parse_limit(each) if isinstance(each, str) else each for each in limits)
+    for limit in stated:
+        check_limit(limit, opened.system)
+    evaluator = DesignEvaluator(
+        designs=designs,
+        limits=stated if may_be_later else (*stated, *_not_later(before, figures)),
+        chains=sampled_chains(before),
+        goals=goals_of(goals, opened.system),
+        scale=Scale(figures=figures, latencies=latency_limits(before, stated, figures)),
+    )
+    problem = Problem(
+        present=present, space=space, goals=evaluator.goals, configure=designs.configure, evaluate=evaluator, seed=seed
+    )
+    findings = unsuppressed((*opened.findings, *before.findings))
+    return Plan(subject=subject, problem=problem, before=before, evaluator=evaluator, findings=findings)
+
+
 def optimize(
     subject: Subject,
     *,
@@ -165,46 +219,34 @@ def optimize(
     ReadError : a file cannot be read, or something in a description is wrong.
     InvalidArgumentError : something that is named does not exist, or a value is wrong.
     """
-    subject = reusable(subject)
-    opened = open_subject(subject)
-    settings = settings or Settings()
-    require_settings(settings, opened.system)
-    present = Configuration(opened.system, settings)
-    before = analyze_system(*present)
-    figures = Figures(takers(before))
     wishes = Wishes(
         vary=tuple(map(_vary, vary)),
         offers=tuple(parse_sweep(each) if isinstance(each, str) else each for each in offers),
         keep=tuple(keep),
         is_rate_monotonic=is_rate_monotonic,
     )
-    space, made = design_space(opened, present, wishes)
-    stated = tuple(parse_limit(each) if isinstance(each, str) else each for each in limits)
-    for limit in stated:
-        check_limit(limit, opened.system)
-    every = stated if may_be_later else (*stated, *_not_later(before, figures))
-    goal_list = goals_of(goals, opened.system)
-    evaluator = DesignEvaluator(
-        designs=made, limits=every, goals=goal_list, scale=Scale(figures=figures, latencies=latency_limits(before, stated, figures))
-    )
-    problem = Problem(
-        present=present, space=space, goals=goal_list, configure=made.configure, evaluate=evaluator, seed=seed
+    plan = plan_optimization(
+        subject, wishes, limits=limits, goals=goals, settings=settings, may_be_later=may_be_later, seed=seed
     )
     effort = Effort(designs=designs, is_complete=is_complete, ended=_clock(time_limit), progress=progress)
-    search = try_all(problem, effort)
-    confirmed = [_proposal(each, evaluator, before) for each in search.best[:proposals]]
+    return found_by(plan, try_all(plan.problem, effort), proposals)
+
+
+def found_by(plan: Plan, search: SearchResult, proposals: int = MOST_PROPOSALS) -> Optimization:
+    """The outcome of a search, each proposal proved by a full analysis of its own."""
+    problem, evaluator = plan.problem, plan.evaluator
     return Optimization(
-        subject=subject,
-        paths=paths_of(subject) or (),
-        space=space,
-        limits=every,
-        goals=goal_list,
-        before=before,
-        present=evaluator.judged((), before),
-        proposals=tuple(confirmed),
+        subject=plan.subject,
+        paths=paths_of(plan.subject) or (),
+        space=problem.space,
+        limits=evaluator.limits,
+        goals=problem.goals,
+        before=plan.before,
+        present=evaluator.judged((), plan.before),
+        proposals=tuple(_proposal(each, evaluator, plan.before) for each in search.best[:proposals]),
         search=search,
-        findings=unsuppressed((*opened.findings, *before.findings)),
-        settings=settings,
+        findings=plan.findings,
+        settings=problem.present.settings,
     )
 
 

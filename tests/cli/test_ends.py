@@ -26,6 +26,7 @@ WITH_A_FILE = {
     "fmt": ["{}"],
     "info": ["{}"],
     "migrate": ["{}"],
+    "optimize": ["{}"],
     "report": ["{}", "-o", "-", "--format", "md"],
     "simulate": ["{}", "--duration", "1ms"],
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
@@ -45,12 +45,38 @@ def proposal_json(proposal: DesignProposal, goals: tuple[Goal, ...]) -> dict[str
         "changes": changes.content(proposal.differences),
         "set": [str(change) for change in proposal.changes],
         "objective": _objective(goals, proposal.evaluation),
-        "proof": "exact" if proposal.evaluation.is_exact else "bound",
+        "proof": _proof(proposal),
         "summary": summary_json(proposal.analysis),
         "requirements": [requirement_json(each) for each in proposal.analysis.requirements],
         "limits": [_limit_json(row) for row in proposal.limits],
         "impact": impact.content(proposal.impact),
     }
+
+
+def rows_json(result: Optimization) -> Iterator[dict[str, Any]]:
+    """A row for each proposal."""
+    for number, proposal in enumerate(result.proposals, start=1):
+        yield {
+            "proposal": number,
+            "set": " ".join(map(str, proposal.changes)),
+            **_objective(result.goals, proposal.evaluation),
+            "proof": _proof(proposal),
+            "schedulable": proposal.analysis.summary.schedulable,
+        }
+
+
+def demands_json(proposal: DesignProposal) -> Iterator[dict[str, Any]]:
+    """A row for each requirement of the model, and for each limit beside them."""
+    for each in proposal.analysis.requirements:
+        found = requirement_json(each)
+        yield {name: found[name] for name in ("object", "quantity", "limit_ps", "value_ps", "verdict")}
+    for row in proposal.limits:
+        found = _limit_json(row)
+        yield {name: value for name, value in found.items() if name not in ("strict", "reason", "exact")}
+
+
+def _proof(proposal: DesignProposal) -> str:
+    return "exact" if proposal.evaluation.is_exact else "bound"
 
 
 def _space_json(space: Space) -> dict[str, Any]:

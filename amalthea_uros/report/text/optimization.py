@@ -68,7 +68,11 @@ def _proposal(result: Optimization, number: int, proposal: DesignProposal, termi
     terminal.heading(f"Proposal {number}: {count}, proved by the analysis ({claim})")
     for difference in proposal.differences:
         terminal.line(f"  {difference}")
-    rows = [*_requirements(result.before, proposal.analysis), *map(_limit, proposal.limits), *_loads(result.before, proposal.analysis)]
+    rows = [
+        *_requirements(result.before, proposal.analysis),
+        *map(_limit, proposal.limits),
+        *_loads(result.before, proposal.analysis),
+    ]
     terminal.table(_HEADINGS, rows, right=_RIGHT)
     _worse(proposal, terminal)
     if proposal.changes:
@@ -135,17 +139,16 @@ def _drawback(row: ImpactRow) -> str:
 
 def _tried(result: Optimization, terminal: Terminal) -> None:
     search = result.search
+    shown = f", {len(result.proposals):,} shown" if len(search.best) > len(result.proposals) else ""
+    rows = [("in the space", result.space.size, ""), ("judged by the analysis", search.tried, "")]
+    rows += [("  meet all limits", len(search.best), shown)]
+    rows += [("  unknown whether they do", search.undecided, "")] if search.undecided else []
+    rows += [("excluded by lower bounds", search.excluded, "")] if search.excluded else []
+    rows += [(f"not allowed: {rule}", number, "") for rule, number in search.broken.items()]
     terminal.heading("Designs")
-    rows = [("in the space", f"{result.space.size:,}"), ("judged by the analysis", f"{search.tried:,}")]
-    rows += [(f"not allowed: {rule}", f"{number:,}") for rule, number in search.broken.items()]
-    if search.excluded:
-        rows.append(("excluded by proof", f"{search.excluded:,}"))
-    rows.append(("meet all limits", f"{len(search.best):,}"))
-    if search.undecided:
-        rows.append(("unknown whether they do", f"{search.undecided:,}"))
-    if len(search.best) > len(result.proposals):
-        rows.append(("of these shown", f"{len(result.proposals):,}"))
-    terminal.table(("", ""), rows, right=(1,))
+    width = max(len(name) for name, _, _ in rows)
+    for name, number, remark in rows:
+        terminal.line(f"  {name:<{width}}  {number:>7,}{remark}")
 
 
 def _upper(found: Range, quantity: str) -> str:
