@@ -13,7 +13,8 @@ from support import ROOT
 from test_system import system, ticks
 
 from amalthea_uros import describe
-from amalthea_uros.analyze.assignment import Outcome, lowest_first, propose_priorities, with_priorities
+from amalthea_uros.analyze.assignment import Outcome, propose_priorities
+from amalthea_uros.analyze.priority_orders import lowest_first, with_priorities
 from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.task import Task as AnalysedTask
 from amalthea_uros.analyze.sensitivity import max_growth, sensitivity
@@ -47,7 +48,7 @@ def assign(tasks, deadlines):
         others = [other for other in names if other not in order and other != name]
         return meets([names.index(n) for n in (*order, name, *others)], tasks, deadlines, of=[names.index(name)])
 
-    order, unfitting = lowest_first(names, fits)
+    order, unfitting = next(lowest_first(names, fits))
     return None if unfitting else [names.index(name) for name in order]
 
 

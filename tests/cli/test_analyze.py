@@ -184,7 +184,12 @@ def test_proposed_priorities(tmp_path):
     [
         # Each of them takes 4 ms: together they need 8 ms, 5 ms apart only 4 ms each.
         ("5 ms", "4 ms", "  the present priorities meet all deadlines\n"),
-        ("0 ms", "4 ms", "  no proposal: no assignment of distinct priorities meets all deadlines\n"),
+        (
+            "0 ms",
+            "4 ms",
+            "  no proposal: no assignment of distinct priorities meets all deadlines: at the lowest priority, each task misses its "
+            "deadline: 'A' by up to 4 ms, 'B' by up to 4 ms\n",
+        ),
     ],
 )
 def test_no_other_priorities(offset, deadline, message, tmp_path):
