@@ -9,8 +9,8 @@
 This module is the public interface:
 
 - answers about whatever describes a system (files, the text or content of an `app.yaml`, a model, a system): `analyze`, `simulate`,
-  `what_if`; why, and what would be better: `explain`, `improvements`, `optimize`; their results have `to_records()` and `to_dataframe()`, and
-  notebooks display them as tables
+  `what_if`; why, and what would be better: `explain`, `improvements`, `optimize`; their results have `to_records()` and
+  `to_dataframe()`, and notebooks display them as tables
 - synthetic tasks and chains without any file: `taskset`, `task`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results

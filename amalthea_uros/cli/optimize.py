@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -53,8 +53,8 @@ def _vary(text: str) -> tuple[Vary, ...]:
     "goals",
     multiple=True,
     metavar="GOAL",
-    help=f"What to minimise: {', '.join(GOALS)}, or OBJECT.QUANTITY; may be repeated, the first counts most. Default: as few changes as "
-    "possible.",
+    help=f"What to minimise: {', '.join(GOALS)}, or OBJECT.QUANTITY; may be repeated, the first counts most. Default: the number "
+    "of changes.",
 )
 @click.option(
     "--vary",
@@ -130,7 +130,7 @@ def command(
             refuse_input(path, str(path))
             refuse_unwritable(path)
     effort["proposals"] = max(effort["proposals"], number if target is not None else 1)
-    with _progress() as progress:
+    with _progress(effort["designs"]) as progress:
         result = optimize(
             paths,
             limits=limits,
@@ -156,15 +156,10 @@ def command(
 
 
 @contextmanager
-def _progress() -> Iterator[Any]:
-    """A progress bar on a terminal: the designs judged so far, of those with as many changes or fewer."""
-    with click.progressbar(length=1, label="Judging designs", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
-
-        def advance(tried: int, total: int) -> None:
-            bar.length = total
-            bar.update(tried - bar.pos)
-
-        yield advance
+def _progress(designs: int) -> Iterator[Callable[[int], None]]:
+    """A progress bar on a terminal: the designs judged so far, of those that may be judged."""
+    with click.progressbar(length=designs, label="Judging designs", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
+        yield lambda tried: bar.update(tried - bar.pos)
 
 
 def _draw(result: Optimization, path: Path) -> None:

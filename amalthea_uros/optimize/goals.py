@@ -80,6 +80,7 @@ _NAMED: Mapping[str, _Named] = {
 }
 #: The goals that have names.
 GOALS = (*_NAMED, CHANGES)
+_CHANGES = Goal(name=CHANGES)
 
 
 def goals_of(names: Sequence[str], system: System) -> tuple[Goal, ...]:
@@ -91,13 +92,13 @@ def goals_of(names: Sequence[str], system: System) -> tuple[Goal, ...]:
     """
     found = [_goal(name, system) for name in dict.fromkeys(names or (CHANGES, "latency", "load"))]
     if not any(goal.name == CHANGES for goal in found):
-        found.append(Goal(name=CHANGES))
+        found.append(_CHANGES)
     return tuple(found)
 
 
 def _goal(name: str, system: System) -> Goal:
     if name == CHANGES:
-        return Goal(name=CHANGES)
+        return _CHANGES
     if name in _NAMED:
         return Goal(name=name, unit=_NAMED[name].unit)
     if "." not in name:

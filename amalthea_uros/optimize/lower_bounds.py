@@ -1,9 +1,10 @@
 """Lower bounds of latencies, which hold for any priorities, offsets and execution times: designs beyond a limit need no analysis.
 
-Two reads of a process with period T are somewhere T or more apart. What enters the chain just after the first of them is not read before
-the second, so that the time from the moment at which an input can be taken to the response is somewhere at least T. The first process
-of the chain takes it at its next read. Where all reads can take an input, that is at most the distance of two reads later, which is at
-most its period and its response time together; and a design is only of interest if the response time does not exceed the deadline.
+Two reads of a process with period T are somewhere T or more apart. What enters the chain just after the first of them is not read
+before the second, so that the time from the moment at which an input can be taken to the response is somewhere at least T. The
+first process of the chain takes it at its next read. Where all reads can take an input, that is at most the distance of two reads
+later, which is at most its period and its response time together; and a design is only of interest if the response time does not
+exceed the deadline.
 """
 
 from __future__ import annotations

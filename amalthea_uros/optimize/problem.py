@@ -90,7 +90,13 @@ class Problem:
 
 
 class Conclusion(StrEnum):
-    """What a search can say in the end; `OPTIMAL` and `NONE` are proved for all designs of the space."""
+    """What a search can say in the end; `OPTIMAL` and `NONE` are proved for all designs of the space.
+
+    Attributes
+    ----------
+    OPTIMAL : no design that is proved to meet all limits is better
+    NONE : each design misses a limit for certain
+    """
 
     OPTIMAL = "optimal"
     BEST_FOUND = "best found"

@@ -61,8 +61,8 @@ def closing_line(result: Optimization) -> str:
         case Conclusion.OPTIMAL if not search.best[0].candidate:
             return f"Nothing needs to change: the present design meets all limits{_and_best(result)}"
         case Conclusion.OPTIMAL:
-            measure = "" if search.best[0].is_exact else ", by what the analysis can prove,"
-            return f"Optimal: no allowed design is better{measure} than proposal 1: {search.proof}"
+            proved = "" if search.best[0].is_exact and not search.undecided else " that is proved to meet all limits"
+            return f"Optimal: no allowed design{proved} is better than proposal 1: {search.proof}"
         case Conclusion.NONE:
             return f"None exists: no allowed design meets all limits: {search.proof}"
         case Conclusion.BEST_FOUND:

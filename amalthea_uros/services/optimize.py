@@ -19,12 +19,13 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.optimize.evaluation import DesignEvaluator
-from amalthea_uros.optimize.exhaustive import Effort, try_all
 from amalthea_uros.optimize.goals import Scale, goals_of, latency_limits
 from amalthea_uros.optimize.limits import Limit, check_limit, parse_limit
 from amalthea_uros.optimize.lower_bounds import sampled_chains
 from amalthea_uros.optimize.problem import Evaluation, Feasibility, Goal, Problem, SearchResult
 from amalthea_uros.optimize.quantities import FROM_ARRIVAL, Figures, Range, takers
+from amalthea_uros.optimize.recorder import Effort
+from amalthea_uros.optimize.search import search
 from amalthea_uros.optimize.space import Space
 from amalthea_uros.services.design_space import DEFAULT, Vary, Wishes, design_space
 from amalthea_uros.services.names import require_settings
@@ -191,7 +192,7 @@ def optimize(
     proposals: int = MOST_PROPOSALS,
     seed: int = 1,
     time_limit: float | None = None,
-    progress: Callable[[int, int], None] = lambda _tried, _of: None,
+    progress: Callable[[int], None] = lambda _tried: None,
 ) -> Optimization:
     """Search for changes of a system with which all deadlines, requirements and limits are met, and then for the best ones.
 
@@ -201,7 +202,7 @@ def optimize(
     ----------
     subject : as for `analyze`
     limits : beside those of the model
-    goals : what to minimise: `latency`, `load`, `balance`, `jitter`, `changes` or OBJECT.QUANTITY; by default as few changes as possible
+    goals : what to minimise: `latency`, `load`, `balance`, `jitter`, `changes` or OBJECT.QUANTITY; by default `changes`
     vary : what may change: `periods` (on offer), `priorities`, `offsets`, `cores`
     offers : values on offer, such as "Control_Function.offset=0ms..0.9ms/0.1ms"
     keep : objects, or their properties as OBJECT.KEY, that must not change
@@ -212,7 +213,7 @@ def optimize(
     proposals : return at most so many
     seed : of searches that choose at random
     time_limit : in seconds, after which the search ends with what it has found
-    progress : told how many designs were judged, and how many there are
+    progress : told how many designs have been judged
 
     Raises
     ------
@@ -229,10 +230,10 @@ def optimize(
         subject, wishes, limits=limits, goals=goals, settings=settings, may_be_later=may_be_later, seed=seed
     )
     effort = Effort(designs=designs, is_complete=is_complete, ended=_clock(time_limit), progress=progress)
-    return found_by(plan, try_all(plan.problem, effort), proposals)
+    return found_by(plan, search(plan.problem, effort), proposals)
 
 
-def found_by(plan: Plan, search: SearchResult, proposals: int = MOST_PROPOSALS) -> Optimization:
+def found_by(plan: Plan, found: SearchResult, proposals: int = MOST_PROPOSALS) -> Optimization:
     """The outcome of a search, each proposal proved by a full analysis of its own."""
     problem, evaluator = plan.problem, plan.evaluator
     return Optimization(
@@ -243,8 +244,8 @@ def found_by(plan: Plan, search: SearchResult, proposals: int = MOST_PROPOSALS) 
         goals=problem.goals,
         before=plan.before,
         present=evaluator.judged((), plan.before),
-        proposals=tuple(_proposal(each, evaluator, plan.before) for each in search.best[:proposals]),
-        search=search,
+        proposals=tuple(_proposal(each, evaluator, plan.before) for each in found.best[:proposals]),
+        search=found,
         findings=plan.findings,
         settings=problem.present.settings,
     )
