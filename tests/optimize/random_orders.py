@@ -1,4 +1,4 @@
-"""Random systems in which rate-monotonic priorities fail, and all orders that do not, by a brute force that knows nothing of the product."""
+"""Random systems in which rate-monotonic priorities fail, and all orders that do not, without any code of the product."""
 
 from collections.abc import Iterator, Sequence
 from itertools import permutations

@@ -8,9 +8,10 @@ that miss limits are compared by the time by which they miss them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import permutations, product
 from math import exp
 from random import Random
 
@@ -27,7 +28,7 @@ WEIGHTS = (0.9, 0.09, 0.009)
 #: After so many rounds without a better design of its own, a walker starts again.
 PATIENCE = 25
 #: Rounds in which nothing new was proposed, after which the search ends.
-IDLE_ROUNDS = 20
+IDLE_ROUNDS = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +123,8 @@ def solve_by_annealing(problem: Problem, designs: int = 2000, ended: Callable[[]
     first = _cost(judged[UNCHANGED], scale, units)
     walkers = [_Walker(Random(f"{problem.seed}/{number}"), start, first, first) for number in range(BATCH)]
     best, lowest, idle, reason = start, first, 0, ""
+    if space.size <= designs:
+        judged.judge(design.candidate(space) for design in _every(space))
     while len(judged) < min(designs, space.size) and idle < IDLE_ROUNDS and not (reason := ended()):
         before = len(judged)
         proposed = [walker.design.neighbour(space, walker.random) for walker in walkers[: designs - before]]
@@ -138,6 +141,13 @@ def solve_by_annealing(problem: Problem, designs: int = 2000, ended: Callable[[]
     if len(judged) == space.size:
         return judged.concluded(f"all {space.size} designs were judged")
     return judged.concluded("", ended=reason or f"{len(judged)} designs were judged")
+
+
+def _every(space: Space) -> Iterator[Design]:
+    """All designs of a space."""
+    for options in product(*(range(len(choice.options)) for choice in space.choices)):
+        for orders in product(*(permutations(order.tasks) for order in space.orders)):
+            yield Design(options, orders)
 
 
 def _restart(walker: _Walker, design: Design, cost: float) -> None:

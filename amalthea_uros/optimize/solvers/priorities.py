@@ -7,7 +7,7 @@ judged by the full analysis, chains included. Elsewhere, all orders are judged i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, islice, permutations, product
 
 from amalthea_uros.analyze.priority_orders import Order, PriorityOrders
@@ -19,15 +19,18 @@ from amalthea_uros.optimize.solvers.judged import Judged, batches
 from amalthea_uros.optimize.space import PriorityOrder
 
 #: At most this many designs are judged.
-MAX_DESIGNS = 5040
+MAX_DESIGNS = 1000
 
 
-def solve_priorities(problem: Problem, designs: int = MAX_DESIGNS) -> SearchResult | None:
+def solve_priorities(
+    problem: Problem, designs: int = MAX_DESIGNS, ended: Callable[[], str] = lambda: ""
+) -> SearchResult | None:
     """The best order of priorities on each core; None if something else may change, or orders cannot be judged one core at a time.
 
     Parameters
     ----------
     designs : at most so many are judged
+    ended : asked between groups of designs: why to end early, "" to go on
     """
     space = problem.space
     if not space.orders or any(len(choice.options) > 1 for choice in space.choices):
@@ -44,6 +47,8 @@ def solve_priorities(problem: Problem, designs: int = MAX_DESIGNS) -> SearchResu
     judged.judge([UNCHANGED])
     candidates = _candidates(cores, space.orders, analysis, is_everything=not is_independent and space.size <= designs)
     for batch in batches(islice(candidates, designs)):
+        if reason := ended():
+            return judged.concluded("", ended=reason)
         judged.judge(batch)
     is_complete = next(candidates, None) is None
     if not is_complete:
