@@ -14,6 +14,7 @@ This module is the public interface:
 - synthetic tasks and chains without any file: `taskset`, `task`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
+- measured times in a description: `calibrate`
 - reports of all of these as one HTML page: `report`
 - events of simulations: `EventTable`; changes of values: `parse_change`, `parse_sweep`
 - AMALTHEA models: `Model` (`Model.new()` is an empty one), `check`, `extract`; all AMALTHEA classes are in `amuros.am`
@@ -74,6 +75,10 @@ if TYPE_CHECKING:
     from amalthea_uros.errors import InvalidArgumentError as InvalidArgumentError
     from amalthea_uros.errors import ReadError as ReadError
     from amalthea_uros.errors import WriteError as WriteError
+    from amalthea_uros.measure.series import Counts as Counts
+    from amalthea_uros.measure.series import Measurement as Measurement
+    from amalthea_uros.measure.series import Series as Series
+    from amalthea_uros.measure.statistics import Statistics as Statistics
     from amalthea_uros.metamodel.element import Element as Element
     from amalthea_uros.metamodel.model import Document as Document
     from amalthea_uros.metamodel.model import Model as Model
@@ -89,6 +94,8 @@ if TYPE_CHECKING:
     from amalthea_uros.services.build import BuildResult as BuildResult
     from amalthea_uros.services.build import build as build
     from amalthea_uros.services.build import describe as describe
+    from amalthea_uros.services.calibrate import Calibration as Calibration
+    from amalthea_uros.services.calibrate import calibrate as calibrate
     from amalthea_uros.services.campaign.run import Outcome as Outcome
     from amalthea_uros.services.campaign.run import Run as Run
     from amalthea_uros.services.campaign.tables import write_table as write_table
@@ -101,6 +108,7 @@ if TYPE_CHECKING:
     from amalthea_uros.services.improvements import Improvement as Improvement
     from amalthea_uros.services.improvements import Improvements as Improvements
     from amalthea_uros.services.improvements import improvements as improvements
+    from amalthea_uros.services.measure import measure as measure
     from amalthea_uros.services.migrate import MigrationResult as MigrationResult
     from amalthea_uros.services.migrate import migrate as migrate
     from amalthea_uros.services.optimize import DesignProposal as DesignProposal
@@ -157,6 +165,8 @@ _NAMES = {
     "bridge.extract": ("Extraction", "extract"),
     "diagnostics": ("Finding", "Location", "Severity"),
     "errors": ("AmurosError", "InvalidArgumentError", "ReadError", "WriteError"),
+    "measure.series": ("Counts", "Measurement", "Series"),
+    "measure.statistics": ("Statistics",),
     "metamodel.element": ("Element",),
     "metamodel.model": ("Document", "Model", "Reference"),
     "perf.activities": ("Communication",),
@@ -164,6 +174,7 @@ _NAMES = {
     "report.library": ("Report", "report"),
     "services.analyze": ("AnalysisResult", "Explanation", "analyze", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
+    "services.calibrate": ("Calibration", "calibrate"),
     "services.campaign.run": ("Outcome", "Run"),
     "services.campaign.tables": ("write_table",),
     "changes.change": ("Change", "parse_change"),
@@ -172,6 +183,7 @@ _NAMES = {
     "services.diff": ("DiffResult", "diff"),
     "services.explain": ("explain",),
     "services.improvements": ("Improvement", "Improvements", "improvements"),
+    "services.measure": ("measure",),
     "services.migrate": ("MigrationResult", "migrate"),
     "services.optimize": ("DesignProposal", "Optimization", "optimize"),
     "services.settings": ("CheckSettings",),

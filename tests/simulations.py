@@ -6,7 +6,6 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros.simulate.options import Mode
 from amalthea_uros.simulate.results import (
     ChainObservation,
-    ChainQuantity,
     CoreObservation,
     CountObservation,
     Histogram,
@@ -17,6 +16,7 @@ from amalthea_uros.simulate.results import (
     RouteObservation,
     Simulation,
 )
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS

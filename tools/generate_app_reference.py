@@ -25,7 +25,7 @@ a unit: `10 ms`, `4 B`, `250 kbit/s`, `50 Hz`.
 QUANTITIES = {"ps": "time", "Hz": "frequency", "B/s": "bit rate", "B": "size"}
 
 #: What values are that YAML may take for a number or a text, by the start of their pattern.
-OTHER_KINDS = {r"^\S": "text", "^0x": "number or text", "^(?": "number"}
+OTHER_KINDS = {r"^\S": "text", "^0x": "number or text", "^(?": "number", r"^\s": "time or 0"}
 
 
 def main(target: Path) -> None:

@@ -211,7 +211,7 @@ class _CallSite:
             else:
                 calling = np.array([takes_effect(counter, number) for number in range(1, count + 1)])
         selected = Span(metrics.both(each[calling] for each in releases), metrics.both(each[calling] for each in ends))
-        metric = selected.metric(int(calling[-repeating:].sum()), time_base, is_attained)
+        metric = selected.metric(int(calling[-repeating:].sum()), time_base, is_attained, found.has_idle_time)
         return metric if is_attained else replace(metric, mean=None)
 
     def by_response(self, response: Response) -> Metric:

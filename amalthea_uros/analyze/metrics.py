@@ -65,13 +65,14 @@ class Span:
         """Values that occur."""
         return np.concatenate([end - start for start, end in zip(self.starts, self.ends, strict=True)])
 
-    def metric(self, repeating: int, time_base: int, is_attained: bool) -> Metric:
+    def metric(self, repeating: int, time_base: int, is_attained: bool, can_settle: bool = False) -> Metric:
         """The metric of all jobs, in picoseconds: lower bounds are rounded down, upper bounds up.
 
         Parameters
         ----------
         repeating : number of the last jobs that repeat
         is_attained : whether all tasks can have their best cases together, and their worst cases
+        can_settle : whether all worst cases after all best cases lead to the jobs that repeat
         """
         lower, upper, attained = self.lower, self.upper, self.attained
         mean = None
@@ -83,7 +84,16 @@ class Span:
             max=-(-int(upper.max()) // time_base),
             mean=mean,
             attained=(int(attained.min()) // time_base, -(-int(attained.max()) // time_base)) if is_attained else None,
+            least_jitter=self._least_jitter(repeating, can_settle) // time_base if is_attained else 0,
         )
+
+    def _least_jitter(self, repeating: int, can_settle: bool) -> int:
+        """A difference that occurs for certain: in one of the schedules, or from all best cases to the repeated worst ones."""
+        best, worst = (end - start for start, end in zip(self.starts, self.ends, strict=True))
+        differences = [int(np.ptp(best)), int(np.ptp(worst))]
+        if can_settle:
+            differences.append(int(worst[-repeating:].max()) - int(best.min()))
+        return max(differences)
 
 
 @dataclass(slots=True)
@@ -152,6 +162,7 @@ def _by_deadline(process: ProcessResult, response: Metric | None) -> Iterator[tu
                 max=due - response.min,
                 mean=None if mean is None else due - mean,
                 attained=None if attained is None else (due - attained[1], due - attained[0]),
+                least_jitter=response.least_jitter,
             ),
         )
     if deadline is not None and not process.is_implicit:
@@ -162,6 +173,7 @@ def _by_deadline(process: ProcessResult, response: Metric | None) -> Iterator[tu
                 max=response.max - deadline,
                 mean=None if mean is None else mean - deadline,
                 attained=None if attained is None else (attained[0] - deadline, attained[1] - deadline),
+                least_jitter=response.least_jitter,
             ),
         )
 
@@ -185,7 +197,8 @@ def _by_schedule(process: ProcessResult, found: CoreSchedule, time_base: int) ->
     period = found.tasks[process.name].period
     is_attained = process.response is not None and process.response.claim is Claim.EXACT
     spans = _spans(process.name, found)
-    metrics = {name: span.metric(found.cycle // period, time_base, is_attained) for name, span in spans.items()}
+    repeating = found.cycle // period
+    metrics = {name: span.metric(repeating, time_base, is_attained, found.has_idle_time) for name, span in spans.items()}
     means = _means(metrics, process, Fraction(period, time_base))
     return {
         name: metric if metric.mean is not None else replace(metric, mean=means.get(name)) for name, metric in metrics.items()
@@ -266,4 +279,5 @@ def _merged(metrics: Sequence[Metric], counts: Sequence[int]) -> Metric:
         max=None if None in maxima else max(maxima),
         mean=None if None in means else sum(map(mul, means, counts), Fraction(0)) / sum(counts),
         attained=(min(low for low, _ in attained), max(high for _, high in attained)) if attained else None,
+        least_jitter=max(metric.least_jitter for metric in metrics),
     )

@@ -26,8 +26,9 @@ from amalthea_uros.analyze.results import (
 )
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.summary import summarize
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.jitter import jitter_of
 from amalthea_uros.timing.phases import Occurrence, phase_combinations, phase_count, with_phases
 from amalthea_uros.units import Time
 
@@ -220,7 +221,18 @@ def _requirement(results: Sequence[RequirementResult]) -> RequirementResult:
     worst = min(results, key=lambda result: _WORST_FIRST.index(result.verdict))
     extreme = max if worst.is_upper else min
     lower, upper = [result.lower for result in results], [result.upper for result in results]
-    return replace(worst, lower=_extreme(lower, extreme), upper=_extreme(upper, extreme))
+    found = replace(worst, lower=_extreme(lower, extreme), upper=_extreme(upper, extreme))
+    spreads = [result.spread for result in results]
+    return found if None in spreads or found.limit is None else _jitter(found, found.limit, list(filter(None, spreads)))
+
+
+def _jitter(found: RequirementResult, limit: Time, spreads: Sequence[tuple[Time, Time]]) -> RequirementResult:
+    """A jitter from the least minimum to the greatest maximum of all phases: nobody states that a phase never drifts."""
+    spread = min(low for low, _ in spreads), max(high for _, high in spreads)
+    ends = Ends(found.lower, jitter_of(*spread))
+    verdict = decide(ends, limit, is_upper=True)
+    reason = undecided(ends, is_upper=True) if verdict is Verdict.UNKNOWN else ""
+    return replace(found, upper=ends.upper, spread=spread, verdict=verdict, reason=reason)
 
 
 def _extreme(ends: Sequence[Time | None], extreme: Callable[[Sequence[Time]], Time]) -> Time | None:

@@ -8,11 +8,13 @@ from typing import TypeAlias
 from amalthea_uros.analyze import metrics
 from amalthea_uros.analyze.implausible_limits import note_implausible
 from amalthea_uros.analyze.process_verdicts import worst_response
-from amalthea_uros.analyze.results import CallbackResult, JobMetric, ProcessResult, RequirementResult, Results
+from amalthea_uros.analyze.results import CallbackResult, JobMetric, Metric, ProcessResult, RequirementResult, Results
 from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
-from amalthea_uros.perf.constraints import Bound, Requirement, TimeLimit, TimeMetric
+from amalthea_uros.perf.constraints import Bound, JitterLimit, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.jitter import is_deviation_from_period, jitter_name, jitter_of
 from amalthea_uros.timing.notes import Notes
+from amalthea_uros.timing.releases import activation_period
 from amalthea_uros.units import Time
 
 #: What the analysis computes; a running time is bounded by the net execution time, and each kind of waiting by all waiting.
@@ -33,6 +35,14 @@ _METRICS = {
     TimeMetric.END_TO_END: JobMetric.END_TO_END,
     TimeMetric.END_TO_START: JobMetric.END_TO_START,
 }
+#: Those that are only bounded by what is computed, so that their jitter is not.
+_BOUNDED_BY_OTHERS = (
+    TimeMetric.CORE_EXECUTION_TIME,
+    TimeMetric.RUNNING_TIME,
+    TimeMetric.WAITING_TIME,
+    TimeMetric.PARKING_TIME,
+    TimeMetric.POLLING_TIME,
+)
 #: Whose metrics a requirement limits.
 Holder: TypeAlias = ProcessResult | CallbackResult
 
@@ -47,10 +57,14 @@ def evaluate_requirements(
         by_runnable.setdefault(callback.name, []).append(callback)
     for requirement in system.constraints.requirements:
         limit = requirement.limit
-        if isinstance(limit, TimeLimit):
+        if isinstance(limit, TimeLimit | JitterLimit):
             process = by_name.get(requirement.process or "")
             calls = by_runnable.get(requirement.runnable, ())
-            result = _judged(requirement, limit, [process] if process is not None else calls)
+            holders = [process] if process is not None else calls
+            if isinstance(limit, TimeLimit):
+                result = _judged(requirement, limit, holders)
+            else:
+                result = _judged_jitter(requirement, limit, holders, system)
             note_implausible(result, requirement, notes)
             yield result
             continue
@@ -87,7 +101,52 @@ def _judged(requirement: Requirement, limit: TimeLimit, holders: Sequence[Holder
     )
 
 
-def _reason(requirement: Requirement, limit: TimeLimit, holders: Sequence[Holder], ends: Ends) -> str:
+def _judged_jitter(
+    requirement: Requirement, limit: JitterLimit, holders: Sequence[Holder], system: System
+) -> RequirementResult:
+    reason, spread = "", None
+    if not is_deviation_from_period(limit.metric):
+        ends, spread = _peak_to_peak(holders, limit.metric)
+    else:
+        process = system.processes.get(requirement.process or "")
+        period = None if process is None else activation_period(process, system)
+        ends = Ends() if period is None else _deviation(holders, limit.metric, period)
+        if holders and period is None:
+            name = requirement.process or requirement.runnable
+            reason = f"{name!r} is not activated by exactly one periodic stimulus, so it has no nominal period"
+    verdict = decide(ends, limit.value, is_upper=True)
+    return RequirementResult(
+        name=requirement.name,
+        object=requirement.process or requirement.runnable or "",
+        quantity=jitter_name(limit.metric),
+        is_upper=True,
+        limit=limit.value,
+        lower=ends.lower,
+        upper=ends.upper,
+        spread=spread,
+        verdict=verdict,
+        reason="" if verdict is Verdict.MET else reason or _reason(requirement, limit, holders, ends),
+    )
+
+
+def _peak_to_peak(holders: Sequence[Holder], metric: TimeMetric) -> tuple[Ends, tuple[Time, Time] | None]:
+    """Between which ends the maximum minus the minimum of a metric lies, in all runs; and minimum and maximum, if they are known."""
+    found = None if metric in _BOUNDED_BY_OTHERS else _metric(holders, metric)
+    if found is None or found.min is None or found.max is None:
+        return Ends(), None
+    return Ends(found.least_jitter, jitter_of(found.min, found.max)), (found.min, found.max)
+
+
+def _deviation(holders: Sequence[Holder], metric: TimeMetric, period: Time) -> Ends:
+    """Between which ends the largest deviation of a metric from the nominal period lies."""
+    found = _metric(holders, metric)
+    if found is None or found.min is None or found.max is None:
+        return Ends()
+    lower = None if found.attained is None else jitter_of(*found.attained, period)
+    return Ends(lower, jitter_of(found.min, found.max, period))
+
+
+def _reason(requirement: Requirement, limit: TimeLimit | JitterLimit, holders: Sequence[Holder], ends: Ends) -> str:
     """Why a limit is not met, or why that is unknown; nothing if the ends show it."""
     if not holders and requirement.runnable is not None:
         return f"no process of the model calls {requirement.runnable!r}"
@@ -105,14 +164,21 @@ def _ends(holders: Sequence[Holder], metric: TimeMetric, is_upper: bool) -> Ends
 
     Every job is between the bounds, so that the maximum is not below the lower one, and the minimum not above the upper one.
     """
-    name = _METRICS.get(metric)
-    if name is None or not holders or not all(name in holder.metrics for holder in holders):
+    found = _metric(holders, metric)
+    if found is None:
         return Ends()
-    found = metrics.merged([holder.metrics for holder in holders])[name]
     if not is_upper:
         return Ends(found.min, found.attained[0] if found.attained is not None else found.max)
     least = found.attained[1] if found.attained is not None else found.min
     return Ends(max(filter(None, (least, _least(holders, metric))), default=least), found.max)
+
+
+def _metric(holders: Sequence[Holder], metric: TimeMetric) -> Metric | None:
+    """A metric of a process, or of a runnable in all processes that call it; None if it is not computed."""
+    name = _METRICS.get(metric)
+    if name is None or not holders or not all(name in holder.metrics for holder in holders):
+        return None
+    return metrics.merged([holder.metrics for holder in holders])[name]
 
 
 def _least(holders: Sequence[Holder], metric: TimeMetric) -> Time | None:

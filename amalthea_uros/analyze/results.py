@@ -66,12 +66,14 @@ class Metric:
     min, max : no job has less or more; None if there is no finite bound
     mean : in the long run; None if it depends on more than bounds of execution times
     attained : the least and the greatest value of which it is known that they occur; None if that is known of none
+    least_jitter : a difference of two values of which it is known that they can occur in the same run
     """
 
     min: Time | None
     max: Time | None
     mean: Fraction | None = None
     attained: tuple[Time, Time] | None = None
+    least_jitter: Time = 0
 
     @property
     def claim(self) -> Claim:
@@ -270,6 +272,7 @@ class RequirementResult(Shown):
     ----------
     limit : None if it is not a limit of a time
     lower, upper : between these the limited maximum or minimum lies; equal if it is exact, None if that end is unknown
+    spread : minimum and maximum, of which a jitter is the difference; None for what is no such jitter, or unknown
     reason : why the verdict is unknown
     """
 
@@ -281,6 +284,7 @@ class RequirementResult(Shown):
     verdict: Verdict
     lower: Time | None = None
     upper: Time | None = None
+    spread: tuple[Time, Time] | None = None
     reason: str = ""
 
     @property

@@ -115,6 +115,19 @@ SIZE = Codec(_build_size, lambda value, _context, _element: bits(value))
 RATE = Codec(_build_rate, lambda value, _context, _element: bits_per_second(value))
 
 
+def time_property(key: str) -> Codec:
+    """A time as a custom property, for what AMALTHEA has no attribute for."""
+
+    def build(value: int, _context: Building) -> list[am.CustomProperty]:
+        return [am.CustomProperty(key=key, value=build_time(value))]
+
+    def extract(properties: Any, _context: Extracting, _element: Element) -> int | None:
+        given = (item.value for item in properties if item.key == key)
+        return next((picoseconds(value) for value in given if isinstance(value, am.Time)), None)
+
+    return Codec(build, extract)
+
+
 def _extract_times(values: list[am.Time], _context: Extracting, _element: Element) -> tuple[int, ...] | None:
     times = [picoseconds(value) for value in values]
     return None if None in times else tuple(time for time in times if time is not None)

@@ -105,12 +105,19 @@ def _set_runnable(configuration: Configuration, name: str, time: ExecutionTime) 
 
 
 def _set_process(configuration: Configuration, name: str, time: ExecutionTime) -> Configuration:
-    """Change the demand of a process itself, or else of the only runnable that it executes and nobody else does."""
+    """Change the demand of a process itself, or else of the only runnable that it executes and nobody else does.
+
+    Overheads of the operating system stay as they are.
+    """
     system = configuration.system
     process = system.processes[name]
     distribution = _distribution(time, lambda: _frequency(name, [name], configuration))
     called = _called(name, system)
-    runnables = [each for each in system.runnables if each in called and _demands(_body(each, system))]
+    runnables = [
+        name
+        for name, runnable in system.runnables.items()
+        if name in called and not runnable.is_overhead and _demands(_body(name, system))
+    ]
     match _demands(walk(process.activities)), runnables:
         case [], [runnable] if _callers(runnable, system) == [name]:
             return _with_demand(configuration, RUNNABLES, runnable, distribution)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 COMMANDS = {
     "analyze": "Compute response times, loads, chain latencies and verdicts.",
     "build": "Build an AMALTHEA model from an app.yaml.",
+    "calibrate": "Put measured times into an app.yaml.",
     "chains": "List the paths from one process to another, with their latencies.",
     "check": "Check models by rules.",
     "completion": "Print what makes a shell complete commands, options and files.",
@@ -31,6 +32,7 @@ COMMANDS = {
     "info": "Show the content of a model.",
     "init": "Write a commented app.yaml to begin with, or copy an example.",
     "lsp": "Run the language server, for editors.",
+    "measure": "Measure the times in a trace: statistics, jitter, histograms.",
     "migrate": "Convert models to another AMALTHEA version.",
     "optimize": "Search for changes with which all limits are met, each proved by the analysis.",
     "report": "Write a report: one HTML page, or a summary in Markdown.",

@@ -19,7 +19,10 @@ FAMILIES = {
     "ANA": "Analysing response times",
     "SIM": "Simulating systems",
     "CHN": "Analysing event chains",
+    "CAN": "Reading logs of CAN buses",
     "TRC": "Reading, checking and writing traces",
+    "MEA": "Measuring times in traces",
+    "CAL": "Putting measured values into a description",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",
 }

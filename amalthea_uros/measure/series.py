@@ -54,7 +54,8 @@ class Series:
     values : picoseconds, in the order of their occurrence; None if the trace has only their statistics
     times : when each value was complete, in picoseconds from the start of the trace; None if that is not known
     method : how it was measured, in words
-    baseline : what was subtracted from the values, None if nothing was
+    baseline : of the empty object whose mean was subtracted from the values, None if nothing was
+    period : the standard period of distances, None if it is not stated
     """
 
     kind: Kind
@@ -66,6 +67,25 @@ class Series:
     counts: Counts = Counts()
     method: str = ""
     baseline: Statistics | None = None
+    period: Time | None = None
+
+    @property
+    def net_range(self) -> tuple[Time, Time] | None:
+        """What the values without their share of the baseline are within: [min a - max o, max a - min o]; None without a baseline.
+
+        The share of each value is not known, only that it is within those of the baseline; `statistics` subtracts its mean.
+        """
+        if self.baseline is None or self.statistics is None:
+            return None
+        mean = round(self.baseline.mean)
+        return self.statistics.min + mean - self.baseline.max, self.statistics.max + mean - self.baseline.min
+
+    @property
+    def period_deviation(self) -> Time | None:
+        """The jitter of AUTOSAR: the largest deviation from the standard period; None if that is not stated."""
+        if self.period is None or self.statistics is None:
+            return None
+        return max(abs(self.statistics.max - self.period), abs(self.statistics.min - self.period))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

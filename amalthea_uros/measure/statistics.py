@@ -6,7 +6,7 @@ others.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil, sqrt
@@ -63,12 +63,12 @@ def statistics_of(values: NDArray[np.int64]) -> Statistics:
 
     if not len(values):
         raise InvalidArgumentError("there are no values, so they have no statistics")
+    from amalthea_uros._internal.exact_sums import sums, sums_of_squares
+
     ordered = np.sort(values)
-    count = len(ordered)
-    # Exact sums: squares of picoseconds exceed 64 bits.
-    listed = ordered.tolist()
-    total = sum(listed)
-    squares = sum(value * value for value in listed)
+    count, first = len(ordered), int(ordered[0])
+    deviations = (ordered - first)[None, :]
+    (total,), (squares,) = sums(deviations), sums_of_squares(deviations)
     percentiles = {
         share: int(ordered[ceil(share * count) - 1])
         for share in PERCENTILES
@@ -76,9 +76,50 @@ def statistics_of(values: NDArray[np.int64]) -> Statistics:
     }
     return Statistics(
         count=count,
-        min=int(ordered[0]),
-        mean=Fraction(total, count),
+        min=first,
+        mean=first + Fraction(total, count),
         max=int(ordered[-1]),
         variance=Fraction(squares * count - total * total, count * count),
         percentiles=percentiles,
+    )
+
+
+def statistics_or_none(values: NDArray[np.int64]) -> Statistics | None:
+    """The statistics of values in picoseconds, None if there are none."""
+    return statistics_of(values) if len(values) else None
+
+
+def merged(parts: Sequence[Statistics]) -> Statistics:
+    """The statistics of all values of some parts, exactly; percentiles do not merge, and the variance only if all are known.
+
+    Parameters
+    ----------
+    parts : at least one
+    """
+    count = sum(part.count for part in parts)
+    mean = sum((part.mean * part.count for part in parts), Fraction(0)) / count
+    variance: Fraction | None = Fraction(0)
+    for part in parts:
+        if part.variance is None or variance is None:
+            variance = None
+        else:
+            variance += (part.variance + (part.mean - mean) ** 2) * part.count / count
+    return Statistics(
+        count=count,
+        min=min(part.min for part in parts),
+        mean=mean,
+        max=max(part.max for part in parts),
+        variance=variance,
+    )
+
+
+def shifted(statistics: Statistics, by: Time) -> Statistics:
+    """The statistics of the values with a time added to each."""
+    return Statistics(
+        count=statistics.count,
+        min=statistics.min + by,
+        mean=statistics.mean + by,
+        max=statistics.max + by,
+        variance=statistics.variance,
+        percentiles={share: value + by for share, value in statistics.percentiles.items()},
     )

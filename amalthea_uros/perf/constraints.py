@@ -19,12 +19,18 @@ class LatencyKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LatencyConstraint(Named):
-    """Limits of the reaction time or the data age of a chain; None: no limit."""
+    """Limits of the reaction time or the data age of a chain; None: no limit.
+
+    Attributes
+    ----------
+    jitter : limit of the maximum minus the minimum
+    """
 
     chain: str
     kind: LatencyKind = LatencyKind.REACTION
     minimum: Time | None = None
     maximum: Time | None = None
+    jitter: Time | None = None
 
 
 class Matching(StrEnum):
@@ -228,6 +234,19 @@ class TimeLimit:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class JitterLimit:
+    """An upper limit of the jitter of a time: of a time from job to job the deviation from the period, of others maximum - minimum."""
+
+    metric: TimeMetric
+    value: Time
+
+    @property
+    def bound(self) -> Bound:
+        """It is a maximum."""
+        return Bound.UPPER
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CountLimit:
     """A limit of a number."""
 
@@ -264,7 +283,7 @@ class FrequencyLimit:
     bound: Bound = Bound.UPPER
 
 
-Limit: TypeAlias = TimeLimit | CountLimit | LoadLimit | RatioLimit | FrequencyLimit
+Limit: TypeAlias = TimeLimit | JitterLimit | CountLimit | LoadLimit | RatioLimit | FrequencyLimit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -62,12 +62,14 @@ class Runnable(Named):
     Attributes
     ----------
     callback : whether the executor of a middleware calls it
+    is_overhead : whether it is work of the operating system for the job that calls it
     condition : without it being true, calls have no effect
     """
 
     activities: tuple[Activity, ...] = ()
     callback: bool = False
     service: bool = False
+    is_overhead: bool = False
     condition: Condition | None = None
 
 

@@ -22,6 +22,7 @@ from amalthea_uros.analyze.sensitivity import Sensitivity
 from amalthea_uros.report.json import (
     analysis_result,
     build_result,
+    calibration,
     check_result,
     diff_result,
     impact,
@@ -31,6 +32,7 @@ from amalthea_uros.report.json import (
 )
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
 from amalthea_uros.services.build import BuildResult
+from amalthea_uros.services.calibrate import Calibration
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.improvements import Improvements
@@ -195,6 +197,12 @@ def _(result: CheckResult) -> list[Record]:
 def _(result: BuildResult) -> list[Record]:
     """The periods that were chosen, with reasons."""
     return [flat(choice) for choice in build_result.content(result)["choices"]]
+
+
+@all_records.register
+def _(result: Calibration) -> list[Record]:
+    """The measured values."""
+    return [flat(calibration.value_json(value)) for value in result.values]
 
 
 @all_records.register

@@ -27,11 +27,11 @@ from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import (
     WITH_HISTOGRAM,
     ChainObservation,
-    ChainQuantity,
     MetricObservation,
     Occurrence,
     ProcessObservation,
 )
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import Time, time_text

@@ -92,7 +92,7 @@ def _refuse_migrated(model: Model) -> None:
 def _built(subject: Subject, changes: Sequence[Change], settings: Settings) -> Model:
     from amalthea_uros.bridge.build import build_model
 
-    return build_model(_changed(system_of(subject), changes, settings))
+    return build_model(changed_system(system_of(subject), changes, settings))
 
 
 def _updated(model: Model, changes: Sequence[Change], settings: Settings) -> Model:
@@ -101,7 +101,7 @@ def _updated(model: Model, changes: Sequence[Change], settings: Settings) -> Mod
     from amalthea_uros.bridge.update import UnwritableError, update
 
     old = extract(model).system
-    new = _changed(old, changes, settings)
+    new = changed_system(old, changes, settings)
     try:
         update(model, old, new)
     except UnwritableError as error:
@@ -124,7 +124,7 @@ def _other_part(one: System, other: System) -> str:
     raise AssertionError("the systems are equal")
 
 
-def _changed(system: System, changes: Sequence[Change], settings: Settings) -> System:
+def changed_system(system: System, changes: Sequence[Change], settings: Settings) -> System:
     """The system with the changes, also with those that are settings of an analysis."""
     changed = apply(system, settings, changes)
     stated = {change.target for change in changes}

@@ -9,6 +9,7 @@ from amalthea_uros.perf.constraints import (
     Bound,
     CountLimit,
     CountMetric,
+    JitterLimit,
     Limit,
     LoadLimit,
     LoadMetric,
@@ -18,6 +19,7 @@ from amalthea_uros.perf.constraints import (
     TimeMetric,
 )
 from amalthea_uros.simulate.results import MetricObservation, ProcessObservation, RunnableObservation
+from amalthea_uros.timing.jitter import is_deviation_from_period, jitter_of
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time
 
@@ -85,6 +87,15 @@ class LimitedValues:
         """Those of something that has one value in a run."""
         return cls(low=Fraction(value), high=Fraction(value))
 
+    def jitter(self, period: Time | None = None) -> LimitedValues:
+        """The jitter of the values, as `timing.jitter.jitter_of` defines it."""
+        if self.low is None or self.high is None:
+            return replace(self, pending=Fraction(0))
+        found, late = jitter_of(self.low, self.high, period), [at for at in (self.low_at, self.high_at) if at is not None]
+        # A value that is pending exceeds the least one already.
+        pending = max(Fraction(0), self.pending - self.low)
+        return replace(self, low=found, high=found, pending=pending, high_at=max(late, default=None))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LimitedQuantity:
@@ -108,9 +119,17 @@ class LimitedQuantity:
     violated_at: Fraction | None = None
 
 
-def limited_values(limit: Limit, process: ProcessObservation, duration: Time) -> LimitedValues:
-    """What a requirement on a process limits; each job has to keep a limit of a time or of a number of preemptions or migrations."""
+def limited_values(limit: Limit, process: ProcessObservation, duration: Time, period: Time | None) -> LimitedValues:
+    """What a requirement on a process limits; each job has to keep a limit of a time or of a number of preemptions or migrations.
+
+    Parameters
+    ----------
+    period : the nominal one; None if there is none
+    """
     match limit:
+        case JitterLimit(metric=metric):
+            of_times = limited_values(TimeLimit(metric=metric, value=limit.value), process, duration, period)
+            return _jitter(metric, of_times, process.jobs, process.name, period)
         case TimeLimit(metric=TimeMetric.CORE_EXECUTION_TIME) if process.migrations.total:
             return LimitedValues(reason="jobs migrate, and their execution times on each core are not observed")
         case TimeLimit(metric=TimeMetric.RESPONSE_TIME):
@@ -154,6 +173,9 @@ def limited_values_of_runnable(limit: Limit, runnable: RunnableObservation) -> L
     match limit:
         case CountLimit(metric=CountMetric.ACTIVATIONS):
             return LimitedValues(reason="only processes are activated")
+        case JitterLimit(metric=metric):
+            of_times = limited_values_of_runnable(TimeLimit(metric=metric, value=limit.value), runnable)
+            return _jitter(metric, of_times, runnable.executions, runnable.name, period=None)
         case TimeLimit(metric=TimeMetric.CORE_EXECUTION_TIME) if runnable.migrations.total:
             return LimitedValues(reason="jobs migrate, and their execution times on each core are not observed")
         case TimeLimit(metric=TimeMetric.LATENESS | TimeMetric.ACTIVATE_TO_ACTIVATE as metric):
@@ -168,6 +190,13 @@ def limited_values_of_runnable(limit: Limit, runnable: RunnableObservation) -> L
         case CountLimit(metric=CountMetric.PREEMPTIONS | CountMetric.FULL_MIGRATIONS):
             return LimitedValues(reason=missing)
     return LimitedValues(reason=f"the simulation does not observe the {limit.metric} of runnables")
+
+
+def _jitter(metric: TimeMetric, times: LimitedValues, count: int, name: str, period: Time | None) -> LimitedValues:
+    """The jitter of times that were observed in a number of jobs or executions."""
+    if is_deviation_from_period(metric):
+        return LimitedValues(reason=f"{name!r} has no nominal period") if period is None else times.jitter(period)
+    return LimitedValues(reason=f"only one job of {name!r} ended") if count == 1 else times.jitter()
 
 
 def _normalized(process: ProcessObservation, metric: JobMetric) -> LimitedValues:

@@ -16,6 +16,7 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.shown import Record, Shown
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.simulate.options import Mode
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time, time_text
 
@@ -35,19 +36,6 @@ class ObservedVerdict(StrEnum):
 
 
 _BEST_FIRST = (ObservedVerdict.OK, ObservedVerdict.NOT_OBSERVED, ObservedVerdict.MISSED)
-
-
-class ChainQuantity(StrEnum):
-    """An end-to-end latency of a chain, as observed at each stimulus or at each response; docs/chains.md defines them."""
-
-    REACTION_TIME = "reaction_time"
-    REDUCED_REACTION_TIME = "reduced_reaction_time"
-    DATA_AGE = "data_age"
-    REDUCED_DATA_AGE = "reduced_data_age"
-    FIRST_TO_FIRST = "first_to_first"
-    FIRST_TO_LAST = "first_to_last"
-    LAST_TO_FIRST = "last_to_first"
-    LAST_TO_LAST = "last_to_last"
 
 
 #: The metrics of processes of which histograms are kept; of chains, all quantities have one.

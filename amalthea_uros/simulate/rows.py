@@ -8,26 +8,6 @@ from __future__ import annotations
 from enum import IntEnum
 
 
-class Job(IntEnum):
-    """The columns of a row about a job that has ended, or an execution of a runnable: their numbers follow those of the processes.
-
-    `ACTIVATION`, `START` and `END` are points in time. `RUNNING`, `WAITING`, `POLLING` and `PARKING` are the time in these states
-    (BTF state chart); the rest between start and end is the time in the state READY.
-    """
-
-    PROCESS = 0
-    INSTANCE = 1
-    ACTIVATION = 2
-    START = 3
-    END = 4
-    RUNNING = 5
-    WAITING = 6
-    POLLING = 7
-    PARKING = 8
-    PREEMPTIONS = 9
-    MIGRATIONS = 10
-
-
 class Observation(IntEnum):
     """The columns of a row about a chain, or about an occurrence of something that is watched.
 

@@ -16,6 +16,7 @@ from amalthea_uros.perf.constraints import (
     Bound,
     Constraint,
     DataAgeConstraint,
+    JitterLimit,
     LatencyConstraint,
     LatencyKind,
     OrderConstraint,
@@ -32,15 +33,16 @@ from amalthea_uros.simulate.limited_values import (
 )
 from amalthea_uros.simulate.results import (
     ChainObservation,
-    ChainQuantity,
     ObservedVerdict,
     ProcessObservation,
     RequirementObservation,
     RunnableObservation,
 )
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.deadlines import implicit_deadline
-from amalthea_uros.timing.releases import response_time_limits
+from amalthea_uros.timing.jitter import jitter_name
+from amalthea_uros.timing.releases import activation_period, response_time_limits
 from amalthea_uros.units import Time, time_text
 
 #: A constraint that is about occurrences.
@@ -102,7 +104,7 @@ def judge_requirements(
     """The verdicts on all requirements, then on all constraints."""
     constraints = system.constraints
     for requirement in constraints.requirements:
-        yield _requirement(requirement, processes, duration, runnables)
+        yield _requirement(requirement, system, processes, duration, runnables)
     for constraint in (*constraints.constraints, *constraints.data_ages, *constraints.orders):
         if isinstance(constraint, LatencyConstraint):
             yield from _latency(constraint, chains)
@@ -115,6 +117,7 @@ def judge_requirements(
 
 def _requirement(
     requirement: Requirement,
+    system: System,
     processes: Results[ProcessObservation],
     duration: Time,
     runnables: Results[RunnableObservation],
@@ -123,7 +126,8 @@ def _requirement(
     process = next((each for each in processes if each.name == requirement.process), None)
     runnable = next((each for each in runnables if each.name == requirement.runnable), None)
     if process is not None:
-        values = limited_values(limit, process, duration)
+        model = system.processes.get(process.name)
+        values = limited_values(limit, process, duration, None if model is None else activation_period(model, system))
     elif runnable is not None:
         values = limited_values_of_runnable(limit, runnable)
     else:
@@ -133,11 +137,11 @@ def _requirement(
         RequirementObservation(
             name=requirement.name,
             object=requirement.process or requirement.runnable or "",
-            quantity=str(limit.metric),
+            quantity=jitter_name(limit.metric) if isinstance(limit, JitterLimit) else str(limit.metric),
             is_upper=limit.bound is Bound.UPPER,
             # As the number is written: the nearest number in base 2 can be on the other side of an equal value.
             limit=Fraction(str(limit.value)),
-            is_time=isinstance(limit, TimeLimit),
+            is_time=isinstance(limit, TimeLimit | JitterLimit),
             verdict=ObservedVerdict.NOT_OBSERVED,
         ),
         values,
@@ -171,24 +175,28 @@ def _latency(constraint: LatencyConstraint, chains: Results[ChainObservation]) -
     is_age = constraint.kind is LatencyKind.AGE
     kind = "data age" if is_age else "reaction"
     chain = next((each for each in chains if each.name == constraint.chain), None)
-    limits = ((constraint.maximum, True), (constraint.minimum, False))
-    stated = [(limit, is_upper) for limit, is_upper in limits if limit is not None]
+    limits = (
+        (constraint.maximum, kind, True),
+        (constraint.minimum, kind, False),
+        (constraint.jitter, jitter_name(kind), True),
+    )
+    stated = [(limit, quantity, is_upper) for limit, quantity, is_upper in limits if limit is not None]
     if chain is None:
         yield _not_observed(constraint, kind, f"the chain {constraint.chain!r} is not defined in the model")
     elif not stated:
         yield _not_observed(constraint, kind, "it states no limit")
     else:
         values = _latencies(chain, is_age)
-        for limit, is_upper in stated:
+        for limit, quantity, is_upper in stated:
             found = RequirementObservation(
                 name=constraint.name,
                 object=chain.name,
-                quantity=kind,
+                quantity=quantity,
                 is_upper=is_upper,
                 limit=Fraction(limit),
                 verdict=ObservedVerdict.NOT_OBSERVED,
             )
-            yield _judged(found, values)
+            yield _judged(found, values if quantity == kind else values.jitter())
 
 
 def _latencies(chain: ChainObservation, is_age: bool) -> LimitedValues:

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from amalthea_uros.spec.execution_time import ExecutionTime
+from amalthea_uros.spec.os import Overhead
 from amalthea_uros.spec.section import Section
 from amalthea_uros.spec.values import Duration, Name, Offset, Priority, Rate, Size, described
 
@@ -59,6 +60,8 @@ class Callback(Section):
     """Core of its task; default: the core of its node."""
     deadline: Duration | None = None
     """Deadline relative to the activation of its task."""
+    overhead: Overhead | None = None
+    """Overhead of the operating system per job of its task; default: that of `os`."""
 
 
 class MessageCallback(Callback):

@@ -9,6 +9,7 @@ from pydantic import Field
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.hardware import Hardware
 from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.spec.os import Os
 from amalthea_uros.spec.processes import Isr, Label, Task
 from amalthea_uros.spec.requirements import Chain, Requirement
 from amalthea_uros.spec.section import Section
@@ -24,6 +25,8 @@ class Description(Section):
     """Name of the application."""
     hardware: Hardware
     """The controller."""
+    os: Os = Field(default_factory=Os)
+    """The operating system."""
     middleware: Middleware = Field(default_factory=Middleware)
     """The generic micro-ROS model."""
     application: Application = Field(default_factory=Application)

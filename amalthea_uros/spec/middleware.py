@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from amalthea_uros.spec.execution_time import ExecutionTime
+from amalthea_uros.spec.os import Overhead
 from amalthea_uros.spec.section import Section, Shorthand
 from amalthea_uros.spec.values import (
     BitRate,
@@ -93,6 +94,8 @@ class Executor(Section):
     """Core of its task; default: the first core."""
     deadline: Duration | None = None
     """Deadline relative to the activation."""
+    overhead: Overhead | None = None
+    """Overhead of the operating system per job; default: that of `os`."""
     execution_time: ExecutorCost = Field(default_factory=ExecutorCost)
     """Execution time of an activation."""
     callbacks: Annotated[Literal["own-task", "in-executor"], _PLACES] = "own-task"
@@ -116,6 +119,8 @@ class Interrupt(Shorthand):
     """Priority among interrupt service routines."""
     core: Name | None = None
     """Core that it runs on; default: the core of the executor."""
+    overhead: Overhead | None = None
+    """Overhead of the operating system per job; default: that of `os`."""
 
     shorthand = ("execution_time",)
     plain_value = "Execution time per frame."

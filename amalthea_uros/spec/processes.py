@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from amalthea_uros.spec.execution_time import ExecutionTime
+from amalthea_uros.spec.os import Overhead
 from amalthea_uros.spec.section import Section, Shorthand
 from amalthea_uros.spec.values import (
     WHOLE_NUMBER,
@@ -106,6 +107,8 @@ class Process(Steps):
     """Core that it runs on; default: the first core."""
     deadline: Duration | None = None
     """Deadline relative to the activation."""
+    overhead: Overhead | None = None
+    """Overhead of the operating system per job; default: that of `os`."""
     runnables: list[Runnable] = Field(default_factory=list)
     """Its functions, in order; unnecessary for a process with one function."""
 

@@ -39,6 +39,21 @@ class Limits(Shorthand):
         return self
 
 
+class ChainJitter(Shorthand):
+    """A limit on the jitter of a chain, maximum minus minimum: of its reaction, or a mapping that names the latency."""
+
+    shorthand = ("max",)
+    plain_value = "Maximum of the jitter of the reaction."
+
+    of: Annotated[
+        Literal["reaction", "age"],
+        described(reaction="Of what `reaction` limits.", age="Of what `age` limits."),
+    ] = "reaction"
+    """Latency whose jitter is limited."""
+    max: Duration
+    """Maximum that is allowed."""
+
+
 class Chain(Section):
     """A cause-effect chain: a `path`, a `sequence` of chains, or `parallel` paths."""
 
@@ -60,6 +75,8 @@ class Chain(Section):
     """Limits on the reaction: from the start event to the end of the first job whose output is based on it."""
     age: Limits | None = None
     """Limits on the data age: from the start event on which an output is based to that output."""
+    jitter: ChainJitter | None = None
+    """Limit on the jitter: the maximum minus the minimum of the reaction, or of the age."""
 
     @model_validator(mode="after")
     def _is_one_of_three(self) -> Self:
@@ -69,6 +86,31 @@ class Chain(Section):
                 f"a chain needs exactly one of 'path', 'sequence' and 'parallel', found {' and '.join(map(repr, stated)) or 'none'}"
             )
         return self
+
+
+_JITTERS = described(
+    response_time="Maximum minus minimum of the response time.",
+    start_delay="Maximum minus minimum of the time from activation to start.",
+    net_execution_time="Maximum minus minimum of the time that a job executes, without preemption.",
+    gross_execution_time="Maximum minus minimum of the time from start to end.",
+    start_to_start="Largest deviation of the time between two starts from the period.",
+    end_to_end="Largest deviation of the time between two ends from the period.",
+)
+
+
+class Jitter(Shorthand):
+    """A limit on a jitter: of the response time, or a mapping that names the time."""
+
+    shorthand = ("max",)
+    plain_value = "Maximum of the jitter of the response time: of its maximum minus its minimum."
+
+    of: Annotated[
+        Literal["response_time", "start_delay", "net_execution_time", "gross_execution_time", "start_to_start", "end_to_end"],
+        _JITTERS,
+    ] = "response_time"
+    """Time whose jitter is limited."""
+    max: Duration
+    """Maximum that is allowed."""
 
 
 class Requirement(Section):
@@ -92,9 +134,11 @@ class Requirement(Section):
     """Limits on the time from one start to the next."""
     end_to_end: Limits | None = None
     """Limits on the time from one end to the next."""
+    jitter: Jitter | None = None
+    """Limit on the jitter of the response time, or of another time."""
 
     @model_validator(mode="after")
     def _is_something(self) -> Self:
-        if not any(isinstance(getattr(self, key), Limits) for key in type(self).model_fields):
+        if not any(isinstance(getattr(self, key), Limits | Jitter) for key in type(self).model_fields):
             raise problem("the requirement has no limit; add one, e.g. response_time: 1 ms")
         return self

@@ -42,6 +42,10 @@ def _quantity(parse: Callable[[str], Any], dimension: units.Dimension) -> Callab
     return convert
 
 
+def _with_unit(value: Any) -> Any:
+    return "0 s" if value == 0 and isinstance(value, int) and not isinstance(value, bool) else value
+
+
 def _positive(value: Any) -> Any:
     if value <= 0:
         raise unexpected("must be greater than zero")
@@ -60,19 +64,22 @@ _ZERO_OR_MORE = r"(?!-[0.]*[1-9])[-+]?"
 _DIGITS = r"([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][-+]?[0-9]{1,3})?"
 
 
-def _text_schema(dimension: units.Dimension, *, zero: bool = False) -> WithJsonSchema:
+def _text_schema(dimension: units.Dimension, *, zero: bool = False, number_zero: bool = False) -> WithJsonSchema:
     """How editors check a quantity.
 
     Parameters
     ----------
     zero : whether it may be zero
+    number_zero : whether it may be the number 0
     """
     pattern = f"^\\s*{_ZERO_OR_MORE if zero else _ABOVE_ZERO}{_DIGITS}\\s*({'|'.join(dimension.units)})\\s*$"
     bound = "of zero or more" if zero else "above zero"
     known = ", ".join(unit for unit in dimension.units if unit.isascii())
+    number: dict[str, Any] = {"type": ["string", "integer"], "minimum": 0, "maximum": 0} if number_zero else {}
     return editor_schema(
         f"expected {dimension.article} {bound} with a unit such as {dimension.example!r}; units: {known}",
-        type=["string"],  # of a single type, yaml-language-server would replace the message where a mapping is allowed, too
+        # With the list of one type, because yaml-language-server would replace the message where a mapping is allowed, too.
+        **({"type": ["string"]} | number),
         pattern=pattern,
         examples=[dimension.example],
     )
@@ -138,6 +145,14 @@ _BIT_RATE = BeforeValidator(_quantity(units.parse_bit_rate, units.BIT_RATE))
 Duration: TypeAlias = Annotated[int, _TIME, AfterValidator(_positive), _text_schema(units.TIME)]
 #: A time of zero or more, in picoseconds.
 Offset: TypeAlias = Annotated[int, _TIME, AfterValidator(_not_negative), _text_schema(units.TIME, zero=True)]
+#: The same, or the number 0, which needs no unit.
+OffsetOrNumberZero: TypeAlias = Annotated[
+    int,
+    _TIME,
+    BeforeValidator(_with_unit),
+    AfterValidator(_not_negative),
+    _text_schema(units.TIME, zero=True, number_zero=True),
+]
 #: A frequency above zero, in hertz.
 Rate: TypeAlias = Annotated[Any, _FREQUENCY, AfterValidator(_positive), _text_schema(units.FREQUENCY)]
 #: A data size above zero, in bits.

@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.perf.software import Process
-from amalthea_uros.perf.stimuli import Arrivals, Counter, Periodic
+from amalthea_uros.perf.stimuli import Arrivals, Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.phases import counters, with_counters
-from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.timing.releases import activation_period, known_releases
 from amalthea_uros.units import Time, time_text
 
 
@@ -28,10 +28,8 @@ def nominal_period(process: Process, counter: Counter, system: System) -> Time |
     arrivals = counter.arrivals or Arrivals()
     if arrivals.period is not None:
         return arrivals.period
-    match [system.stimuli_by_name.get(name) for name in process.stimuli]:
-        case [Periodic(period=period)]:
-            return counter.prescaler * period
-    return None
+    period = activation_period(process, system)
+    return None if period is None else counter.prescaler * period
 
 
 def with_bounded_arrivals(system: System) -> System:

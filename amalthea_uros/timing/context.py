@@ -20,6 +20,8 @@ from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.limits import MAX_INPUT
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
+from amalthea_uros.timing.overheads import ASSUMPTION as OVERHEAD_ASSUMPTION
+from amalthea_uros.timing.overheads import has_overhead_of_tasks
 from amalthea_uros.timing.process_stretches import ProcessStretches
 from amalthea_uros.timing.releases import response_time_limits
 from amalthea_uros.timing.scheduling import NotSchedulableError, ScheduledProcess, Scheduling, Server
@@ -85,6 +87,8 @@ class TimingContext:
         context = cls(with_direct_calls(system), settings or Settings())
         if context.system is not system:
             context.notes.assume("clients execute the runnables of synchronous servers that no process calls")
+        if has_overhead_of_tasks(system):
+            context.notes.assume(OVERHEAD_ASSUMPTION)
         context._note_settings()
         context._schedule()
         return context

@@ -1,4 +1,7 @@
-"""Overheads of the operating system: services add to the demand of their callers, interrupt entry and exit to that of the ISR."""
+"""Overheads of the operating system: services add to the demand of their callers, interrupt entry and exit to that of the ISR.
+
+Runnables can be overhead, too, of the process that calls them.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from functools import cached_property
 from amalthea_uros.perf.activities import (
     AccessKind,
     Activity,
+    Call,
     ClearEvent,
     Demand,
     Group,
@@ -51,6 +55,20 @@ COUNTED = {
     Service.SUSPEND_INTERRUPTS,
     Service.RESUME_INTERRUPTS,
 }
+
+
+#: Of the runnables that are overhead.
+ASSUMPTION = (
+    "the overhead of the operating system that is part of a task is executed at the priority of that task: "
+    "it delays no task of higher priority"
+)
+
+
+def has_overhead_of_tasks(system: System) -> bool:
+    """Whether tasks execute work of the operating system."""
+    overheads = {runnable.name for runnable in system.software.runnables if runnable.is_overhead}
+    called = (activity for task in system.software.tasks for activity in task.activities)
+    return any(isinstance(activity, Call) and activity.runnable in overheads for activity in called)
 
 
 @dataclass(frozen=True)

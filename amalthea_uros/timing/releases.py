@@ -20,6 +20,14 @@ def known_releases(process: Process, system: System) -> Periodic | None:
     return None
 
 
+def activation_period(process: Process, system: System) -> Time | None:
+    """The period of the only stimulus of a process, with or without jitter; None if it has none."""
+    match [system.stimuli_by_name.get(name) for name in process.stimuli]:
+        case [Periodic(period=period)] if period > 0:
+            return period
+    return None
+
+
 def response_time_limits(system: System) -> dict[str, Time]:
     """The strictest response-time limit of each process by its requirements."""
     found: dict[str, Time] = {}

@@ -10,9 +10,9 @@ from datetime import datetime
 from importlib import import_module
 from pathlib import Path
 from types import TracebackType
-from typing import BinaryIO, Protocol, Self, cast
+from typing import BinaryIO, Protocol, Self, cast, runtime_checkable
 
-from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, not_writable, replacing
+from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_stream, not_writable, replacing, write_bytes
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.trace.table import Entity, EventTable
@@ -30,6 +30,7 @@ WRITERS = {
     ".perfetto.json": "chrome_json",
     ".json": "chrome_json",
     ".csv": "csv_writer",
+    ".log": "candump_writer",
 }
 
 
@@ -60,6 +61,14 @@ class Encoder(Protocol):
 
     def end(self) -> bytes:
         """The bytes after all events."""
+
+
+@runtime_checkable
+class Accompanied(Protocol):
+    """An encoder whose file needs a second one beside it, to be understood."""
+
+    def companion(self) -> tuple[str, bytes]:
+        """What its name has after that of the file, and its content, once all events are known."""
 
 
 class TraceSink(Protocol):
@@ -143,6 +152,11 @@ class _EncodingSink:
             self._is_open = False
             with _reporting(self._target), self._stack:
                 self._put(self._encoder.end())
+            if isinstance(self._encoder, Accompanied) and isinstance(self._target, Path) and not is_stream(self._target):
+                ending, content = self._encoder.companion()
+                companion = self._target.with_name(self._target.name.removesuffix(".gz") + ending)
+                with _reporting(companion):
+                    write_bytes(companion, content)
 
     def __enter__(self) -> Self:
         return self

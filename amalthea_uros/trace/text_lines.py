@@ -1,4 +1,4 @@
-"""The lines of trace files, plain or packed with gzip."""
+"""The bytes and the lines of trace files, plain or packed with gzip."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
+from io import TextIOWrapper
 from pathlib import Path
-from typing import TextIO
+from typing import IO, TextIO, cast
 
 from amalthea_uros._internal.limits import TRACE_LINE
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -19,23 +20,21 @@ _DAMAGED = (EOFError, gzip.BadGzipFile, zlib.error)
 
 
 @contextmanager
-def opened_text(path: Path, problems: Problems) -> Iterator[Iterator[str]]:
-    """The lines of a file; that the rest of it is damaged is a problem, and what comes before it has been read.
+def opened_bytes(path: Path, problems: Problems) -> Iterator[IO[bytes]]:
+    """The unpacked bytes of a file; that the rest of it is damaged is a problem, and what comes before it has been read.
 
     Raises
     ------
     ReadError : there is no such file, or it may not be read.
     """
-    is_packed = path.name.lower().endswith(".gz")
-    opening = gzip.open if is_packed else open
+    opening = gzip.open if path.name.lower().endswith(".gz") else open
     try:
-        # Bytes that are not UTF-8 come from names of old files; a wrong character there does no harm to the times.
-        with opening(path, "rt", encoding="utf-8-sig", errors="replace", newline="\n") as stream:
-            yield _lines(stream)
+        with opening(path, "rb") as stream:
+            yield cast("IO[bytes]", stream)
     except _DAMAGED as error:
         message = f"the compressed file is damaged: {error}; only the events before that are used"
         problems.add("TRC006", Severity.ERROR, message, advice="Check that it was written completely.")
-    except _LineTooLongError as error:
+    except LineTooLongError as error:
         message = f"a line is longer than {TRACE_LINE:,} characters; only the events before that are used"
         problems.add("TRC002", Severity.ERROR, message, Place(error.line, 1), "Check that this is a trace.")
     except FileNotFoundError:
@@ -44,8 +43,32 @@ def opened_text(path: Path, problems: Problems) -> Iterator[Iterator[str]]:
         raise _not_readable(path, f"the file cannot be read: {error.strerror or error}") from None
 
 
-class _LineTooLongError(Exception):
+@contextmanager
+def opened_text(path: Path, problems: Problems) -> Iterator[Iterator[str]]:
+    """The lines of a file, as `opened_bytes` gives its bytes.
+
+    Raises
+    ------
+    ReadError : there is no such file, or it may not be read.
+    """
+    # Bytes that are not UTF-8 come from names of old files; a wrong character there does no harm to the times.
+    with (
+        opened_bytes(path, problems) as stream,
+        TextIOWrapper(stream, encoding="utf-8-sig", errors="replace", newline="\n") as text,
+    ):
+        yield _lines(text)
+
+
+class LineTooLongError(Exception):
+    """A line has more than `TRACE_LINE` characters: the file is no text.
+
+    Attributes
+    ----------
+    line : its number
+    """
+
     def __init__(self, line: int) -> None:
+        super().__init__(line)
         self.line = line
 
 
@@ -53,7 +76,7 @@ def _lines(stream: TextIO) -> Iterator[str]:
     """The lines of a stream; a file without line ends, such as a device, would else become one in memory."""
     for number, line in enumerate(iter(partial(stream.readline, TRACE_LINE), ""), 1):
         if len(line) == TRACE_LINE:
-            raise _LineTooLongError(number)
+            raise LineTooLongError(number)
         yield line
 
 

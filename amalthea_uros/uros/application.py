@@ -96,6 +96,7 @@ def _add_executor(context: AssemblyContext, calls: Sequence[PlannedCall], period
             period=period,
             priority=executor.priority,
             deadline=executor.deadline,
+            overhead=executor.overhead,
             wins_ties=True,
             origin=executor.location(),
         )
@@ -106,6 +107,10 @@ def _core(context: AssemblyContext, callback: Callback, executor_core: str) -> s
     """The core of a callback."""
     section, node = callback.section, callback.node
     if callback.in_executor:
+        if section.overhead is not None:
+            message = f"'overhead' of {callback.name!r} has no effect, because it runs in the executor"
+            advice = "Set it at the executor, or set 'runs_in: own-task'."
+            context.notes.error("APP003", message, section.location("overhead"), advice)
         if section.core is not None and section.core != executor_core:
             message = f"{callback.name!r} runs in the executor on {executor_core!r}, not on {section.core!r}"
             context.notes.error("UR104", message, section.location("core"), "Remove 'core', or set 'runs_in: own-task'.")
@@ -148,6 +153,7 @@ def _add_own_task(context: AssemblyContext, callback: Callback, period: Time, bo
             period=period,
             priority=section.priority,
             deadline=section.deadline,
+            overhead=section.overhead,
             origin=callback.origin,
         )
     )
@@ -177,6 +183,7 @@ def _add_isr(context: AssemblyContext, interrupt: Interrupt, stimuli: tuple[str,
             stimuli=stimuli,
             activities=(Call(runnable=handler.name),),
             priority=interrupt.priority,
+            overhead=interrupt.overhead,
             origin=interrupt.location(),
         )
     )

@@ -33,6 +33,7 @@ from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placem
 from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
+from amalthea_uros.uros.overheads import add_overheads
 from amalthea_uros.uros.periods import PeriodChoice
 from amalthea_uros.uros.pools import Pool, check_pools, pools_of
 from amalthea_uros.uros.priorities import check_shared_priorities
@@ -104,6 +105,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
     choices = add_callbacks(context, callbacks)
     add_interrupt(context, messages)
     add_background_tasks(context)
+    add_overheads(context)
     if not context.tasks and not context.isrs and not context.notes.has_errors:
         advice = "Define callbacks under 'application', or tasks under 'tasks'."
         message = "no callback, task or interrupt service routine is defined"

@@ -52,6 +52,7 @@ class BackgroundTasks:
             period=min_interarrival(section) or min(filter(None, map(min_interarrival, origins)), default=None),
             priority=section.priority,
             deadline=section.deadline,
+            overhead=section.overhead,
             preemption=Preemption(section.preemption),
             activation_limit=section.activation_limit,
             origin=section.location(),
@@ -66,6 +67,7 @@ class BackgroundTasks:
             activities=self.activities(section, core),
             priority=section.priority,
             category=IsrCategory(f"category {section.category}"),
+            overhead=section.overhead,
             origin=section.location(),
         )
 
@@ -177,8 +179,10 @@ class BackgroundTasks:
                 advice = f"Move {keys[0]!r} to a runnable."
                 self.notes.error("APP003", message, section.location(keys[0]), advice)
             return tuple(self._call(runnable, core) for runnable in section.runnables)
+        if not keys and section.overhead is not None:
+            return ()
         if not keys:
-            advice = "Set 'execution_time' or 'runnables'."
+            advice = "Set 'execution_time' or 'runnables'; or 'overhead', for an empty process."
             self.notes.error("APP003", f"{section.name!r} does nothing", section.location(), advice)
         name = f"{section.name}_Runnable"
         self._add(name, section, core)

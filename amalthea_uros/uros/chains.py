@@ -246,15 +246,18 @@ class Chains:
 def _limits(section: Chain) -> list[LatencyConstraint]:
     found = []
     for kind, limits in ((LatencyKind.REACTION, section.reaction), (LatencyKind.AGE, section.age)):
-        if limits is not None:
+        jitter = section.jitter if section.jitter is not None and section.jitter.of == kind else None
+        stated = limits or jitter
+        if stated is not None:
             found.append(
                 LatencyConstraint(
                     name=f"{section.name}_{kind}",
                     chain=section.name,
                     kind=kind,
-                    minimum=limits.min,
-                    maximum=limits.max,
-                    origin=limits.location(),
+                    minimum=limits.min if limits else None,
+                    maximum=limits.max if limits else None,
+                    jitter=jitter.max if jitter else None,
+                    origin=stated.location(),
                 )
             )
     return found

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from amalthea_uros.perf.constraints import Bound, Requirement, Severity, TimeLimit, TimeMetric
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.constraints import Bound, JitterLimit, Limit, Requirement, Severity, TimeLimit, TimeMetric
 from amalthea_uros.spec import requirements as spec
 from amalthea_uros.uros.chain_elements import ChainElement
 from amalthea_uros.uros.notes import Notes
@@ -32,19 +33,28 @@ def requirements(
 
 
 def _limits(section: spec.Requirement, element: ChainElement) -> Iterator[Requirement]:
+    for name, limit, origin in _stated(section):
+        yield Requirement(
+            name=name,
+            process=element.process if element.runnable is None else None,
+            runnable=element.runnable,
+            limit=limit,
+            severity=Severity(section.severity) if section.severity else None,
+            origin=origin,
+        )
+
+
+def _stated(section: spec.Requirement) -> Iterator[tuple[str, Limit, Location | None]]:
+    """Each limit with its name, which all limits of one requirement can share, and where it is stated."""
     for key, metric in _METRICS.items():
         limits: spec.Limits | None = getattr(section, key)
         if limits is None:
             continue
-        for bound, value in ((Bound.UPPER, limits.max), (Bound.LOWER, limits.min)):
-            if value is not None:
-                # All limits of one requirement can have the same name.
-                name = section.name or f"{section.process}_{key}"
-                yield Requirement(
-                    name=name if bound is Bound.UPPER else f"{name}_least",
-                    process=element.process if element.runnable is None else None,
-                    runnable=element.runnable,
-                    limit=TimeLimit(metric=metric, value=value, bound=bound),
-                    severity=Severity(section.severity) if section.severity else None,
-                    origin=limits.location(),
-                )
+        name = section.name or f"{section.process}_{key}"
+        if limits.max is not None:
+            yield name, TimeLimit(metric=metric, value=limits.max), limits.location()
+        if limits.min is not None:
+            yield f"{name}_least", TimeLimit(metric=metric, value=limits.min, bound=Bound.LOWER), limits.location()
+    if section.jitter is not None:
+        name = section.name or f"{section.process}_{section.jitter.of}_jitter"
+        yield name, JitterLimit(metric=_METRICS[section.jitter.of], value=section.jitter.max), section.jitter.location()

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Activity
 from amalthea_uros.perf.software import IsrCategory, Preemption
+from amalthea_uros.spec.os import Overhead
 from amalthea_uros.units import Time
 
 
@@ -20,6 +21,7 @@ class PlannedTask:
     period : minimum time between two activations; None if unknown
     priority : as set in the description; None to assign one
     wins_ties : whether it gets a higher priority than other tasks of the same period
+    overhead : what the description states for it; `uros.overheads` makes activities of it
     """
 
     name: str
@@ -32,6 +34,7 @@ class PlannedTask:
     preemption: Preemption = Preemption.PREEMPTIVE
     activation_limit: int = 1
     wins_ties: bool = False
+    overhead: Overhead | None = None
     origin: Location | None = None
 
 
@@ -45,4 +48,5 @@ class PlannedIsr:
     activities: tuple[Activity, ...]
     priority: int
     category: IsrCategory = IsrCategory.CATEGORY_2
+    overhead: Overhead | None = None
     origin: Location | None = None

@@ -17,6 +17,7 @@ SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 WISHES = {
     "bodas-test-advanced": {"INC-CO-KIND"},
     "bodas-test-hardware": {"INC-CO-KIND", "INC-OS-ALGORITHM", "INC-SW-TICKS-STAT"},
+    "bodas-test-measured": {"INC-CO-KIND"},
     "bodas-test-simple": {"INC-CO-KIND"},
     "drive-and-lift": {"INC-CO-KIND", "INC-OS-SEMA-TYPE"},
     "rclc-in-executor": {"INC-CO-KIND"},

@@ -20,6 +20,7 @@ YAML = ROOT / "samples" / "bodas-test-advanced.yaml"
 WITH_A_FILE = {
     "analyze": ["{}"],
     "build": ["{}"],
+    "calibrate": ["{}", "run.btf"],
     "chains": ["{}", "--from", "a", "--to", "b"],
     "check": ["{}"],
     "diff": ["{}", str(BRAKE)],

@@ -23,8 +23,8 @@ from amalthea_uros.simulate.program.build import build_program
 from amalthea_uros.simulate.program.program import Program
 from amalthea_uros.simulate.results import MetricObservation
 from amalthea_uros.simulate.rows import STIMULUS, Observation
-from amalthea_uros.simulate.rows import Job as Column
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.job_times import Job as Column
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -19,8 +19,8 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.program.messages import QUEUE_LENGTH
-from amalthea_uros.simulate.results import ChainQuantity
 from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.trace.table import EventKind

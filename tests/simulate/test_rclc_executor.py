@@ -9,8 +9,8 @@ from support import ROOT, analysis_of
 from amalthea_uros import describe
 from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.results import ChainQuantity
 from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.trace.table import EventKind

@@ -11,6 +11,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import permutations
 
+import numpy as np
+
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
@@ -31,15 +33,16 @@ from amalthea_uros.perf.constraints import (
     OrderConstraint,
     RepetitionConstraint,
 )
-from amalthea_uros.perf.events import LabelChange, LabelEvent
+from amalthea_uros.perf.events import EventChain, LabelChange, LabelEvent
 from amalthea_uros.perf.named import Named
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import routes
 from amalthea_uros.timing.event_models import EventModel, Periodic, is_strictly_periodic
+from amalthea_uros.timing.jitter import jitter_name, jitter_of
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.timing.runnable_order import satisfies_order
-from amalthea_uros.units import Time
+from amalthea_uros.units import Time, time_text
 
 _REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
 _AGE = (Quantity.MIN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE)
@@ -105,6 +108,22 @@ class ConstraintEvaluator:
             yield _result(constraint, chain.name, kind, constraint.maximum, ends.of_maximum, chain.reason)
         if constraint.minimum is not None:
             yield _result(constraint, chain.name, kind, constraint.minimum, ends.of_minimum, chain.reason, is_upper=False)
+        if constraint.jitter is not None:
+            jitter = ends.jitter(self._is_one_run(self.evaluation.context.system.chains[chain.name]))
+            found = _result(constraint, chain.name, jitter_name(kind), constraint.jitter, jitter, chain.reason)
+            yield replace(found, spread=ends.spread)
+
+    def _is_one_run(self, chain: EventChain) -> bool:
+        """Whether jobs that a chain passes can only run in one way: with known phases, and best cases that are the worst ones."""
+        if self.evaluation.occurrences(chain):
+            return False
+        for stage in self.evaluation.stages(chain):
+            name = stage.process.name
+            core = self.evaluation.context.scheduled[name].core
+            found = self.evaluation.timing.schedules.of(core, with_slices=False)
+            if found is None or name not in found.tasks or not np.array_equal(found.best[name].ends, found.worst[name].ends):
+                return False
+        return True
 
     def _delay(self, constraint: DelayConstraint) -> Iterator[RequirementResult]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
@@ -181,8 +200,8 @@ class ConstraintEvaluator:
             ends = Ends(shortest, shortest if isinstance(activations, Periodic) else None)
             yield _result(constraint, constraint.event, "repetition", constraint.lower, _moved(ends, moves), is_upper=False)
         if constraint.jitter is not None:
-            own = activations.jitter if isinstance(activations, Periodic) and is_strictly_periodic(activations) else None
-            yield _result(constraint, constraint.event, "jitter", constraint.jitter, _moved(Ends(own, own), moves))
+            jitter, reason = _jitter(constraint, activations, moves)
+            yield _result(constraint, constraint.event, "jitter", constraint.jitter, jitter, reason)
 
     # Order
 
@@ -230,6 +249,20 @@ class _Latencies:
         if lowest is not None and lowest.value is not None and lowest.claim is Claim.EXACT:
             return Ends.exactly(lowest.value)
         return Ends(_time(lowest) or 0, _time(highest))
+
+    @property
+    def spread(self) -> tuple[Time, Time] | None:
+        """A lower bound of the minimum and an upper bound of the maximum; None if one of them is unknown."""
+        lowest, highest = self.of_minimum.lower, self.of_maximum.upper
+        return None if lowest is None or highest is None else (lowest, highest)
+
+    def jitter(self, is_one_run: bool) -> Ends:
+        """Maximum minus minimum; exact values are known to occur together if there is only one run."""
+        if self.spread is None:
+            return Ends()
+        greatest, least, upper = self.of_maximum, self.of_minimum, jitter_of(*self.spread)
+        is_exact = greatest.lower == greatest.upper and least.lower == least.upper
+        return Ends(upper if is_exact and is_one_run else 0, upper)
 
     def _find(self, quantity: Quantity) -> Value | None:
         return next((value for value in self.values if value.quantity is quantity), None)
@@ -288,6 +321,23 @@ def _moved(distance: Ends, by: Time) -> Ends:
     """A distance of activations as one of events that follow them after varying times."""
     lower, upper = distance.lower, distance.upper
     return Ends(None if lower is None else max(0, lower - by), None if upper is None else upper + by)
+
+
+def _jitter(constraint: RepetitionConstraint, activations: EventModel, moves: Time) -> tuple[Ends, str]:
+    """Between which ends the jitter of an event lies that follows strictly periodic activations, or why that is unknown."""
+    if not isinstance(activations, Periodic) or not is_strictly_periodic(activations):
+        return Ends(), "its activations are not strictly periodic"
+    period, distance = activations.period, max(1, constraint.span) * activations.period
+    if constraint.period not in (None, period):
+        return (
+            Ends(),
+            f"the event occurs every {time_text(period)}, not in the stated period, so that no jitter bounds its deviation",
+        )
+    if distance < (constraint.lower or 0) or (constraint.upper is not None and distance > constraint.upper):
+        return Ends(), f"the limits exclude the mean distance of {time_text(distance)}, so that no jitter bounds its deviation"
+    # Ideal points between limits can follow the events; those of a stated period cannot.
+    lower = max(0, activations.jitter - moves) if constraint.period is not None else 0
+    return Ends(lower, activations.jitter + moves), ""
 
 
 def _cycles(time: Time | None, cycles: int | None, period: Time | None) -> Time | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 from amalthea_uros.analyze.chains.completed_work import Busy
 from amalthea_uros.analyze.response_times import schedule
@@ -18,6 +19,11 @@ class CoreSchedule:
     """The schedules of a core for all worst and all best cases.
 
     The last of the cycles that are covered is the steady state.
+
+    Attributes
+    ----------
+    has_idle_time : whether the core is idle in each cycle of the worst cases, which then ends what came before: whatever it was, the
+        worst cases lead to the same steady state
     """
 
     tasks: Mapping[str, PeriodicTask]
@@ -25,6 +31,7 @@ class CoreSchedule:
     best: Mapping[str, Jobs]
     steady_state_start: Time
     cycle: Time
+    has_idle_time: bool
 
     @property
     def until(self) -> Time:
@@ -72,4 +79,5 @@ class CoreSchedules:
             best=dict(zip(names, found.best, strict=True)),
             steady_state_start=schedule.steady_state_start(tasks) + cycle,
             cycle=cycle,
+            has_idle_time=sum((task.demand.mean_worst / task.period for task in tasks), Fraction(0)) < 1,
         )

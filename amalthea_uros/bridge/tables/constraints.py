@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.bridge.codecs import FREQUENCY, TIME, Codec, reference, references, same_names
+from amalthea_uros.bridge.codecs import FREQUENCY, TIME, Codec, reference, references, same_names, time_property
 from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.entries import Entry, Field, Table, part
 from amalthea_uros.bridge.kinds import Kind
@@ -14,6 +14,8 @@ from amalthea_uros.perf import constraints as perf
 
 _EVENT = reference(Kind.EVENT)
 _TOLERANCE = Field("tolerance", "tolerance", TIME)
+#: AMALTHEA limits no jitter of a latency or of a time of jobs.
+_JITTER = time_property("jitter")
 _EVERY = Field("every_occurrence", "multiple_occurrences_allowed")
 
 CONSTRAINTS = Table(
@@ -24,6 +26,7 @@ CONSTRAINTS = Table(
         Field("kind", "type", same_names(perf.LatencyKind, am.LatencyType)),
         Field("minimum", "minimum", TIME),
         Field("maximum", "maximum", TIME),
+        Field("jitter", "custom_properties", _JITTER),
     ),
     Entry(
         perf.DelayConstraint,
@@ -183,6 +186,25 @@ _LIMITS = Table(
     ),
 )
 _LIMIT = part(_LIMITS)
+
+
+def _build_limit(limit: perf.Limit, context: Building, element: am.Requirement) -> None:
+    """Set the limit of a requirement: for a jitter one that is always kept, on the same time, and a property with the jitter."""
+    if isinstance(limit, perf.JitterLimit):
+        element.custom_properties += _JITTER.build(limit.value, context)
+        limit = perf.TimeLimit(metric=limit.metric, value=0, bound=perf.Bound.LOWER)
+    element.limit = _LIMIT.build(limit, context)
+
+
+def _extract_limit(element: am.Requirement, context: Extracting) -> perf.Limit | None:
+    """The way back; None if there is none, or it is incomplete."""
+    limit: perf.Limit | None = None if element.limit is None else _LIMIT.extract(element.limit, context, element)
+    jitter = _JITTER.extract(element.custom_properties, context, element)
+    if isinstance(limit, perf.TimeLimit) and jitter is not None:
+        return perf.JitterLimit(metric=limit.metric, value=jitter)
+    return limit
+
+
 _SEVERITY = same_names(perf.Severity, am.Severity)
 
 
@@ -196,7 +218,7 @@ def build_requirement(requirement: perf.Requirement, context: Building) -> am.Re
     else:
         process = reference(Kind.PROCESS).build(requirement.process, context)
         element = am.ProcessRequirement(name=requirement.name, process=process)
-    element.limit = _LIMIT.build(requirement.limit, context)
+    _build_limit(requirement.limit, context, element)
     if requirement.severity is not None:
         element.severity = _SEVERITY.build(requirement.severity, context)
     if requirement.origin is not None:
@@ -216,7 +238,7 @@ def extract_requirement(element: am.Requirement, context: Extracting) -> perf.Re
         case _:
             context.leave_out(element)
             return None
-    limit = None if element.limit is None else _LIMIT.extract(element.limit, context, element)
+    limit = _extract_limit(element, context)
     if limit is None or (process is None and runnable is None):
         context.note("EXT004", f"{type(element).__name__} ignored: it has no object or no limit", element)
         return None

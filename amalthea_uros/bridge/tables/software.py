@@ -66,6 +66,7 @@ RUNNABLES = Table(
         _ACTIVITIES,
         Field("callback", "callback"),
         Field("service", "service"),
+        Field("is_overhead", "custom_properties", marked("osOverhead", default=False)),
         Field("condition", "execution_condition", CONDITION),
     )
 )

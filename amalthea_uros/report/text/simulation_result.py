@@ -13,13 +13,13 @@ from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import impact
 from amalthea_uros.simulate.results import (
     ChainObservation,
-    ChainQuantity,
     MetricObservation,
     ObservedVerdict,
     ProcessObservation,
     RequirementObservation,
     Simulation,
 )
+from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import NANOSECOND, Rounding, Time, rounded_time_text, time_text
 

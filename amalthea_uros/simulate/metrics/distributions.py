@@ -6,15 +6,14 @@ the first value, which are small.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import combinations_with_replacement
 from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.exact_sums import sums, sums_of_squares
 from amalthea_uros.simulate.metrics.histogram import BinCounts
 from amalthea_uros.simulate.results import Histogram, MetricObservation, Occurrence
 
@@ -22,11 +21,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Numbers = NDArray[np.int64]
-
-_HALF = 32
-#: The sum of so many products of such digits fits into the 53 bits of a floating-point number.
-_COLUMNS, _DIGIT_BITS = 2048, 21
-_DIGIT = (1 << _DIGIT_BITS) - 1
 
 
 @dataclass(slots=True, kw_only=True)
@@ -81,7 +75,7 @@ class Distributions:
             self._reference = values[:, 0].copy()
         self.count += values.shape[1]
         self._note_extremes(values, instances, times)
-        self.totals = [total + more for total, more in zip(self.totals, _exact_sums(values), strict=True)]
+        self.totals = [total + more for total, more in zip(self.totals, sums(values), strict=True)]
         self._add_squares(values - self._reference[:, None])
         for index, histogram in self._histograms.items():
             histogram.add(values[index], int(self.minima[index]), int(self.maxima[index]))
@@ -126,11 +120,7 @@ class Distributions:
 
     def _add_squares(self, deviations: Numbers) -> None:
         """Add the squares of deviations, exactly: results must not depend on how observations are divided into chunks."""
-        size = deviations.shape[1]
-        for first in range(0, size, _COLUMNS):
-            chunk = np.abs(deviations[:, first : first + _COLUMNS])
-            for shift, sums in _products(chunk):
-                self._squares = [square + (int(more) << shift) for square, more in zip(self._squares, sums, strict=True)]
+        self._squares = [square + more for square, more in zip(self._squares, sums_of_squares(deviations), strict=True)]
 
     def _note_extremes(self, values: Numbers, instances: Numbers, times: Numbers) -> None:
         for index, low in enumerate(values.min(axis=1).tolist()):
@@ -152,27 +142,3 @@ class Distributions:
             return None
         width = Fraction(found.width, self.base)
         return Histogram(start=found.first * width, width=width, counts=tuple(found.counts.tolist()))
-
-
-def _products(values: Numbers) -> Iterator[tuple[int, NDArray[np.float64]]]:
-    """The sums of squares of each row, as numbers that are to be shifted and added.
-
-    The values are divided into digits so small that floating point, which is quicker, gives exact sums of their products.
-    """
-    digits = [(values & _DIGIT).astype(np.float64)]
-    rest = values >> _DIGIT_BITS
-    while rest.any():
-        digits.append((rest & _DIGIT).astype(np.float64))
-        rest = rest >> _DIGIT_BITS
-    for (low, one), (high, other) in combinations_with_replacement(enumerate(digits), 2):
-        twice = int(low != high)
-        yield (low + high) * _DIGIT_BITS + twice, np.einsum("ij,ij->i", one, other)
-
-
-def _exact_sums(values: Numbers) -> list[int]:
-    """The sum of each row: of both halves of the values, because the sum of the values can exceed 64 bits."""
-    largest = max(abs(int(values.min())), abs(int(values.max())))
-    if largest * values.shape[1] < 2**63:
-        return [int(total) for total in values.sum(axis=1)]
-    upper, lower = (values >> _HALF).sum(axis=1), (values & (1 << _HALF) - 1).sum(axis=1)
-    return [(int(high) << _HALF) + int(low) for high, low in zip(upper, lower, strict=True)]

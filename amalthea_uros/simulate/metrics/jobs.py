@@ -1,12 +1,4 @@
-"""The times of jobs, from the rows about jobs that have ended.
-
-AMALTHEA defines most of them by the states of the BTF state chart; its net execution time includes waiting and polling, and leaves out
-only the time in which other processes execute instead (READY, PARKING). The preemption time is the initial pending time and the time in
-READY: while the job does not execute because others do.
-
-Consecutive jobs of a process are those that end one after the other. Activations that are lost are no jobs: the time between two
-activations is that between two jobs.
-"""
+"""The distributions of the times of jobs; `timing.job_times` defines the times."""
 
 from __future__ import annotations
 
@@ -18,8 +10,8 @@ import numpy as np
 
 from amalthea_uros.simulate.metrics.distributions import Distributions
 from amalthea_uros.simulate.results import WITH_HISTOGRAM, CountObservation, MetricObservation
-from amalthea_uros.simulate.rows import Job
 from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.job_times import BETWEEN, OWN, Job, own_times, times_between
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -27,22 +19,7 @@ if TYPE_CHECKING:
 
     Numbers = NDArray[np.int64]
 
-#: What each job has, in the order of the rows of `_own`; the numbers of preemptions and migrations follow.
-OWN = (
-    JobMetric.NET_EXECUTION_TIME,
-    JobMetric.GROSS_EXECUTION_TIME,
-    JobMetric.RESPONSE_TIME,
-    JobMetric.INITIAL_PENDING_TIME,
-    JobMetric.READY_TIME,
-    JobMetric.PREEMPTION_TIME,
-    JobMetric.RUNNING_TIME,
-    JobMetric.WAITING_TIME,
-    JobMetric.POLLING_TIME,
-    JobMetric.PARKING_TIME,
-)
 _COUNTS = (Job.PREEMPTIONS, Job.MIGRATIONS)
-#: What lies between two consecutive jobs, in the order of the rows of `_between`.
-BETWEEN = (JobMetric.ACTIVATE_TO_ACTIVATE, JobMetric.START_TO_START, JobMetric.END_TO_END, JobMetric.END_TO_START)
 #: So many jobs at a time stay in the cache of a processor.
 _CACHED = 2048
 _OWN_HISTOGRAMS = tuple(map(OWN.index, WITH_HISTOGRAM))
@@ -73,7 +50,7 @@ class JobMetrics:
         self._of_jobs.add(_own(jobs), jobs[Job.INSTANCE], jobs[Job.ACTIVATION])
         # The first of these jobs follows the last one before them.
         for earlier, later in ((self._last, jobs[:, : self._last.shape[1]]), (jobs[:, :-1], jobs[:, 1:])):
-            self._between_jobs.add(_between(earlier, later), later[Job.INSTANCE], later[Job.ACTIVATION])
+            self._between_jobs.add(times_between(earlier, later), later[Job.INSTANCE], later[Job.ACTIVATION])
         self._last = jobs[:, -1:].copy()
 
     @property
@@ -125,32 +102,5 @@ def add_rows(rows: Numbers, processes: Sequence[JobMetrics]) -> None:
 
 
 def _own(jobs: Numbers) -> Numbers:
-    found = np.empty((len(OWN) + len(_COUNTS), jobs.shape[1]), np.int64)
-    net, gross, response, pending, ready, preemption, running, waiting, polling, parking, *counts = found
-    running[:], waiting[:], polling[:], parking[:] = (
-        jobs[column] for column in (Job.RUNNING, Job.WAITING, Job.POLLING, Job.PARKING)
-    )
-    np.subtract(jobs[Job.END], jobs[Job.START], out=gross)
-    np.subtract(jobs[Job.END], jobs[Job.ACTIVATION], out=response)
-    np.subtract(jobs[Job.START], jobs[Job.ACTIVATION], out=pending)
-    np.add(running, waiting, out=net)
-    net += polling
-    np.subtract(gross, net, out=ready)
-    ready -= parking
-    np.add(pending, ready, out=preemption)
-    for row, column in zip(counts, _COUNTS, strict=True):
-        row[:] = jobs[column]
-    return found
-
-
-def _between(earlier: Numbers, later: Numbers) -> Numbers:
-    found = np.empty((len(BETWEEN), later.shape[1]), np.int64)
-    ends = (
-        (Job.ACTIVATION, Job.ACTIVATION),
-        (Job.START, Job.START),
-        (Job.END, Job.END),
-        (Job.END, Job.START),
-    )
-    for row, (begin, end) in zip(found, ends, strict=True):
-        np.subtract(later[end], earlier[begin], out=row)
-    return found
+    """The times of jobs, and how often each was preempted and moved."""
+    return np.concatenate([own_times(jobs), jobs[list(_COUNTS)]])

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 #: Bit of an identifier that says that it has 29 bits: 0x123 and 0x00000123 are different ones.
 EXTENDED = 1 << 31
+#: Bit that says that it is a frame of CAN XL, which has a priority in the place of an identifier.
+XL = 1 << 32
 
 
 class FrameKind(IntEnum):
@@ -33,9 +35,9 @@ class FrameTable:
     Attributes
     ----------
     channels : names of the buses, the same for all tables of a log so far
-    time : picoseconds, as the log states them, int64
+    time : picoseconds from the origin of the log, int64; of a gap, that of the frame before it
     channel : index into `channels`, int16
-    identifier : with the bit `EXTENDED` if it has 29 bits, int64
+    identifier : with the bit `EXTENDED` if it has 29 bits, or `XL`; of an error the bits of its class; of a gap 0; int64
     kind : of `FrameKind`, int8
     line : number of the line or of the record in the file, from 1, int64
     data : the payload of each frame
@@ -52,6 +54,18 @@ class FrameTable:
     def __len__(self) -> int:
         return len(self.time)
 
+    def take(self, places: NDArray[np.int64]) -> FrameTable:
+        """The rows at some places, in that order."""
+        return FrameTable(
+            self.channels,
+            self.time[places],
+            self.channel[places],
+            self.identifier[places],
+            self.kind[places],
+            self.line[places],
+            [self.data[place] for place in places.tolist()],
+        )
+
 
 class CanLog(Protocol):
     """Gives the frames of a log file; it can be used once.
@@ -59,7 +73,9 @@ class CanLog(Protocol):
     Attributes
     ----------
     findings : the problems met so far; everything else has been read
-    resolution : smallest step of the time stamps in picoseconds; None if the format does not say
+    resolution : smallest step of the time stamps in picoseconds; None if the format does not say, or nothing has been read
+    origin : what the times of the frames have to be added to, to get those of the log, in picoseconds: 64 bits are too few for
+        picoseconds since 1970; 0 until something has been read
     """
 
     @property
@@ -69,6 +85,10 @@ class CanLog(Protocol):
     @property
     def resolution(self) -> int | None:
         """The step of the time stamps."""
+
+    @property
+    def origin(self) -> int:
+        """The time in the log that is time 0 of the frames."""
 
     def __iter__(self) -> Iterator[FrameTable]:
         """The frames, in consecutive tables."""

@@ -1,0 +1,131 @@
+"""Latencies of chains from the steps that a trace has of them.
+
+A chain begins with the activation of the job that makes its first step, or with its start if that is known of the chain; if the trace
+does not have that, with the step. Where the chain of a model begins later in that job, the measured latencies are longer than those of
+the model. It ends with the last step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amalthea_uros.measure.reactions import BY_NUMBER, LatencyLists
+from amalthea_uros.measure.series import Counts, Series
+from amalthea_uros.timing.route_latencies import RouteLatencies
+from amalthea_uros.trace.table import NO_NOTE, EventKind, EventTable
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.int64]
+
+#: Numbers of jobs have fewer bits.
+_BITS = 40
+#: The events of a job with which a chain can begin, in words.
+_BEGINS = {EventKind.ACTIVATE: "activation", EventKind.START: "start"}
+
+
+@dataclass(frozen=True, slots=True)
+class _Steps:
+    """The first and the last steps of a chain, in the order of time; `stimulus` is the number of the stimulus."""
+
+    time: Numbers
+    stimulus: Numbers
+    segment: Numbers
+    is_response: NDArray[np.bool_]
+
+    @property
+    def has_several_routes(self) -> bool:
+        """Whether stimuli of several routes have the same numbers, so that it is not known which of them a response shows."""
+        first = self.stimulus[~self.is_response]
+        return len(np.unique(first)) < len(first)
+
+
+@dataclass(slots=True)
+class ChainSteps:
+    """Collects the steps of all chains of a trace.
+
+    Attributes
+    ----------
+    starts : of chains that do not begin with the activation of a job: with which event they do
+    ambiguous : the chains with several routes, which are not measured
+    """
+
+    starts: Mapping[str, EventKind] = field(default_factory=dict)
+    gaps: int = 0
+    ambiguous: list[str] = field(default_factory=list)
+    _steps: list[Numbers] = field(default_factory=list)
+    _begins: dict[EventKind, list[Numbers]] = field(default_factory=lambda: {kind: [] for kind in _BEGINS})
+
+    def add(self, table: EventTable) -> None:
+        """Take events in."""
+        segment = self.gaps + np.cumsum(table.kind == EventKind.GAP)
+        self.gaps += int(np.count_nonzero(table.kind == EventKind.GAP))
+        is_step = (table.kind == EventKind.CHAIN_STEP) & (table.note != NO_NOTE)
+        if is_step.any():
+            job = _job(table.source, table.source_instance)
+            columns = (table.time, table.target.astype(np.int64), table.target_instance, table.note, segment, job)
+            self._steps.append(np.array([column[is_step] for column in columns]))
+        for kind, found in self._begins.items():
+            here = table.kind == kind
+            found.append(np.array([_job(table.target[here], table.target_instance[here]), table.time[here]]))
+
+    def series(self, names: Sequence[str]) -> Iterator[Series]:
+        """The latencies of each chain, by the number of the stimulus."""
+        if not self._steps:
+            return
+        steps = np.concatenate(self._steps, axis=1)
+        for number in np.unique(steps[1]).tolist():
+            found = self._ends(steps[:, steps[1] == number], self.starts.get(names[number], EventKind.ACTIVATE))
+            if found.has_several_routes:
+                self.ambiguous.append(names[number])
+            else:
+                yield from _latencies(names[number], found, self.starts.get(names[number], EventKind.ACTIVATE))
+
+    def _ends(self, steps: Numbers, begin: EventKind) -> _Steps:
+        time, _, stimulus, step, segment, job = steps
+        is_first, is_last = step == 0, step == step.max()
+        times = np.concatenate([self._begun(begin, job[is_first], time[is_first]), time[is_last]])
+        is_response = np.repeat([False, True], [np.count_nonzero(is_first), np.count_nonzero(is_last)])
+        order = np.lexsort((is_response, times))
+        stimuli, segments = (np.concatenate([column[is_first], column[is_last]])[order] for column in (stimulus, segment))
+        return _Steps(times[order], stimuli, segments, is_response[order])
+
+    def _begun(self, kind: EventKind, jobs: Numbers, otherwise: Numbers) -> Numbers:
+        """When jobs were activated or started, or another time where the trace does not say it."""
+        known, times = np.concatenate(self._begins[kind], axis=1)
+        order = np.argsort(known, kind="stable")
+        place = np.searchsorted(known, jobs, sorter=order)
+        found = order[np.minimum(place, max(len(order) - 1, 0))] if len(order) else np.zeros(0, np.int64)
+        if not len(found):
+            return otherwise
+        return np.where(known[found] == jobs, times[found], otherwise)
+
+
+def _latencies(name: str, steps: _Steps, begin: EventKind) -> Iterator[Series]:
+    found, unanswered = LatencyLists(), 0
+    for part in np.unique(steps.segment).tolist():
+        here = steps.segment == part
+        is_response, stimulus = steps.is_response[here], steps.stimulus[here]
+        latencies = RouteLatencies(found.note)
+        latencies.add(is_response, steps.time[here], _in_order(is_response, stimulus))
+        unanswered += latencies.stimuli - 1 - latencies.answered
+    method = f"from the {_BEGINS[begin]} of the job with the first step to the last step, by the number of the stimulus"
+    yield from found.series(name, Counts(incomplete=unanswered), method, BY_NUMBER)
+
+
+def _in_order(is_response: NDArray[np.bool_], stimulus: Numbers) -> Numbers:
+    """Of each event the place of its stimulus among those of this part of the trace; -1 if that is not in it."""
+    known = np.sort(stimulus[~is_response])
+    if not len(known):
+        return np.full(len(stimulus), -1)
+    place = np.searchsorted(known, stimulus)
+    return np.where(known[np.minimum(place, len(known) - 1)] == stimulus, place, -1)
+
+
+def _job(process: NDArray[np.int32], instance: Numbers) -> Numbers:
+    return process.astype(np.int64) << _BITS | instance

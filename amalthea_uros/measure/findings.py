@@ -1,0 +1,68 @@
+"""What to know of measured values before they are used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.measure.baselines import WITH_COST
+from amalthea_uros.measure.series import Measurement, Series
+from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.units import Time, time_text
+
+#: Shorter times are measured too coarsely, in steps of the clock.
+_FEWEST_STEPS = 10
+
+
+def judged(measurement: Measurement) -> Iterator[Finding]:
+    """The findings about the measured values."""
+    place = Location(Path(measurement.source))
+    if not any(series.statistics is not None for series in measurement.series):
+        message = "nothing was measured: the trace has no complete job, interval or chain in this part"
+        yield Finding("MEA005", Severity.ERROR, message, place, "Check what was recorded, and the markers.")
+    seen: set[str] = set()
+    for series in measurement.series:
+        if series.name not in seen:
+            seen.add(series.name)
+            yield from _uncounted(series, place)
+        yield from _baseline(series, place)
+    yield from _coarse(measurement, place)
+
+
+def _uncounted(series: Series, place: Location) -> Iterator[Finding]:
+    counts = series.counts
+    problems = {"lost": counts.lost, "duplicated": counts.duplicated, "reordered": counts.reordered}
+    told = ", ".join(f"{number:,} {what}" for what, number in problems.items() if number)
+    if told:
+        severity = Severity.WARNING if counts.lost or counts.reordered else Severity.INFO
+        yield Finding(
+            "MEA006", severity, f"events of {series.name!r}: {told}; they are not measured", place, object=series.name
+        )
+
+
+def _coarse(measurement: Measurement, place: Location) -> Iterator[Finding]:
+    resolution = measurement.resolution
+    shortest = {series.name: series for series in reversed(measurement.series) if series.quantity in WITH_COST}
+    for series in shortest.values():
+        found = series.statistics
+        if resolution is not None and found is not None and 0 < found.mean < _FEWEST_STEPS * resolution:
+            yield _few_steps(series, found, resolution, place)
+
+
+def _few_steps(series: Series, found: Statistics, resolution: Time, place: Location) -> Finding:
+    error = float(100 * resolution / found.mean)
+    message = (
+        f"the {series.quantity.replace('_', ' ')} of {series.name!r} is about {counted(round(found.mean / resolution), 'step')} of the "
+        f"clock ({time_text(resolution)}): a single value is only known to +-{error:.0f} %"
+    )
+    return Finding("MEA007", Severity.WARNING, message, place, "Use a finer clock, or the mean of many values.", series.name)
+
+
+def _baseline(series: Series, place: Location) -> Iterator[Finding]:
+    if series.baseline is not None and series.statistics is not None and series.statistics.min < 0:
+        mean = time_text(round(series.baseline.mean))
+        message = f"the mean of the baseline, {mean}, is longer than the shortest time of {series.name!r}"
+        help_ = "Check that the baseline is of an empty object with the same period and on the same core."
+        yield Finding("MEA008", Severity.WARNING, message, place, help_, series.name)

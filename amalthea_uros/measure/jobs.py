@@ -1,0 +1,288 @@
+"""Jobs and executions of runnables from the events of a trace, by the state chart of BTF.
+
+A job counts if the trace has all of it: its start, each change of its state, and its end. Jobs at the edges of the trace and at gaps
+do not. The times follow from when a job was activated, started and ended, and how long it was in which state, as in the simulation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amalthea_uros.measure.series import Counts, Kind, Series
+from amalthea_uros.measure.statistics import statistics_of
+from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.job_times import BETWEEN, OWN, Job, own_times, times_between
+from amalthea_uros.trace.charts import PROCESS
+from amalthea_uros.trace.table import EventKind, EventTable
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.int64]
+
+#: What the states of a job count as; in READY no time is counted.
+_COLUMNS = {"running": Job.RUNNING, "waiting": Job.WAITING, "polling": Job.POLLING, "parking": Job.PARKING}
+_STATES = {int(kind): (before, after) for kind, (before, after) in PROCESS.items()}
+_UNACTIVATED = -1
+#: Those that begin at the activation of the job.
+_FROM_ACTIVATION = {
+    *(JobMetric.RESPONSE_TIME, JobMetric.INITIAL_PENDING_TIME, JobMetric.PREEMPTION_TIME, JobMetric.ACTIVATE_TO_ACTIVATE)
+}
+
+
+class _Open:
+    """A job that has not ended.
+
+    Attributes
+    ----------
+    state : since `since`
+    times : in the states of `_COLUMNS`, up to `since`
+    runnables : those in execution: number, instance, start, `times` at the start
+    is_process : whether it has events of its own; of other jobs only runnables are known
+    """
+
+    __slots__ = ("activation", "is_process", "runnables", "since", "start", "state", "times")
+
+    def __init__(self, state: str, since: int, is_process: bool = True) -> None:
+        self.state, self.since, self.is_process = state, since, is_process
+        self.activation = self.start = _UNACTIVATED
+        self.times = dict.fromkeys(_COLUMNS, 0)
+        self.runnables: list[tuple[int, int, int, dict[str, int]]] = []
+
+    def enter(self, state: str, time: int) -> None:
+        """Change the state."""
+        if self.state in self.times:
+            self.times[self.state] += time - self.since
+        self.state, self.since = state, time
+
+
+@dataclass(slots=True)
+class _Ended:
+    """The jobs of a process, or the executions of a runnable, that are complete.
+
+    Attributes
+    ----------
+    rows : start, end, activation, times in states, whether nothing is missing between it and the one before
+    """
+
+    rows: list[tuple[int, ...]] = field(default_factory=list)
+    segment: int = -1
+    last: int | None = None
+    incomplete: int = 0
+    lost: int = 0
+
+    def add(
+        self, job: int, segment: int, activation: int, start: int, end: int, times: dict[str, int], is_numbered: bool
+    ) -> None:
+        """Add one that has ended."""
+        is_next = segment == self.segment and (not is_numbered or self.last is None or job == self.last + 1)
+        self.rows.append((job, activation, start, end, *times.values(), is_next))
+        self.segment, self.last = segment, job
+
+
+@dataclass(slots=True)
+class JobWalk:
+    """Follows the jobs of a trace, table by table.
+
+    Attributes
+    ----------
+    gaps : number of gaps in the trace
+    illegal : number of events that the state of their job does not allow; the job is dropped
+    """
+
+    gaps: int = 0
+    illegal: int = 0
+    _open: dict[tuple[int, int], _Open] = field(default_factory=dict)
+    _processes: dict[int, _Ended] = field(default_factory=dict)
+    _runnables: dict[tuple[int, int], _Ended] = field(default_factory=dict)
+    #: The greatest number of a job of each process so far.
+    _newest: dict[int, int] = field(default_factory=dict)
+
+    def add(self, table: EventTable) -> None:
+        """Take events in."""
+        columns = (table.time, table.kind, table.source, table.source_instance, table.target, table.target_instance)
+        for time, kind, source, source_instance, target, instance in zip(*(each.tolist() for each in columns), strict=True):
+            if kind in _STATES:
+                self._change(time, kind, target, instance)
+            elif EventKind.RUNNABLE_START <= kind <= EventKind.RUNNABLE_TERMINATE:
+                self._execute(time, kind, source, source_instance, target, instance)
+            elif kind == EventKind.GAP:
+                self._drop_all()
+
+    def finish(self) -> None:
+        """Drop the jobs that have not ended."""
+        for key in list(self._open):
+            self._drop(key)
+
+    # Jobs.
+
+    def _change(self, time: int, kind: int, process: int, instance: int) -> None:
+        key, (before, after) = (process, instance), _STATES[kind]
+        if kind == EventKind.ACTIVATION_LOST:
+            return
+        job = self._open.get(key)
+        if job is None or not job.is_process:
+            if not self._begin(time, kind, key):
+                return
+        elif job.state not in before:
+            self.illegal += 1
+            self._drop(key)
+            self._begin(time, kind, key)
+        elif kind == EventKind.TERMINATE:
+            self._end(time, key, job)
+        else:
+            if kind == EventKind.START:
+                job.start = time
+            job.enter(after, time)
+
+    def _begin(self, time: int, kind: int, key: tuple[int, int]) -> bool:
+        """Whether an event begins a job that can be followed; of others the start is not in the trace."""
+        if kind not in (EventKind.ACTIVATE, EventKind.START):
+            if kind == EventKind.TERMINATE:
+                self._of(key[0]).incomplete += 1
+            return False
+        self._number(key)
+        job = self._open[key] = _Open(_STATES[kind][1], time)
+        if kind == EventKind.ACTIVATE:
+            job.activation = time
+        else:
+            job.start = time
+        return True
+
+    def _number(self, key: tuple[int, int]) -> None:
+        """Count the numbers of jobs that are missing before this one."""
+        process, instance = key
+        newest = self._newest.get(process)
+        if newest is not None and instance > newest + 1:
+            self._of(process).lost += instance - newest - 1
+        self._newest[process] = instance if newest is None else max(newest, instance)
+
+    def _end(self, time: int, key: tuple[int, int], job: _Open) -> None:
+        del self._open[key]
+        job.enter("terminated", time)
+        for runnable, *_ in job.runnables:
+            self._of_runnable(key[0], runnable).incomplete += 1
+        self._of(key[0]).add(key[1], self.gaps, job.activation, job.start, time, job.times, is_numbered=True)
+
+    def _drop_all(self) -> None:
+        self.gaps += 1
+        for key in list(self._open):
+            self._drop(key)
+
+    def _drop(self, key: tuple[int, int]) -> None:
+        job = self._open.pop(key)
+        if job.is_process:
+            self._of(key[0]).incomplete += 1
+        for runnable, *_ in job.runnables:
+            self._of_runnable(key[0], runnable).incomplete += 1
+
+    # Runnables.
+
+    def _execute(self, time: int, kind: int, process: int, job_number: int, runnable: int, instance: int) -> None:
+        key = process, job_number
+        job = self._open.get(key)
+        if job is None:
+            if kind != EventKind.RUNNABLE_START:
+                if kind == EventKind.RUNNABLE_TERMINATE:
+                    self._of_runnable(process, runnable).incomplete += 1
+                return
+            job = self._open[key] = _Open("running", time, is_process=False)
+        if kind == EventKind.RUNNABLE_START:
+            job.enter(job.state, time)
+            job.runnables.append((runnable, instance, time, dict(job.times)))
+        elif kind == EventKind.RUNNABLE_TERMINATE:
+            self._end_runnable(time, key, job, runnable, instance)
+        elif not job.is_process:
+            # Nothing is known of the process, so that it pauses with its runnable.
+            job.enter("ready" if kind == EventKind.RUNNABLE_SUSPEND else "running", time)
+
+    def _end_runnable(self, time: int, key: tuple[int, int], job: _Open, runnable: int, instance: int) -> None:
+        index = next((i for i, each in reversed(list(enumerate(job.runnables))) if each[:2] == (runnable, instance)), None)
+        if index is None:
+            self._of_runnable(key[0], runnable).incomplete += 1
+            return
+        # Inner ones of which the end is missing.
+        for inner, *_ in job.runnables[index + 1 :]:
+            self._of_runnable(key[0], inner).incomplete += 1
+        _, _, start, before = job.runnables[index]
+        del job.runnables[index:]
+        job.enter(job.state, time)
+        times = {state: passed - before[state] for state, passed in job.times.items()}
+        ended = self._of_runnable(key[0], runnable)
+        ended.add(instance, self.gaps, job.activation, start, time, times, is_numbered=False)
+        if not job.is_process and not job.runnables:
+            del self._open[key]
+
+    def _of(self, process: int) -> _Ended:
+        return self._processes.setdefault(process, _Ended())
+
+    def _of_runnable(self, process: int, runnable: int) -> _Ended:
+        return self._runnables.setdefault((process, runnable), _Ended())
+
+    # Results.
+
+    def series(self, names: list[str]) -> Iterator[Series]:
+        """What was measured, by the names of the entities."""
+        for process, ended in self._processes.items():
+            yield from _series(Kind.PROCESS, names[process], ended)
+        for runnable, parts in self._by_runnable().items():
+            yield from _series(Kind.RUNNABLE, names[runnable], parts)
+
+    def _by_runnable(self) -> dict[int, _Ended]:
+        """The executions of each runnable in all processes, in the order of their ends."""
+        found: dict[int, _Ended] = {}
+        for (_, runnable), ended in self._runnables.items():
+            whole = found.setdefault(runnable, _Ended())
+            whole.rows += ended.rows
+            whole.incomplete += ended.incomplete
+        for whole in found.values():
+            whole.rows.sort(key=lambda row: row[3])
+        return found
+
+
+def _series(kind: Kind, name: str, ended: _Ended) -> Iterator[Series]:
+    counts = Counts(incomplete=ended.incomplete, lost=ended.lost)
+    if not ended.rows:
+        yield Series(kind=kind, name=name, quantity=JobMetric.RESPONSE_TIME, statistics=None, counts=counts)
+        return
+    jobs, follows = _table(ended)
+    is_activated = jobs[Job.ACTIVATION] != _UNACTIVATED
+    for metric, values in zip(OWN, own_times(jobs), strict=True):
+        yield from _of_metric(kind, name, metric, values, jobs[Job.END], is_activated, counts)
+    values = times_between(jobs[:, :-1], jobs[:, 1:])
+    is_known = follows[1:]
+    both = is_activated[1:] & is_activated[:-1]
+    for metric, row in zip(BETWEEN, values, strict=True):
+        yield from _of_metric(kind, name, metric, row[is_known], jobs[Job.END, 1:][is_known], both[is_known], counts)
+
+
+def _table(ended: _Ended) -> tuple[Numbers, NDArray[np.bool_]]:
+    """A column for each job, a row for each of `Job`; and whether each follows the one before."""
+    rows = np.array(ended.rows, np.int64).T
+    jobs = np.zeros((len(Job), rows.shape[1]), np.int64)
+    jobs[[Job.INSTANCE, Job.ACTIVATION, Job.START, Job.END, *_COLUMNS.values()]] = rows[:-1]
+    return jobs, rows[-1].astype(bool)
+
+
+def _of_metric(
+    kind: Kind, name: str, metric: JobMetric, values: Numbers, ends: Numbers, is_activated: NDArray[np.bool_], counts: Counts
+) -> Iterator[Series]:
+    if metric in _FROM_ACTIVATION:
+        values, ends = values[is_activated], ends[is_activated]
+    if len(values):
+        statistics = statistics_of(values)
+        method = "from the events of jobs" if kind is Kind.PROCESS else "from the events of runnables and their jobs"
+        yield Series(
+            kind=kind,
+            name=name,
+            quantity=metric,
+            statistics=statistics,
+            values=values,
+            times=ends,
+            counts=counts,
+            method=method,
+        )

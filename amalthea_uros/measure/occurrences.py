@@ -1,0 +1,129 @@
+"""Where markers occur in a log: one walk over the frames, of which only the marked ones are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amalthea_uros.measure.markers import Marker
+from amalthea_uros.measure.window import Window
+from amalthea_uros.trace.can.frames import FrameKind, FrameTable
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Occurrences:
+    """The frames of some markers, in the order of the log.
+
+    Attributes
+    ----------
+    time : picoseconds from the first frame of the log
+    marker : index of the marker
+    channel : index of the bus
+    segment : number of the part of the log between two gaps, from 0
+    data : the payloads
+    """
+
+    time: Numbers
+    marker: Numbers
+    channel: Numbers
+    segment: Numbers
+    data: Sequence[bytes]
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def where(self, is_kept: NDArray[np.bool_]) -> Occurrences:
+        """Those for which a value is true."""
+        data = [self.data[number] for number in np.flatnonzero(is_kept).tolist()]
+        return Occurrences(self.time[is_kept], self.marker[is_kept], self.channel[is_kept], self.segment[is_kept], data)
+
+
+@dataclass(slots=True)
+class Collector:
+    """Collects the occurrences of markers, and what a log is like.
+
+    Attributes
+    ----------
+    window : only frames in it are used
+    frames, gaps : numbers in the window
+    channels : names of the buses
+    first, last : time of the first frame, and the latest one, in picoseconds as the log states them; None: there is none
+    seen : how often identifiers occur on which bus: (channel, identifier) -> number
+    """
+
+    markers: Sequence[Marker]
+    window: Window
+    frames: int = 0
+    gaps: int = 0
+    channels: Sequence[str] = ()
+    first: int | None = None
+    last: int | None = None
+    seen: dict[tuple[int, int], int] = field(default_factory=dict)
+    _parts: list[Occurrences] = field(default_factory=list)
+
+    def add_all(self, tables: Iterable[FrameTable]) -> None:
+        """Take the tables of a log in."""
+        for table in tables:
+            if len(table):
+                self._add(table)
+
+    def _add(self, table: FrameTable) -> None:
+        self.channels = table.channels
+        if self.first is None:
+            self.first = int(table.time[0])
+        time = table.time - self.first
+        is_inside = self.window.holds(time)
+        if not is_inside.any():
+            return
+        is_gap = (table.kind == FrameKind.GAP) & is_inside
+        segment = self.gaps + np.cumsum(is_gap)
+        self.gaps += int(np.count_nonzero(is_gap))
+        is_frame = (table.kind == FrameKind.DATA) & is_inside
+        self.frames += int(np.count_nonzero(is_frame))
+        if is_frame.any():
+            latest = int(table.time[is_frame].max())
+            self.last = latest if self.last is None else max(self.last, latest)
+        self._count(table, is_frame)
+        found = [self._found(table, is_frame, marker) for marker in self.markers]
+        rows = np.concatenate([np.empty(0, np.int64), *found])
+        which = np.repeat(np.arange(len(found)), [len(each) for each in found])
+        order = np.argsort(rows, kind="stable")
+        rows, which = rows[order], which[order]
+        data = [table.data[row] for row in rows.tolist()]
+        self._parts.append(Occurrences(time[rows], which, table.channel[rows].astype(np.int64), segment[rows], data))
+
+    def _count(self, table: FrameTable, is_frame: NDArray[np.bool_]) -> None:
+        keys, numbers = np.unique(table.identifier[is_frame] << 16 | table.channel[is_frame], return_counts=True)
+        for key, number in zip(keys.tolist(), numbers.tolist(), strict=True):
+            place = key & 0xFFFF, key >> 16
+            self.seen[place] = self.seen.get(place, 0) + number
+
+    def _found(self, table: FrameTable, is_frame: NDArray[np.bool_], marker: Marker) -> Numbers:
+        """The rows of a marker."""
+        is_found = is_frame & (table.identifier == marker.identifier)
+        if marker.channel is not None:
+            if marker.channel not in table.channels:
+                return np.empty(0, np.int64)
+            is_found &= table.channel == table.channels.index(marker.channel)
+        rows = np.flatnonzero(is_found)
+        if marker.data:
+            rows = rows[np.array([marker.fits(table.data[row]) for row in rows.tolist()], bool)]
+        return rows
+
+    @property
+    def occurrences(self) -> Occurrences:
+        """All that were found so far."""
+        empty = np.empty(0, np.int64)
+        parts = [Occurrences(empty, empty, empty, empty, []), *self._parts]
+        time, marker, channel, segment = (
+            np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "marker", "channel", "segment")
+        )
+        return Occurrences(time, marker, channel, segment, [data for part in parts for data in part.data])

@@ -1,0 +1,18 @@
+"""A measurement as the table of its values, which `amuros measure` reads again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import repeat
+
+from amalthea_uros.measure.series import Measurement
+
+
+def rows(measurement: Measurement) -> Iterator[Sequence[object]]:
+    """A row for each value; series of which only statistics are known have none."""
+    yield ("object", "kind", "quantity", "time_ps", "value_ps")
+    for series in measurement.series:
+        if series.values is not None:
+            times = repeat("", len(series.values)) if series.times is None else series.times.tolist()
+            for time, value in zip(times, series.values.tolist(), strict=True):
+                yield series.name, series.kind, series.quantity, time, value

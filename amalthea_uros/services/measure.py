@@ -1,0 +1,212 @@
+"""What was measured in a trace."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from hashlib import file_digest
+from pathlib import Path
+
+from amalthea_uros._internal.files import is_stream
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.measure.baselines import WITH_COST, without
+from amalthea_uros.measure.findings import judged
+from amalthea_uros.measure.markers import Marker, MarkerChain, MarkerPair, Measurable, parse_marker, refuse_overlap
+from amalthea_uros.measure.series import Measurement, Series
+from amalthea_uros.measure.window import Window
+from amalthea_uros.names import require
+from amalthea_uros.services.marker_files import counter_of, read_markers
+from amalthea_uros.services.measured_events import chain_starts, measured_events
+from amalthea_uros.services.measured_frames import measured_frames
+from amalthea_uros.services.measured_values import is_value_table, measured_values
+from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.services.signals import Signals
+from amalthea_uros.services.simulate import time_of
+from amalthea_uros.services.subject import Subject, system_of
+from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.trace.can.logs import is_can_log
+from amalthea_uros.trace.readers import READERS
+from amalthea_uros.trace.table import EventKind
+from amalthea_uros.units import Time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeasureOptions:
+    """How a trace is measured.
+
+    Attributes
+    ----------
+    markers : a file that names objects and their markers in CAN logs
+    start, end, name, counter : a single object of a CAN log
+    dbc : the file that describes the messages of the bus
+    channel : the only bus of a CAN log that is used
+    baselines : objects, and the empty ones whose times are subtracted from theirs; "" stands for all others
+    baseline_from : another trace, in which the empty objects are
+    period : the standard period, from which the distances of starts deviate
+    window : the part of the trace that is measured
+    select : the only objects of the result; empty: all
+    chain_starts : of chains that begin with the start of a job instead of its activation: that; `chain_starts` finds them in a model
+    """
+
+    markers: Path | None = None
+    start: Marker | None = None
+    end: Marker | None = None
+    name: str = "interval"
+    counter: str | None = None
+    dbc: Path | None = None
+    channel: str | None = None
+    baselines: Mapping[str, str] = field(default_factory=dict)
+    baseline_from: Path | None = None
+    period: Time | None = None
+    window: Window = field(default_factory=Window)
+    select: tuple[str, ...] = ()
+    chain_starts: Mapping[str, EventKind] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if (self.start is None) != (self.end is None):
+            missing, given = ("end", "start") if self.end is None else ("start", "end")
+            raise InvalidArgumentError(f"an interval needs two markers; add --{missing} to --{given}")
+        if self.start is not None and self.end is not None:
+            try:
+                refuse_overlap(self.start, self.end)
+            except ValueError as error:
+                raise InvalidArgumentError(str(error)) from None
+        if self.counter is not None and self.start is None:
+            raise InvalidArgumentError(
+                "a counter belongs to a start and an end; add --start and --end, or state it in the markers"
+            )
+        if self.baseline_from is not None and not self.baselines and self.markers is None:
+            raise InvalidArgumentError("a trace for baselines needs the name of the empty object; add --baseline NAME")
+
+
+def measure(
+    trace: StrPath,
+    *,
+    markers: StrPath | None = None,
+    start: str | None = None,
+    end: str | None = None,
+    name: str = "interval",
+    counter: str | None = None,
+    dbc: StrPath | None = None,
+    channel: str | None = None,
+    baseline: str | Mapping[str, str] | None = None,
+    baseline_from: StrPath | None = None,
+    period: str | Time | None = None,
+    window: tuple[str | Time, str | Time | None] = (0, None),
+    select: Iterable[str] = (),
+    model: Subject | None = None,
+) -> Measurement:
+    """Measure the times in a trace: of processes, runnables and chains, or of what markers in a CAN log delimit.
+
+    Parameters
+    ----------
+    trace : a CAN log (candump .log; .asc, .blf, .trc, .mf4 with `pip install amuros[can]`), a trace of events such as .btf, or measured
+        values as .csv
+    markers : a YAML file with the markers of a CAN log by the names of what they delimit
+    start, end, name : the markers of one object instead, e.g. "0x18000001", and its name
+    counter : where the number of the job is in the payload of both, e.g. "byte 0", or a signal, e.g. "Debug.Counter"
+    dbc : the description of the messages, for signals
+    channel : the only bus that is used, e.g. "can0"
+    baseline : the name of an empty object, whose times are subtracted from those of all others; or objects with theirs
+    baseline_from : another trace with the empty objects
+    period : the standard period; the deviation of the distances of starts from it is the jitter of AUTOSAR
+    window : the part of the trace that is measured, from its first event on
+    select : the objects of the result; by default all
+    model : what describes the system of a trace of events, so that chains begin as they do in it; by default, at the activation of the job
+        with their first step
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in the markers is wrong.
+    InvalidArgumentError : an option that cannot be right, or a package that is missing.
+    """
+    options = MeasureOptions(
+        markers=None if markers is None else Path(markers),
+        start=None if start is None else parse_marker(start),
+        end=None if end is None else parse_marker(end),
+        name=name,
+        counter=counter,
+        dbc=None if dbc is None else Path(dbc),
+        channel=channel,
+        baselines={} if baseline is None else {"": baseline} if isinstance(baseline, str) else dict(baseline),
+        baseline_from=None if baseline_from is None else Path(baseline_from),
+        period=None if period is None else time_of(period),
+        window=Window(time_of(window[0]), None if window[1] is None else time_of(window[1])),
+        select=tuple(select),
+        chain_starts={} if model is None else chain_starts(system_of(model)),
+    )
+    return measure_file(as_paths(trace)[0], options)
+
+
+def measure_file(path: Path, options: MeasureOptions) -> Measurement:
+    """Measure the times in a trace.
+
+    Raises
+    ------
+    ReadError, InvalidArgumentError : as for `measure`.
+    """
+    objects = _objects(options)
+    found = _measured(path, objects, options)
+    baselines = {item.name: item.baseline for item in objects if not isinstance(item, MarkerChain) and item.baseline}
+    baselines |= options.baselines
+    if baselines:
+        from_trace = found if options.baseline_from is None else _measured(options.baseline_from, objects, options)
+        found = _net(found, from_trace, baselines)
+    if options.period is not None:
+        found = replace(found, series=tuple(_with_period(series, options.period) for series in found.series))
+    if options.select:
+        require("measured object", options.select, dict.fromkeys(series.name for series in found.series))
+        found = replace(found, series=tuple(series for series in found.series if series.name in options.select))
+    return replace(found, findings=(*found.findings, *judged(found)))
+
+
+def _objects(options: MeasureOptions) -> tuple[Measurable, ...]:
+    signals = Signals(options.dbc)
+    objects: tuple[Measurable, ...] = ()
+    if options.markers is not None:
+        objects = read_markers(options.markers, signals)
+    if options.start is not None and options.end is not None:
+        counter = None if options.counter is None else counter_of(options.counter, signals)
+        objects = (*objects, MarkerPair(name=options.name, start=options.start, end=options.end, counter=counter))
+    return objects
+
+
+def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions) -> Measurement:
+    name = path.name.lower().removesuffix(".gz")
+    if is_can_log(path) or (objects and not name.endswith((".csv", *READERS))):
+        found = measured_frames(path, objects, options.window, options.channel)
+    elif objects:
+        raise InvalidArgumentError(f"{path.name!r} is not a log of a CAN bus, so it has no frames with markers; omit them")
+    elif is_value_table(path):
+        found = measured_values(path, options.window)
+    else:
+        found = measured_events(path, options.window, options.chain_starts)
+    return replace(found, digest=_digest(path))
+
+
+def _digest(path: Path) -> str:
+    if is_stream(path):
+        return ""
+    with path.open("rb") as stream:
+        return file_digest(stream, "sha256").hexdigest()
+
+
+def _net(found: Measurement, empty: Measurement, baselines: Mapping[str, str]) -> Measurement:
+    """A measurement with the times of the empty objects subtracted from those of others."""
+    require("baseline", baselines.values(), dict.fromkeys(series.name for series in empty.series))
+    require("measured object", (name for name in baselines if name), dict.fromkeys(series.name for series in found.series))
+    empties = set(baselines.values())
+
+    def net(series: Series) -> Series:
+        name = baselines.get(series.name, "" if series.name in empties else baselines.get("", ""))
+        if not name or series.quantity not in WITH_COST:
+            return series
+        cost = next((each for each in empty.series if each.name == name and each.quantity in WITH_COST), None)
+        return series if cost is None or cost.statistics is None else without(series, cost.statistics)
+
+    return replace(found, series=tuple(map(net, found.series)))
+
+
+def _with_period(series: Series, period: Time) -> Series:
+    is_distance = series.quantity in (JobMetric.START_TO_START, JobMetric.ACTIVATE_TO_ACTIVATE, JobMetric.END_TO_END)
+    return replace(series, period=series.period or period) if is_distance else series

@@ -1,0 +1,95 @@
+"""What the events of a trace measure: of processes, runnables and chains."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.measure.series import Measurement
+from amalthea_uros.measure.window import Window
+from amalthea_uros.perf.events import ProcessChange, ProcessEvent
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
+from amalthea_uros.trace.readers import open_trace
+from amalthea_uros.trace.table import EventKind
+
+if TYPE_CHECKING:
+    from amalthea_uros.trace.table import EventTable
+
+
+def chain_starts(system: System) -> dict[str, EventKind]:
+    """Of the chains of a system that begin with the start of a job instead of its activation: that."""
+    found = {}
+    for chain in system.chains.values():
+        try:
+            events = {system.events_by_name[way[0]] for way in sequences(unfold(chain, system)[0])}
+        except UnfoldError:
+            continue
+        if all(isinstance(event, ProcessEvent) and event.change is ProcessChange.START for event in events):
+            found[chain.name] = EventKind.START
+    return found
+
+
+def measured_events(path: Path, window: Window, starts: Mapping[str, EventKind]) -> Measurement:
+    """Measure a trace of events.
+
+    Parameters
+    ----------
+    starts : of chains that do not begin with the activation of a job: with which event they do
+
+    Raises
+    ------
+    ReadError : the file cannot be read.
+    InvalidArgumentError : its format is not known.
+    """
+    import numpy as np
+
+    from amalthea_uros.measure.event_chains import ChainSteps
+    from amalthea_uros.measure.jobs import JobWalk
+    from amalthea_uros.measure.resolution import resolution_of
+
+    reader = open_trace(path)
+    jobs, chains = JobWalk(), ChainSteps(starts)
+    first: int | None = None
+    last = 0
+    times = []
+    for table in reader:
+        if not len(table):
+            continue
+        first = int(table.time[0]) if first is None else first
+        part = _from(table, first)
+        part = part.where(window.holds(part.time))
+        jobs.add(part)
+        chains.add(part)
+        times.append(np.unique(part.time))
+        last = max(last, int(part.time[-1])) if len(part) else last
+    jobs.finish()
+    names = [entity.name for entity in reader.entities]
+    findings = [*reader.findings]
+    if jobs.illegal:
+        message = f"{jobs.illegal:,} events that the state of their job does not allow; these jobs are not measured"
+        findings.append(Finding("MEA004", Severity.WARNING, message, Location(path), "Check the trace for lost events."))
+    series = (*jobs.series(names), *chains.series(names))
+    for name in chains.ambiguous:
+        message = (
+            f"the steps of the chain {name!r} are of several routes, which the trace does not tell apart; it is not measured"
+        )
+        findings.append(Finding("MEA011", Severity.WARNING, message, Location(path), "Measure it between markers.", name))
+    return Measurement(
+        source=str(path),
+        format=path.name.lower().removesuffix(".gz").rpartition(".")[2].upper(),
+        digest="",
+        duration=last,
+        resolution=resolution_of(np.concatenate([np.empty(0, np.int64), *times])),
+        series=series,
+        findings=tuple(findings),
+    )
+
+
+def _from(table: EventTable, first: int) -> EventTable:
+    """A table with times from the first event of the trace on."""
+    from dataclasses import replace
+
+    return replace(table, time=table.time - first)

@@ -1,0 +1,68 @@
+"""The operating system: what it costs to activate and end tasks and interrupt service routines."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from amalthea_uros.spec.execution_time import ExecutionTime
+from amalthea_uros.spec.section import Section, Shorthand
+from amalthea_uros.spec.values import OffsetOrNumberZero, described
+
+
+class OverheadTime(ExecutionTime):
+    """A time that the operating system needs: as an execution time, which can also be zero."""
+
+    min: OffsetOrNumberZero | None = None
+    """Best-case time."""
+    avg: OffsetOrNumberZero | None = None
+    """Mean time."""
+    max: OffsetOrNumberZero | None = None
+    """Worst-case time."""
+
+
+class Overhead(Shorthand):
+    """What the operating system adds to each job: a time, or a mapping with the parts before and after what the job does itself."""
+
+    shorthand = ("activation",)
+    plain_value = "All of it, before the first function of the job; `0` for none."
+    nested = OverheadTime
+
+    activation: OverheadTime | None = None
+    """Time before the first function of the job."""
+    termination: OverheadTime | None = None
+    """Time after the last function of the job."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_plain_value(cls, value: Any) -> Any:
+        if isinstance(value, Section) or (isinstance(value, dict) and not cls._is_nested(value)):
+            return value
+        return {"activation": value, "termination": 0}
+
+
+_LEVELS = described(
+    task="In the task itself, at its priority: it delays no task of higher priority.",
+    interrupt="In an interrupt at the time of the activation: it delays all tasks.",
+)
+
+
+class OsOverhead(Section):
+    """Overhead of all tasks and interrupt service routines that state no other one."""
+
+    activation: OverheadTime | None = None
+    """Time per activation of a task, before its first function."""
+    termination: OverheadTime | None = None
+    """Time per job of a task, after its last function."""
+    activations_run_in: Annotated[Literal["task", "interrupt"], _LEVELS] = "task"
+    """Where the work for the activation of a task is executed."""
+    isr: Overhead = Field(default_factory=Overhead)
+    """Time per execution of an interrupt service routine."""
+
+
+class Os(Section):
+    """The operating system."""
+
+    overhead: OsOverhead = Field(default_factory=OsOverhead)
+    """What it costs to activate and end tasks and interrupt service routines; default: nothing."""

@@ -1,0 +1,177 @@
+"""Descriptions of the messages on a CAN bus (DBC files), by cantools, which is optional."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from amalthea_uros._internal.files import FileError, read_bytes
+from amalthea_uros._internal.limits import MODEL_SIZE
+from amalthea_uros._internal.similar import did_you_mean
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import InvalidArgumentError, ReadError
+from amalthea_uros.trace.can.frames import EXTENDED
+from amalthea_uros.units import Time
+
+if TYPE_CHECKING:
+    from cantools.database.can import Message as CantoolsMessage
+    from cantools.database.can import Signal as CantoolsSignal
+
+_MILLISECOND = 10**9
+_CYCLE_TIME = "GenMsgCycleTime"
+#: Stands for a sender or receiver that is not known.
+_NOBODY = "Vector__XXX"
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """A value in the payload of a message: `raw * scale + offset`.
+
+    Attributes
+    ----------
+    bits : of the raw value
+    unit : "" if none is stated
+    """
+
+    name: str
+    bits: int
+    scale: Fraction
+    offset: Fraction
+    unit: str
+    _decode: Callable[[bytes], Mapping[str, Any]] = field(repr=False, compare=False)
+
+    def raw(self, data: bytes) -> Fraction | None:
+        """The value before scaling; None if the payload is too short, or has another signal in this place (multiplexing)."""
+        value = self._decode(data).get(self.name)
+        return None if value is None else Fraction(value)
+
+    def value(self, data: bytes) -> Fraction | None:
+        """The value, exactly; None as for `raw`."""
+        raw = self.raw(data)
+        return None if raw is None else raw * self.scale + self.offset
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """A message.
+
+    Attributes
+    ----------
+    identifier : as in a table of frames: with the bit `EXTENDED` if it has 29 bits
+    length : of the payload in bytes
+    senders, receivers : the nodes, as far as they are stated
+    cycle_time : picoseconds; None if none is stated for this message: the default of the file holds for messages without a cycle, too
+    """
+
+    name: str
+    identifier: int
+    length: int
+    senders: tuple[str, ...]
+    receivers: tuple[str, ...]
+    cycle_time: Time | None
+    signals: Mapping[str, Signal]
+
+
+@dataclass(frozen=True, slots=True)
+class Database:
+    """The messages of a bus, by their names."""
+
+    path: Path
+    messages: Mapping[str, Message]
+
+    def find(self, text: str) -> tuple[Message, Signal]:
+        """The signal that is written as `Message.Signal`.
+
+        Raises
+        ------
+        InvalidArgumentError : there is none.
+        """
+        name, _, signal_name = text.partition(".")
+        message = self.messages.get(name)
+        if message is None:
+            raise InvalidArgumentError(f"{self.path} has no message {name!r}{_hint(name, self.messages)}")
+        signal = message.signals.get(signal_name)
+        if signal is None:
+            hint = _hint(signal_name, message.signals)
+            raise InvalidArgumentError(f"the message {name!r} of {self.path} has no signal {signal_name!r}{hint}")
+        return message, signal
+
+
+def read_dbc(path: Path) -> Database:
+    """Read a DBC file.
+
+    Raises
+    ------
+    InvalidArgumentError : cantools is not installed.
+    ReadError : the file cannot be read, or is not a DBC file; says where.
+    """
+    try:
+        from cantools.database.can import Database as CantoolsDatabase
+    except ImportError as error:
+        raise InvalidArgumentError("DBC files need cantools; install it with: pip install amuros[can]") from error
+    try:
+        text = read_bytes(path, MODEL_SIZE).decode("cp1252", "replace")
+    except FileError as error:
+        raise ReadError([Finding("CAN012", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
+    database = CantoolsDatabase()
+    try:
+        database.add_dbc_string(text)
+    except Exception as error:  # of many kinds: of the parser, of cantools, and of what it uses
+        raise ReadError([_not_dbc(path, error)]) from None
+    return Database(path, {message.name: _message(message) for message in database.messages})
+
+
+def _message(message: CantoolsMessage) -> Message:
+    decode = _decoder(message)
+    return Message(
+        name=message.name,
+        identifier=message.frame_id | (EXTENDED if message.is_extended_frame else 0),
+        length=message.length,
+        senders=tuple(sender for sender in message.senders if sender != _NOBODY),
+        receivers=tuple(sorted(receiver for receiver in message.receivers if receiver != _NOBODY)),
+        cycle_time=_cycle_time(message),
+        signals={signal.name: _signal(signal, decode) for signal in message.signals},
+    )
+
+
+def _signal(signal: CantoolsSignal, decode: Callable[[bytes], Mapping[str, Any]]) -> Signal:
+    return Signal(signal.name, signal.length, _exact(signal.scale), _exact(signal.offset), signal.unit or "", decode)
+
+
+def _decoder(message: CantoolsMessage) -> Callable[[bytes], Mapping[str, Any]]:
+    """What gives the raw values of a payload; none if it does not fit the message."""
+    from cantools.database.errors import DecodeError
+
+    def decode(data: bytes) -> Mapping[str, Any]:
+        try:
+            values = message.decode(data, decode_choices=False, scaling=False)
+        except DecodeError:
+            return {}
+        return values if isinstance(values, dict) else {}
+
+    return decode
+
+
+def _exact(number: float | str) -> Fraction:
+    """The decimal number that the file has: the shortest one that gives the same floating-point number."""
+    return Fraction(str(number))
+
+
+def _cycle_time(message: CantoolsMessage) -> Time | None:
+    """What is stated for the message itself; 0 stands for none."""
+    attribute = message.dbc.attributes.get(_CYCLE_TIME) if message.dbc is not None else None
+    return None if attribute is None else round(_exact(attribute.value) * _MILLISECOND) or None
+
+
+def _not_dbc(path: Path, error: Exception) -> Finding:
+    # Errors of the parser know line and column.
+    line, column = (getattr(error, name, None) for name in ("line", "column"))
+    place = Location(path, line, column) if isinstance(line, int) and isinstance(column, int) else Location(path)
+    return Finding("CAN012", Severity.ERROR, f"not a valid DBC file: {error}", place, "Correct it, or save it again as DBC.")
+
+
+def _hint(name: str, known: Mapping[str, object]) -> str:
+    return f"; {hint}" if (hint := did_you_mean(name, known)) else f"; known: {', '.join(known) or 'none'}"
