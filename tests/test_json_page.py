@@ -47,7 +47,14 @@ RUNS = {
     ),
     "amuros optimize": (
         (
-            *("optimize", ADVANCED, "--limit", "factor-to-output.max_reduced_reaction_time<11ms", "--limit", "Core_0.load<=50%"),
+            *(
+                "optimize",
+                ADVANCED,
+                "--limit",
+                "factor-to-output.max_reduced_reaction_time<11ms",
+                "--limit",
+                "Core_0.load<=50%",
+            ),
             *("--offer", "Executor_Task.period=1ms,2ms"),
         ),
     ),

@@ -28,6 +28,7 @@ from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import settings_options
 from amalthea_uros.optimize import limits as limiting
 from amalthea_uros.optimize.goals import GOALS
+from amalthea_uros.optimize.recorder import INTERRUPTED as ENDED_BY_USER
 from amalthea_uros.report.optimized import closing_line, is_met
 from amalthea_uros.services.design_space import DEFAULT, Vary
 from amalthea_uros.services.optimize import MOST_DESIGNS, MOST_PROPOSALS, Optimization, optimize
@@ -152,7 +153,7 @@ def command(
         show_line(f"wrote proposal {number} to {target}")
     if not is_met(result) and not shows_text(outputs):
         show_line(closing_line(result))
-    sys.exit(INTERRUPTED if result.search.ended == "interrupted" else 0 if is_met(result) else 1)
+    sys.exit(INTERRUPTED if result.search.ended == ENDED_BY_USER else 0 if is_met(result) else 1)
 
 
 @contextmanager

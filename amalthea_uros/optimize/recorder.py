@@ -52,10 +52,7 @@ class Recorder:
         if reason := self.effort.ended():
             raise EndedError(reason)
         rest = self.effort.designs - len(self.found)
-        try:
-            self.found |= dict(zip(new[:rest], self.evaluate(new[:rest]), strict=True))
-        except KeyboardInterrupt:
-            raise EndedError(INTERRUPTED) from None
+        self.found |= dict(zip(new[:rest], self.evaluate(new[:rest]), strict=True))
         self.effort.progress(len(self.found))
         if len(new) > rest:
             raise EndedError(f"the limit of {self.effort.designs:,} designs was reached")

@@ -10,7 +10,7 @@ from amalthea_uros.optimize.enumeration import count_with
 from amalthea_uros.optimize.exhaustive import try_all
 from amalthea_uros.optimize.goals import CHANGES
 from amalthea_uros.optimize.problem import Conclusion, Problem, SearchResult
-from amalthea_uros.optimize.recorder import Effort, EndedError, Recorder
+from amalthea_uros.optimize.recorder import INTERRUPTED, Effort, EndedError, Recorder
 from amalthea_uros.optimize.solvers.annealing import solve_by_annealing
 from amalthea_uros.optimize.solvers.mapping import solve_mapping
 from amalthea_uros.optimize.solvers.offsets import solve_offsets
@@ -32,6 +32,8 @@ def search(problem: Problem, effort: Effort) -> SearchResult:
         return _search(recorded, recorder)
     except EndedError as error:
         return concluded(recorder.found.values(), proof="", ended=str(error))
+    except KeyboardInterrupt:
+        return concluded(recorder.found.values(), proof="", ended=INTERRUPTED)
 
 
 def _search(problem: Problem, recorder: Recorder) -> SearchResult:

@@ -42,6 +42,8 @@ def _write_description(paths: Sequence[Path], changes: Sequence[Change], path: S
     from amalthea_uros.xmi.files import FileText, write_text
 
     if len(paths) != 1 or not is_description(paths[0]):
-        raise InvalidArgumentError(f"{path}: only a proposal for an app.yaml is written as one; give a file with the suffix .amxmi")
+        raise InvalidArgumentError(
+            f"{path}: only a proposal for an app.yaml is written as one; give a file with the suffix .amxmi"
+        )
     text = read_text(paths[0], DESCRIPTION_SIZE)
     write_text(Path(path), FileText(edit_description(text, paths[0], changes).text))

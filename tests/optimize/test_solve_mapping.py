@@ -9,8 +9,8 @@ from design_search import cores_of, mapping_problem
 from design_systems import DESIGN
 
 from amalthea_uros.optimize.problem import Conclusion, Feasibility, Problem
-from amalthea_uros.optimize.solvers.integer_program import solve_program
 from amalthea_uros.optimize.solvers import mapping
+from amalthea_uros.optimize.solvers.integer_program import solve_program
 from amalthea_uros.optimize.solvers.mapping import BranchAndBound, solve_mapping
 from amalthea_uros.optimize.solvers.partition import Partition
 from amalthea_uros.optimize.space import Choice, Kind, Space
