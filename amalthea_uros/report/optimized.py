@@ -12,10 +12,12 @@ from amalthea_uros.optimize.quantities import Dimension, dimension
 from amalthea_uros.optimize.space import Choice, Space
 from amalthea_uros.report.load_text import load_text
 from amalthea_uros.services.optimize import Optimization
-from amalthea_uros.units import time_text
+from amalthea_uros.units import number_text, time_text
 
 #: More values of a choice are only counted.
 _MOST_OPTIONS, _MOST_CHOICES = 6, 12
+#: Larger numbers have an exponent.
+_LONG = 10**15
 
 _GOALS = {
     "latency": "the largest latency of a chain relative to its limit (latency)",
@@ -53,10 +55,15 @@ def goal_text(goal: Goal) -> str:
     return _GOALS.get(goal.name, goal.name)
 
 
+def count_text(count: int) -> str:
+    """A number of designs, which may be very large."""
+    return f"{count:,}" if count < _LONG else number_text(count)
+
+
 def closing_line(result: Optimization) -> str:
     """What the search found and what it proves."""
     search = result.search
-    of = f"{search.tried:,} judged out of {result.space.size:,}"
+    of = f"{search.tried:,} judged out of {count_text(result.space.size)}"
     match search.conclusion:
         case Conclusion.OPTIMAL if not search.best[0].candidate:
             return f"Nothing needs to change: the present design meets all limits{_and_best(result)}"

@@ -13,7 +13,7 @@ from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.optimize.problem import Feasibility
 from amalthea_uros.optimize.quantities import Amount, Dimension, Range, dimension
 from amalthea_uros.report.load_text import load_text
-from amalthea_uros.report.optimized import closing_line, goal_text, limit_text, space_lines
+from amalthea_uros.report.optimized import closing_line, count_text, goal_text, limit_text, space_lines
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.impact_text import cells
 from amalthea_uros.services.optimize import DesignProposal, LimitRow, Optimization
@@ -148,7 +148,7 @@ def _tried(result: Optimization, terminal: Terminal) -> None:
     terminal.heading("Designs")
     width = max(len(name) for name, _, _ in rows)
     for name, number, remark in rows:
-        terminal.line(f"  {name:<{width}}  {number:>7,}{remark}")
+        terminal.line(f"  {name:<{width}}  {count_text(number):>7}{remark}")
 
 
 def _upper(found: Range, quantity: str) -> str:
