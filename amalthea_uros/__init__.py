@@ -9,8 +9,8 @@
 This module is the public interface:
 
 - answers about whatever describes a system (files, the text or content of an `app.yaml`, a model, a system): `analyze`, `simulate`,
-  `what_if`; why, and what would be better: `explain`, `improvements`; their results have `to_records()` and `to_dataframe()`, and
-  notebooks display them as tables
+  `what_if`; why, and what would be better: `explain`, `improvements`, `optimize`; their results have `to_records()` and
+  `to_dataframe()`, and notebooks display them as tables
 - synthetic tasks and chains without any file: `taskset`, `task`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
@@ -116,6 +116,9 @@ if TYPE_CHECKING:
     from amalthea_uros.services.measure import measure as measure
     from amalthea_uros.services.migrate import MigrationResult as MigrationResult
     from amalthea_uros.services.migrate import migrate as migrate
+    from amalthea_uros.services.optimize import DesignProposal as DesignProposal
+    from amalthea_uros.services.optimize import Optimization as Optimization
+    from amalthea_uros.services.optimize import optimize as optimize
     from amalthea_uros.services.settings import CheckSettings as CheckSettings
     from amalthea_uros.services.simulate import CampaignResult as CampaignResult
     from amalthea_uros.services.simulate import SimulationResult as SimulationResult
@@ -192,6 +195,7 @@ _NAMES = {
     "services.improvements": ("Improvement", "Improvements", "improvements"),
     "services.measure": ("measure",),
     "services.migrate": ("MigrationResult", "migrate"),
+    "services.optimize": ("DesignProposal", "Optimization", "optimize"),
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
     "services.sweep": ("SweepResult", "sweep"),

@@ -59,6 +59,19 @@ RUNS = {
         ("compare", "bodas-test-simple.yaml", "stopwatch.csv", "--by", "analysis"),
         ("compare", "counted.amxmi", "stopwatch.csv", "--by", "analysis"),
     ),
+    "amuros optimize": (
+        (
+            *(
+                "optimize",
+                ADVANCED,
+                "--limit",
+                "factor-to-output.max_reduced_reaction_time<11ms",
+                "--limit",
+                "Core_0.load<=50%",
+            ),
+            *("--offer", "Executor_Task.period=1ms,2ms"),
+        ),
+    ),
     "amuros check": (("check", ADVANCED, "--profile", "inchron,ta"),),
     "amuros build": (
         ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),

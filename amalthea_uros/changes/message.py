@@ -13,6 +13,7 @@ from amalthea_uros.perf.stimuli import Arrivals, Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.arrivals import nominal_period
 from amalthea_uros.timing.phases import counters, first_time, with_counters
+from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.units import Time, time_text
 
 
@@ -45,6 +46,21 @@ def _first(system: System, source: str) -> tuple[str, Counter]:
     return next((process, counter) for process, counter in counters(system) if counter.source == source)
 
 
+def _set_period(configuration: Configuration, source: str, period: Time) -> Configuration:
+    """Change how often messages arrive; if all that take them have periods that divide it, they stay regular."""
+    system = configuration.system
+
+    def changed(process: Process, counter: Counter) -> Counter:
+        if counter.source != source:
+            return counter
+        releases = known_releases(process, system)
+        if counter.arrivals is None and releases is not None and period % releases.period == 0:
+            return replace(counter, prescaler=period // releases.period)
+        return replace(counter, arrivals=replace(counter.arrivals or Arrivals(), period=period))
+
+    return configuration._replace(system=with_counters(system, changed))
+
+
 def _arrivals_key(field: str, parse: Callable[[str], Time], show: Callable[[Configuration, str], str]) -> Key[Time]:
     """The key for a field of the arrivals of all that take a message."""
 
@@ -64,6 +80,6 @@ def _arrivals_key(field: str, parse: Callable[[str], Time], show: Callable[[Conf
 #: Most callbacks have a task of the same name with a period and a jitter of its own, so those of arrivals have other names.
 MESSAGE_KEYS: dict[str, Key[Any]] = {
     "phase": Key(duration, _show_phase, _set_phase),
-    "arrival_period": _arrivals_key("period", positive_duration, _show_period),
+    "arrival_period": Key(positive_duration, _show_period, _set_period),
     "arrival_jitter": _arrivals_key("jitter", duration, _show_jitter),
 }

@@ -35,6 +35,7 @@ COMMANDS = {
     "lsp": "Run the language server, for editors.",
     "measure": "Measure the times in a trace: statistics, jitter, histograms.",
     "migrate": "Convert models to another AMALTHEA version.",
+    "optimize": "Search for changes with which all limits are met, each proved by the analysis.",
     "report": "Write a report: one HTML page, or a summary in Markdown.",
     "rules": "List the rules of check.",
     "schema": "Print the JSON Schema of app.yaml.",

@@ -31,6 +31,7 @@ class Evaluation:
     violations : deadline or limit -> by how many picoseconds it is exceeded; None if that is not known
     values : of the goals in their order, less is better; None if unknown
     is_exact : whether all verdicts and values are exact, not bounds
+    is_excluded : whether a lower bound shows that a limit is exceeded, so that the design is not analysed
     broken_rule : the rule of the space that the design breaks, so that it is not analysed; "" if there is none
     reason : why there is no analysis, "" if there is one
     """
@@ -40,6 +41,7 @@ class Evaluation:
     violations: Mapping[str, int | None] = field(default_factory=dict)
     values: tuple[Fraction | None, ...] = ()
     is_exact: bool = False
+    is_excluded: bool = False
     broken_rule: str = ""
     reason: str = ""
 
@@ -88,7 +90,13 @@ class Problem:
 
 
 class Conclusion(StrEnum):
-    """What a search can say in the end; `OPTIMAL` and `NONE` are proved for all designs of the space."""
+    """What a search can say in the end; `OPTIMAL` and `NONE` are proved for all designs of the space.
+
+    Attributes
+    ----------
+    OPTIMAL : no design that is proved to meet all limits is better
+    NONE : each design misses a limit for certain
+    """
 
     OPTIMAL = "optimal"
     BEST_FOUND = "best found"

@@ -31,6 +31,7 @@ from amalthea_uros.report.json import (
     impact,
     measurement,
     migration_result,
+    optimization,
     simulation_result,
 )
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
@@ -41,6 +42,7 @@ from amalthea_uros.services.comparison.results import Comparison, ComparisonRow,
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.improvements import Improvements
 from amalthea_uros.services.migrate import MigrationResult
+from amalthea_uros.services.optimize import DesignProposal, Optimization
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult
 from amalthea_uros.services.sweep import SweepResult
 from amalthea_uros.services.what_if import WhatIf
@@ -148,6 +150,18 @@ def _(requirement: RequirementResult) -> list[Record]:
 @all_records.register
 def _(result: SimulationResult) -> list[Record]:
     return result.simulation.to_records()
+
+
+@all_records.register
+def _(proposal: DesignProposal) -> list[Record]:
+    """One row for each requirement and limit."""
+    return [flat(row) for row in optimization.demands_json(proposal)]
+
+
+@all_records.register
+def _(result: Optimization) -> list[Record]:
+    """One row for each proposal."""
+    return [flat(row) for row in optimization.rows_json(result)]
 
 
 @all_records.register

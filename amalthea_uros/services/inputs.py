@@ -15,6 +15,7 @@ from amalthea_uros.units import Time
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Model
     from amalthea_uros.perf.system import System
+    from amalthea_uros.uros.assemble import Assembly
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,12 +43,25 @@ class SystemInput:
     model : the AMALTHEA model that it was extracted from, None for a description
     findings : problems found while reading, and what could not be extracted, also those that comments accept
     task_periods : those that a description offers to tasks; empty if it offers any, and for AMALTHEA models
+    assembly : the decisions that a description left open; None for AMALTHEA models
     """
 
     system: System
     model: Model | None
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...] = ()
+    assembly: Assembly | None = None
+
+
+def described_input(assembly: Assembly, system: System | None = None) -> SystemInput:
+    """The system of a description, or another one that was made of it."""
+    return SystemInput(
+        system=assembly.system if system is None else system,
+        model=None,
+        findings=assembly.findings,
+        task_periods=assembly.task_periods,
+        assembly=assembly,
+    )
 
 
 def open_model(paths: Sequence[StrPath]) -> ModelInput:
@@ -87,7 +101,7 @@ def open_system(paths: Sequence[StrPath], *, with_bus: bool = False) -> SystemIn
         system = assembly.system_with_bus() if with_bus else assembly.system
         if system is None:
             raise InvalidArgumentError(f"no CAN bus is described in {paths[0]}; set 'middleware.transport.can.bitrate'")
-        return SystemInput(system=system, model=None, findings=assembly.findings, task_periods=assembly.task_periods)
+        return described_input(assembly, system)
     if with_bus:
         raise InvalidArgumentError("only an app.yaml describes the messages on a CAN bus; AMALTHEA models do not")
     from amalthea_uros.bridge.extract import extract

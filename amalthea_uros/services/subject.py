@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard
 
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import SystemInput, open_system
+from amalthea_uros.services.inputs import SystemInput, described_input, open_system
 from amalthea_uros.services.paths import StrPath, as_paths
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def open_subject(subject: Subject) -> SystemInput:
         from amalthea_uros.services.build import describe_content, describe_text
 
         assembly = describe_text(subject) if isinstance(subject, str) else describe_content(subject)
-        return SystemInput(system=assembly.system, model=None, findings=assembly.findings)
+        return described_input(assembly)
     return open_system(as_paths(_paths(subject)))
 
 

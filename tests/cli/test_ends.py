@@ -29,6 +29,7 @@ WITH_A_FILE = {
     "info": ["{}"],
     "measure": ["{}", "--start", "1", "--end", "2"],
     "migrate": ["{}"],
+    "optimize": ["{}"],
     "report": ["{}", "-o", "-", "--format", "md"],
     "simulate": ["{}", "--duration", "1ms"],
     "sweep": ["{}", "--sweep", "a.period=1ms"],

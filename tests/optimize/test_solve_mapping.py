@@ -9,6 +9,7 @@ from design_search import cores_of, mapping_problem
 from design_systems import DESIGN
 
 from amalthea_uros.optimize.problem import Conclusion, Feasibility, Problem
+from amalthea_uros.optimize.solvers import mapping
 from amalthea_uros.optimize.solvers.integer_program import solve_program
 from amalthea_uros.optimize.solvers.mapping import BranchAndBound, solve_mapping
 from amalthea_uros.optimize.solvers.partition import Partition
@@ -37,7 +38,7 @@ def test_the_smallest_largest_load(case):
 @needs_ortools
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case["id"])
 def test_the_integer_program_agrees(case, monkeypatch):
-    monkeypatch.setattr("amalthea_uros.optimize.solvers.mapping.MAX_ASSIGNMENTS", 1)
+    monkeypatch.setattr(mapping, "MAX_ASSIGNMENTS", 1)
     found = solve_mapping(mapping_problem(case["tasks"], cores_of(case)))
     check_result(found, case)
     assert "CP-SAT of OR-tools" in found.proof

@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 from itertools import islice
 
 from amalthea_uros.optimize.candidate import Candidate
-from amalthea_uros.optimize.front import pareto_front
-from amalthea_uros.optimize.problem import Conclusion, Evaluation, Feasibility, Problem, SearchResult
-from amalthea_uros.optimize.ranking import ranked
+from amalthea_uros.optimize.conclusion import concluded
+from amalthea_uros.optimize.problem import Evaluation, Problem, SearchResult
 
 #: Designs are judged in groups of this size, whatever judges them, so that a search ends after the same design everywhere.
 BATCH = 32
@@ -43,27 +42,7 @@ class Judged:
         ended : why the search ended early
         excluded : number of designs that the proof excludes
         """
-        every = [each for each in self._found.values() if not each.broken_rule]
-        broken: dict[str, int] = {}
-        for each in self._found.values():
-            if each.broken_rule:
-                broken[each.broken_rule] = broken.get(each.broken_rule, 0) + 1
-        feasible = ranked(each for each in every if each.feasible is Feasibility.YES)
-        undecided = sum(each.feasible is Feasibility.UNKNOWN for each in every)
-        is_proved = bool(proof) and (bool(feasible) or not undecided)
-        found = Conclusion.OPTIMAL if is_proved else Conclusion.BEST_FOUND
-        missing = Conclusion.NONE if is_proved else Conclusion.NOT_FOUND
-        return SearchResult(
-            best=tuple(feasible),
-            front=pareto_front(feasible),
-            conclusion=found if feasible else missing,
-            tried=len(every),
-            excluded=excluded if is_proved else 0,
-            broken=broken,
-            undecided=undecided,
-            proof=proof if is_proved else "",
-            ended=ended,
-        )
+        return concluded(self._found.values(), proof, ended, excluded)
 
 
 def batches(candidates: Iterable[Candidate]) -> Iterator[list[Candidate]]:

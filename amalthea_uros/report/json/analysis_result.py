@@ -35,7 +35,7 @@ def content(result: AnalysisResult) -> dict[str, Any]:
         "callbacks": [callback_json(callback) for callback in analysis.callbacks],
         "chains": [_chain_json(chain, result.all_methods) for chain in analysis.chains],
         "requirements": [requirement_json(requirement) for requirement in analysis.requirements],
-        "summary": _summary_json(analysis),
+        "summary": summary_json(analysis),
     }
     if result.impact is not None:
         found["changes"] = changes.content(result.differences)
@@ -56,7 +56,8 @@ def content(result: AnalysisResult) -> dict[str, Any]:
     return found
 
 
-def _summary_json(analysis: Analysis) -> dict[str, Any]:
+def summary_json(analysis: Analysis) -> dict[str, Any]:
+    """Whether everything is met, and what is tightest."""
     summary = analysis.summary
     tightest = summary.tightest
     return {

@@ -1,0 +1,170 @@
+"""`amuros optimize`: changes with which all limits are met, each proved by the analysis."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+
+from amalthea_uros.changes import sweep as sweeping
+from amalthea_uros.cli.ends import INTERRUPTED
+from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
+from amalthea_uros.cli.output import (
+    Output,
+    beside_files,
+    output_option,
+    refuse_input,
+    refuse_unwritable,
+    show_findings,
+    show_line,
+    shows_text,
+    write_outputs,
+)
+from amalthea_uros.cli.parsed import Parsed
+from amalthea_uros.cli.settings_options import settings_options
+from amalthea_uros.optimize import limits as limiting
+from amalthea_uros.optimize.goals import GOALS
+from amalthea_uros.optimize.recorder import INTERRUPTED as ENDED_BY_USER
+from amalthea_uros.report.optimized import closing_line, is_met
+from amalthea_uros.services.design_space import DEFAULT, Vary
+from amalthea_uros.services.optimize import MOST_DESIGNS, MOST_PROPOSALS, Optimization, optimize
+from amalthea_uros.services.optimized_model import write_proposal
+from amalthea_uros.timing.settings import Settings
+
+
+def _vary(text: str) -> tuple[Vary, ...]:
+    return tuple(map(Vary, filter(None, map(str.strip, text.split(",")))))
+
+
+@click.command("optimize")
+@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
+@click.option(
+    "--limit",
+    "limits",
+    multiple=True,
+    type=Parsed(limiting.FORM, limiting.parse_limit),
+    help=f"What must hold beside the limits of the model, e.g. '{limiting.EXAMPLE}'; may be repeated.",
+)
+@click.option(
+    "--goal",
+    "goals",
+    multiple=True,
+    metavar="GOAL",
+    help=f"What to minimise: {', '.join(GOALS)}, or OBJECT.QUANTITY; may be repeated, the first counts most. Default: the number "
+    "of changes.",
+)
+@click.option(
+    "--vary",
+    type=Parsed(",".join(Vary), _vary),
+    default=",".join(DEFAULT),
+    show_default=True,
+    help="What may change: periods are those that the app.yaml offers, and only shorter ones.",
+)
+@click.option(
+    "--offer",
+    "offers",
+    multiple=True,
+    type=Parsed("OBJECT.KEY=VALUES", sweeping.parse_sweep),
+    help=f"Values that a property may have, a range or a list, e.g. {sweeping.EXAMPLE}; may be repeated.",
+)
+@click.option(
+    "--keep", multiple=True, metavar="OBJECT[.KEY]", help="What must not change, e.g. a supplier's task; may be repeated."
+)
+@click.option("--rate-monotonic", "is_rate_monotonic", is_flag=True, help="Let priorities follow the periods.")
+@click.option(
+    "--may-be-later", is_flag=True, help="Allow that a chain answers later than now, counted from the arrival of its message."
+)
+@settings_options
+@click.option("--all", "is_complete", is_flag=True, help="Judge all designs, also if some with few changes meet all limits.")
+@click.option(
+    "--designs",
+    type=click.IntRange(min=1),
+    default=MOST_DESIGNS,
+    show_default=True,
+    help="Judge at most so many designs.",
+)
+@click.option(
+    "--time-limit",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="SECONDS",
+    help="End with the best design so far after this time; what is found then depends on the computer.",
+)
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of random choices.")
+@click.option(
+    "--proposals", type=click.IntRange(min=1), default=MOST_PROPOSALS, show_default=True, help="Show at most so many proposals."
+)
+@click.option("--pareto", type=OUTPUT_FILE, metavar="FILE", help="Judge all designs, and draw what each goal costs, as SVG.")
+@click.option("-o", "--out", "target", type=OUTPUT_FILE, metavar="FILE", help="Write a proposal as an AMALTHEA model (.amxmi).")
+@click.option(
+    "--proposal", "number", type=click.IntRange(min=1), default=1, show_default=True, help="With -o: the proposal to write."
+)
+@output_option(Optimization)
+def command(
+    paths: tuple[Path, ...],
+    limits: tuple[limiting.Limit, ...],
+    goals: tuple[str, ...],
+    vary: tuple[Vary, ...],
+    offers: tuple[sweeping.Sweep, ...],
+    keep: tuple[str, ...],
+    settings: Settings,
+    pareto: Path | None,
+    is_complete: bool,
+    target: Path | None,
+    number: int,
+    outputs: tuple[Output, ...],
+    **effort: Any,
+) -> None:
+    """Search for changes with which all deadlines, requirements and limits are met, and then for the best ones.
+
+    MODEL_OR_YAML is an app.yaml, one or more .amxmi files, or a folder of .amxmi files. Every proposal is proved by the full analysis,
+    and shown with all that it improves and makes worse. That nothing better, or nothing at all, exists is only said if it is proved.
+    The exit code is 1 if no design was found that meets all limits. After Ctrl-C the best design so far is shown, and the exit code is
+    130.
+    """
+    outputs = beside_files(outputs, [("-o", target), ("--pareto", pareto)])
+    for path in (target, pareto):
+        if path is not None:
+            refuse_input(path, str(path))
+            refuse_unwritable(path)
+    effort["proposals"] = max(effort["proposals"], number if target is not None else 1)
+    with _progress(effort["designs"]) as progress:
+        result = optimize(
+            paths,
+            limits=limits,
+            goals=goals,
+            vary=vary,
+            offers=offers,
+            keep=keep,
+            settings=settings,
+            is_complete=is_complete or pareto is not None,
+            progress=progress,
+            **effort,
+        )
+    show_findings(result.findings)
+    write_outputs(outputs, result)
+    if pareto is not None:
+        _draw(result, pareto)
+    if target is not None:
+        write_proposal(result, number, target)
+        show_line(f"wrote proposal {number} to {target}")
+    if not is_met(result) and not shows_text(outputs):
+        show_line(closing_line(result))
+    sys.exit(INTERRUPTED if result.search.ended == ENDED_BY_USER else 0 if is_met(result) else 1)
+
+
+@contextmanager
+def _progress(designs: int) -> Iterator[Callable[[int], None]]:
+    """A progress bar on a terminal: the designs judged so far, of those that may be judged."""
+    with click.progressbar(length=designs, label="Judging designs", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
+        yield lambda tried: bar.update(tried - bar.pos)
+
+
+def _draw(result: Optimization, path: Path) -> None:
+    from amalthea_uros.report.pictures.pareto import draw_pareto
+    from amalthea_uros.xmi.files import FileText, write_text
+
+    write_text(path, FileText(draw_pareto(result)))

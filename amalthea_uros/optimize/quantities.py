@@ -1,0 +1,161 @@
+"""Quantities of a design that limits and goals name, as `OBJECT.QUANTITY`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from fractions import Fraction
+from typing import TypeAlias
+
+from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.process_verdicts import worst_response
+from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, JobMetric, Metric, ProcessResult, Quantity
+from amalthea_uros.analyze.verdicts import Ends
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.names import require
+from amalthea_uros.perf.system import System
+
+#: Of a chain that begins with a message: from its arrival, which can be just after a job that looks for messages was activated.
+FROM_ARRIVAL = "max_time_from_arrival"
+#: Of a process: the difference of its greatest and its least response time.
+JITTER = "jitter"
+#: Of a core: the worst-case load; 1 is full.
+LOAD = "load"
+
+#: A time in picoseconds, or a share of a core.
+Amount: TypeAlias = int | Fraction
+
+
+class Dimension(StrEnum):
+    """What an amount is."""
+
+    TIME = "time"
+    SHARE = "share"
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """Between which ends a maximum or minimum of a design lies; None: that end is unknown or infinite.
+
+    Attributes
+    ----------
+    reason : why there is no safe end
+    """
+
+    lower: Amount | None = None
+    upper: Amount | None = None
+    reason: str = ""
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the value is known."""
+        return self.lower is not None and self.lower == self.upper
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """Finds quantities in the results of an analysis.
+
+    Attributes
+    ----------
+    takers : chain that begins with a message -> process that takes the message
+    """
+
+    takers: Mapping[str, str] = field(default_factory=dict)
+
+    def range(self, analysis: Analysis, name: str, quantity: str) -> Range:
+        """The range of a quantity."""
+        system = analysis.solution.context.system
+        if name in system.chains and quantity in (*Quantity, FROM_ARRIVAL):
+            if quantity == FROM_ARRIVAL:
+                return self.from_arrival(analysis, name)
+            return _of_chain(analysis.chains[name], Quantity(quantity))
+        if name in system.processes:
+            return _of_process(analysis.processes[name], quantity)
+        core = analysis.processors[name]
+        return Range(core.at_least, core.worst)
+
+    def from_arrival(self, analysis: Analysis, chain: str) -> Range:
+        """The maximum time from the arrival of the message, or from the input, to the first response.
+
+        A chain that does not begin with a message has its reaction time, which includes the time since the read before.
+        """
+        taker = self.takers.get(chain)
+        if taker is None:
+            return _of_chain(analysis.chains[chain], Quantity.MAX_REACTION_TIME)
+        reduced = _of_chain(analysis.chains[chain], Quantity.MAX_REDUCED_REACTION_TIME)
+        process = analysis.processes[taker]
+        pending = process.metrics.get(JobMetric.INITIAL_PENDING_TIME)
+        if reduced.upper is None:
+            return reduced
+        if process.max_interarrival is None or pending is None or pending.max is None:
+            return Range(reason=f"the time between two activations of {taker!r}, or until it starts, is unknown")
+        upper = reduced.upper + process.max_interarrival + pending.max
+        is_exact = reduced.is_exact and pending.min == pending.max and process.min_interarrival == process.max_interarrival
+        return Range(upper if is_exact else reduced.lower, upper)
+
+
+def takers(analysis: Analysis) -> Mapping[str, str]:
+    """The chains that begin with a message, with the process that takes it."""
+    evaluator = ChainEvaluator(analysis.solution)
+    found = {}
+    for name, chain in analysis.solution.context.system.chains.items():
+        first = next(iter(evaluator.stages(chain)), None)
+        if first is not None and first.counter is not None and first.counter.source:
+            found[name] = first.process.name
+    return found
+
+
+def dimension(quantity: str) -> Dimension:
+    """What the amounts of a quantity are."""
+    return Dimension.SHARE if quantity == LOAD else Dimension.TIME
+
+
+def check_quantity(system: System, name: str, quantity: str, text: str) -> None:
+    """Refuse what is no quantity of an object.
+
+    Raises
+    ------
+    InvalidArgumentError : says which objects or quantities there are.
+    """
+    known: dict[str, tuple[Iterable[str], ...]] = {}
+    for names, quantities in (
+        (system.chains, (*Quantity, FROM_ARRIVAL)),
+        (system.processes, (*JobMetric, JITTER)),
+        (system.cores, (LOAD,)),
+    ):
+        for each in names:
+            known.setdefault(each, ())
+            known[each] = (*known[each], quantities)
+    require("chain, process or core", [name], known)
+    every = [each for quantities in known[name] for each in quantities]
+    if quantity not in every:
+        listed = ", ".join(dict.fromkeys(every))
+        raise InvalidArgumentError(f"{text!r}: {name!r} has no {quantity!r}; expected one of {listed}")
+
+
+def _of_chain(chain: ChainResult, quantity: Quantity) -> Range:
+    found = chain.value(quantity)
+    if found is None or found.value is None:
+        return Range(reason=(found.reason if found else "") or chain.reason or f"no {quantity} is computed")
+    if found.claim is Claim.EXACT:
+        return Range(found.value, found.value)
+    return Range(upper=found.value) if quantity.is_upper else Range(lower=found.value)
+
+
+def _of_process(process: ProcessResult, quantity: str) -> Range:
+    if quantity == JobMetric.RESPONSE_TIME:
+        ends = worst_response(process)
+        return Range(ends.lower, ends.upper, process.reason)
+    metric = process.metrics.get(JobMetric.RESPONSE_TIME if quantity == JITTER else JobMetric(quantity))
+    if metric is None:
+        return Range(reason=process.reason or f"the {quantity} of {process.name!r} is not computed")
+    if quantity == JITTER:
+        return Range(metric.jitter if metric.claim is Claim.EXACT else None, metric.jitter, process.reason)
+    return _of_metric(metric, process.reason)
+
+
+def _of_metric(metric: Metric, reason: str) -> Range:
+    ends = Ends(metric.attained[1] if metric.attained is not None else metric.min, metric.max)
+    return Range(ends.lower, ends.upper, reason)
