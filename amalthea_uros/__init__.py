@@ -112,6 +112,8 @@ if TYPE_CHECKING:
     from amalthea_uros.services.simulate import simulate as simulate
     from amalthea_uros.services.simulate import simulate_campaign as simulate_campaign
     from amalthea_uros.services.simulate import simulate_files as simulate_files
+    from amalthea_uros.services.sweep import SweepResult as SweepResult
+    from amalthea_uros.services.sweep import sweep as sweep
     from amalthea_uros.services.task_parameters import TaskParameters as TaskParameters
     from amalthea_uros.services.task_parameters import task as task
     from amalthea_uros.services.taskset import taskset as taskset
@@ -176,6 +178,7 @@ _NAMES = {
     "services.optimize": ("DesignProposal", "Optimization", "optimize"),
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
+    "services.sweep": ("SweepResult", "sweep"),
     "services.task_parameters": ("TaskParameters", "task"),
     "services.taskset": ("taskset",),
     "services.what_if": ("WhatIf", "what_if"),

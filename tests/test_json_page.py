@@ -45,6 +45,10 @@ RUNS = {
             "Control_Function.period=2ms",
         ),
     ),
+    "amuros sweep": (
+        ("sweep", ADVANCED, "--sweep", "Control_Function.execution_time=4us,2ms", "--set", "Control_Function.period=2ms"),
+        ("sweep", "unknown.amxmi", "--sweep", "Control_Function.execution_time=4us,5us", "--sample", "1"),
+    ),
     "amuros check": (("check", ADVANCED, "--profile", "inchron,ta"),),
     "amuros build": (
         ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),

@@ -18,6 +18,7 @@ from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.perf.constraints import ChainSynchronization, LatencyConstraint
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import Time
 
 #: Absolute resolution of factors below 1, relative resolution of factors above 1.
 RESOLUTION = Fraction(1, 1000)
@@ -35,10 +36,17 @@ class Sensitivity(Shown):
     ----------
     everything : on all execution times
     processes : on the execution times of one process
+    execution_times : the present worst-case execution time of each process; None if it is unknown
     """
 
     everything: Fraction | None
     processes: Mapping[str, Fraction | None]
+    execution_times: Mapping[str, Time | None]
+
+    def longest(self, process: str) -> Time | None:
+        """What the worst-case execution time of a process may grow to; None if it is unknown, or nothing is met even now."""
+        time, factor = self.execution_times[process], self.processes[process]
+        return None if time is None or factor is None else int(time * factor)
 
     def __repr__(self) -> str:
         factor = "none" if self.everything is None else f"{float(self.everything):.4g}"
@@ -51,6 +59,7 @@ def sensitivity(analysis: Analysis) -> Sensitivity:
     return Sensitivity(
         everything=max_growth(analysis),
         processes={process.name: _max_factor_of(process.name, analysis) for process in analysis.processes},
+        execution_times={process.name: process.wcet for process in analysis.processes},
     )
 
 

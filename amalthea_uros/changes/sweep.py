@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 from math import prod
+from random import Random
 from typing import NamedTuple
 
 from amalthea_uros.changes.change import Change, split_assignment, split_target
@@ -82,16 +83,49 @@ def variants(sweeps: Sequence[Sweep]) -> Iterator[tuple[Change, ...]]:
 
 def count_variants(sweeps: Sequence[Sweep]) -> int:
     """The number of variants; raises as `variants`."""
-    targets = [f"{sweep.object}.{sweep.key}" for sweep in sweeps]
-    for target in targets:
-        if targets.count(target) > 1:
-            raise InvalidArgumentError(f"{target!r} is swept more than once; write all its values in one sweep")
-    count = prod(len(sweep.values) for sweep in sweeps)
+    count = combinations(sweeps)
     if count > MAX_VARIANTS:
         raise InvalidArgumentError(
             f"the sweeps have {count:,} variants; at most {MAX_VARIANTS:,} are possible, use larger steps"
         )
     return count
+
+
+def sampled(sweeps: Sequence[Sweep], count: int, seed: int) -> Iterator[tuple[Change, ...]]:
+    """Some combinations of the values of sweeps, none twice, at random; in the order of `variants`.
+
+    Equal seeds give equal combinations. If there are not more than `count`, all of them.
+
+    Raises
+    ------
+    InvalidArgumentError : two sweeps of the same property.
+    """
+    total = combinations(sweeps)
+    numbers = range(total) if count >= total else sorted(Random(seed).sample(range(total), count))
+    return (_variant(sweeps, number) for number in numbers)
+
+
+def _variant(sweeps: Sequence[Sweep], number: int) -> tuple[Change, ...]:
+    """The combination with a number, as `variants` counts from 0."""
+    changes = []
+    for sweep in reversed(sweeps):
+        number, index = divmod(number, len(sweep.values))
+        changes.append(Change(sweep.object, sweep.key, sweep.values[index]))
+    return tuple(reversed(changes))
+
+
+def combinations(sweeps: Sequence[Sweep]) -> int:
+    """The number of combinations of the values.
+
+    Raises
+    ------
+    InvalidArgumentError : two sweeps of the same property.
+    """
+    targets = [f"{sweep.object}.{sweep.key}" for sweep in sweeps]
+    for target in targets:
+        if targets.count(target) > 1:
+            raise InvalidArgumentError(f"{target!r} is swept more than once; write all its values in one sweep")
+    return prod(len(sweep.values) for sweep in sweeps)
 
 
 def _steps(text: str, start: str, stop: str, step: str) -> Sequence[str]:

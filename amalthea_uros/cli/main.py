@@ -37,6 +37,7 @@ COMMANDS = {
     "rules": "List the rules of check.",
     "schema": "Print the JSON Schema of app.yaml.",
     "simulate": "Simulate the system, once or for many variants and seeds.",
+    "sweep": "Analyze the system with many values of its properties.",
 }
 
 

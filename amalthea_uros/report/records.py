@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from fractions import Fraction
 from functools import singledispatch
 from typing import Any
 
@@ -37,6 +38,7 @@ from amalthea_uros.services.improvements import Improvements
 from amalthea_uros.services.migrate import MigrationResult
 from amalthea_uros.services.optimize import DesignProposal, Optimization
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult
+from amalthea_uros.services.sweep import SweepResult
 from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.simulate.results import (
     ChainObservation,
@@ -157,6 +159,11 @@ def _(result: CampaignResult) -> list[Record]:
 
 
 @all_records.register
+def _(result: SweepResult) -> list[Record]:
+    return [dict(row) for row in result.rows]
+
+
+@all_records.register
 def _(core: CoreObservation) -> list[Record]:
     return [flat(simulation_result.core_json(core))]
 
@@ -266,8 +273,15 @@ def _(result: Improvements) -> list[Record]:
 @all_records.register
 def _(result: Sensitivity) -> list[Record]:
     """The row without a process is the factor on all execution times together."""
-    factors = [(None, result.everything), *result.processes.items()]
-    return [{"process": process, "factor": None if factor is None else float(factor)} for process, factor in factors]
+    rows: list[Record] = [{"process": None, "factor": _float(result.everything), "wcet_ps": None, "longest_ps": None}]
+    for process, factor in result.processes.items():
+        wcet, longest = result.execution_times[process], result.longest(process)
+        rows.append({"process": process, "factor": _float(factor), "wcet_ps": wcet, "longest_ps": longest})
+    return rows
+
+
+def _float(factor: Fraction | None) -> float | None:
+    return None if factor is None else float(factor)
 
 
 @all_records.register

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from operator import index
@@ -34,7 +32,6 @@ from amalthea_uros.units import Time, parse_time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.impact import Impact
-    from amalthea_uros.services.campaign.executors import Executor
     from amalthea_uros.simulate.results import Simulation
     from amalthea_uros.trace.sinks import TraceSink
     from amalthea_uros.trace.table import Entity
@@ -335,25 +332,19 @@ def simulate_campaign(
     ReadError : a file cannot be read, or something in a description is wrong.
     InvalidArgumentError : as for `simulate_files`; there are too many runs, or the cluster cannot be used.
     """
-    from amalthea_uros.services.campaign.campaign import run_campaign
+    from amalthea_uros.services.campaign.campaign import finished_runs
+    from amalthea_uros.services.campaign.executors import executor_for
 
     files = as_paths(paths)
     runs = plan_runs(sweeps, repetitions, options.seed)
     opened = open_system(files, with_bus=with_bus)
     differences = described(Configuration(opened.system, options.settings), changes)
     _check_changes(opened.system, options, changes, sweeps)
-    job, executor = SimulationJob(opened.system, options, tuple(changes)), _executor(len(runs), workers, cluster)
-    outcomes: list[Outcome] = []
-    with suppress(KeyboardInterrupt), closing(run_campaign(job, runs, executor)) as finished:
-        for outcome in finished:
-            outcomes.append(outcome)
-            if on_outcome is not None:
-                on_outcome(outcome)
-    outcomes.sort(key=lambda outcome: outcome.run.number)
+    job, executor = SimulationJob(opened.system, options, tuple(changes)), executor_for(len(runs), workers, cluster)
     return CampaignResult(
         paths=files,
         options=options,
-        outcomes=tuple(outcomes),
+        outcomes=finished_runs(job, runs, executor, on_outcome),
         planned=len(runs),
         findings=unsuppressed(opened.findings),
         differences=differences,
@@ -383,20 +374,6 @@ def _check_changes(system: System, options: Options, changes: Sequence[Change], 
 def _ends(sweep: Sweep) -> list[Change]:
     changes = list(sweep.changes())
     return [changes[0], changes[-1]]
-
-
-def _executor(runs: int, workers: int | None, cluster: str | None) -> Executor:
-    from amalthea_uros.services.campaign import executors
-
-    if cluster is not None:
-        return executors.cluster(cluster)
-    count = min(runs, _available_cores() if workers is None else workers)
-    return executors.processes(count) if count > 1 else executors.serial
-
-
-def _available_cores() -> int:
-    """The cores that this process may use; containers often have fewer than the computer."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def time_of(duration: str | Time) -> Time:

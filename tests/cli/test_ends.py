@@ -29,6 +29,7 @@ WITH_A_FILE = {
     "optimize": ["{}"],
     "report": ["{}", "-o", "-", "--format", "md"],
     "simulate": ["{}", "--duration", "1ms"],
+    "sweep": ["{}", "--sweep", "a.period=1ms"],
 }
 #: Those that read no file.
 WITHOUT = {"completion": ["bash"], "explain": ["XMI001"], "init": ["--list"], "lsp": ["--help"], "rules": [], "schema": []}

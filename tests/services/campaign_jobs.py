@@ -30,6 +30,14 @@ def dying(run):
     return {"number": run.number}
 
 
+def dying_once(run, folder):
+    """As a worker does that is killed from outside: the next try of the same run succeeds."""
+    if run.number % 20 == 7 and not (folder / str(run.number)).exists():
+        (folder / str(run.number)).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"number": run.number}
+
+
 def endless(run):
     if run.number > 2:
         time.sleep(600)

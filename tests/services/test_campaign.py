@@ -9,6 +9,7 @@ import sys
 import time
 from contextlib import closing
 from fractions import Fraction
+from functools import partial
 
 import campaign_jobs
 import pytest
@@ -85,14 +86,16 @@ def test_a_run_that_fails_does_not_stop_the_others(executor):
     assert (outcomes[1].error, outcomes[2].error) == ("", "a multiple of three")
 
 
-def test_a_process_that_dies_is_replaced():
+def test_a_process_that_dies_is_replaced_and_only_the_run_that_kills_it_twice_is_lost():
     outcomes = list(run_campaign(campaign_jobs.dying, runs(100), processes(2)))
     assert sorted(outcome.run.number for outcome in outcomes) == list(range(1, 101))
-    failed = [outcome for outcome in outcomes if outcome.error]
-    assert 1 in {outcome.run.number for outcome in failed}
-    assert all("BrokenProcessPool" in outcome.error for outcome in failed)
-    # Up to two runs for each process are lost with it.
-    assert len(failed) <= 4
+    assert [(outcome.run.number, "BrokenProcessPool" in outcome.error) for outcome in outcomes if outcome.error] == [(1, True)]
+
+
+def test_a_process_that_somebody_kills_loses_nothing(tmp_path):
+    job = partial(campaign_jobs.dying_once, folder=tmp_path)
+    outcomes = list(run_campaign(job, runs(60), processes(2)))
+    assert sorted(outcome.record["number"] for outcome in outcomes) == list(range(1, 61))
 
 
 def test_processes_end_when_a_campaign_is_stopped_early():

@@ -46,6 +46,7 @@ def content(result: AnalysisResult) -> dict[str, Any]:
         found["sensitivity"] = {
             "everything": _number(result.sensitivity.everything),
             "processes": {name: _number(factor) for name, factor in result.sensitivity.processes.items()},
+            "longest_ps": {name: result.sensitivity.longest(name) for name in result.sensitivity.processes},
         }
     if result.proposals is not None:
         found["priorities"] = [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import logging
+import os
 import pickle
 import signal
 from collections.abc import Callable, Iterator, Sequence
@@ -39,6 +40,25 @@ class Workers:
 
 #: Provides workers for a job, and releases them in the end, also when somebody interrupts.
 Executor: TypeAlias = Callable[[Job], AbstractContextManager[Workers]]
+
+
+def executor_for(runs: int, workers: int | None, cluster_address: str | None) -> Executor:
+    """What executes so many runs.
+
+    Parameters
+    ----------
+    workers : runs at the same time on this computer; None: as many as there are cores
+    cluster_address : of the scheduler of a Dask cluster, on whose workers the runs are executed instead
+    """
+    if cluster_address is not None:
+        return cluster(cluster_address)
+    count = min(runs, _available_cores() if workers is None else workers)
+    return processes(count) if count > 1 else serial
+
+
+def _available_cores() -> int:
+    """The cores that this process may use; containers often have fewer than the computer."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextmanager

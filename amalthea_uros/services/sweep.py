@@ -1,0 +1,322 @@
+"""Analyses of a system for many values of its properties."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+from amalthea_uros._internal.shown import Shown
+from amalthea_uros.analyze.impact import Figure, Unit, figures
+from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.sensitivity import max_growth
+from amalthea_uros.analyze.summary import Schedulable
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.changes.apply import Difference, apply
+from amalthea_uros.changes.change import Change, split_target
+from amalthea_uros.changes.key import Configuration
+from amalthea_uros.changes.sweep import FORM, Sweep, combinations, parse_sweep, sampled, variants
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.names import require
+from amalthea_uros.perf.system import System
+from amalthea_uros.services.campaign.campaign import finished_runs
+from amalthea_uros.services.campaign.executors import executor_for
+from amalthea_uros.services.campaign.run import Outcome, Record, Run, Value
+from amalthea_uros.services.campaign.sending import system_bytes, system_from
+from amalthea_uros.services.inputs import SystemInput, open_system
+from amalthea_uros.services.names import require_settings
+from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.services.subject import Subject, open_subject
+from amalthea_uros.services.timing_changes import described
+from amalthea_uros.services.what_if import Changes, as_changes
+from amalthea_uros.timing.settings import Settings
+
+#: Sweeps as callers give them: `{"Task.period": ["1 ms", "2 ms"]}` or `["Task.period=1ms..5ms/1ms"]`.
+Sweeps: TypeAlias = Mapping[str, Sequence[object]] | Iterable[str | Sweep]
+
+SCHEDULABLE, GROWTH = "schedulable", "maximum_growth"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SweepPlan:
+    """What is to be analysed.
+
+    Attributes
+    ----------
+    sweeps : the values to try
+    runs : the variants
+    total : number of all combinations, of which a sample has fewer
+    seed : of the sample; None without one
+    """
+
+    sweeps: tuple[Sweep, ...]
+    runs: tuple[Run, ...]
+    total: int
+    seed: int | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class SweepResult(Shown):
+    """The analyses of all variants of a system.
+
+    Attributes
+    ----------
+    outcomes : in the order of the variants; those that were not finished when somebody interrupted are absent
+    differences : what the changes of all variants did
+    findings : problems found while reading the files
+    source : the files, as text; "" if there are none
+    shown : the results that people want to see; none: the first ones that change
+    """
+
+    plan: SweepPlan
+    outcomes: tuple[Outcome, ...]
+    differences: tuple[Difference, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    source: str = ""
+    shown: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<SweepResult: {len(self.outcomes)} variants, schedulable {len(self.schedulable)}>"
+
+    @property
+    def rows(self) -> list[Record]:
+        """The rows of a table of all variants."""
+        return [{name: value for name, value in outcome.row().items() if name != "seed"} for outcome in self.outcomes]
+
+    @property
+    def schedulable(self) -> tuple[Outcome, ...]:
+        """The variants in which everything is met for certain."""
+        return tuple(outcome for outcome in self.outcomes if outcome.record.get(SCHEDULABLE) == Schedulable.YES)
+
+    @property
+    def failed(self) -> tuple[Outcome, ...]:
+        """The variants that could not be analysed."""
+        return tuple(outcome for outcome in self.outcomes if outcome.error)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all variants were analysed."""
+        return len(self.outcomes) == len(self.plan.runs)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The columns with results, as in the table."""
+        return tuple(dict.fromkeys(name for outcome in self.outcomes for name in outcome.record))
+
+    @property
+    def changing(self) -> tuple[str, ...]:
+        """The columns that are not equal in all variants."""
+        records = [outcome.record for outcome in self.outcomes if not outcome.error]
+        return tuple(name for name in self.quantities if len({record.get(name) for record in records}) > 1)
+
+    def column(self, quantity: str) -> str:
+        """The column of a quantity, which need not have the end that says its unit.
+
+        Raises
+        ------
+        InvalidArgumentError : there is no such column; says what it may mean.
+        """
+        known = {name.removesuffix("_ps"): name for name in self.quantities}
+        require("quantity", [quantity.removesuffix("_ps")], known)
+        return known[quantity.removesuffix("_ps")]
+
+
+@dataclass(frozen=True, slots=True)
+class AnalysisJob:
+    """Analyses a system with the changes of a run."""
+
+    system: System
+    settings: Settings
+    changes: tuple[Change, ...] = ()
+    with_growth: bool = False
+
+    def __call__(self, run: Run) -> Record:
+        """The results as a row of a table."""
+        analysis = analyze_system(*apply(self.system, self.settings, (*self.changes, *run.changes)))
+        found = _record(analysis)
+        if self.with_growth:
+            growth = max_growth(analysis)
+            found[GROWTH] = None if growth is None else float(growth)
+        return found
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _received_job, (system_bytes(self.system), self.settings, self.changes, self.with_growth)
+
+
+def _received_job(system: bytes, settings: Settings, changes: tuple[Change, ...], with_growth: bool) -> AnalysisJob:
+    return AnalysisJob(system_from(system), settings, changes, with_growth)
+
+
+def sweep(
+    subject: Subject,
+    sweeps: Sweeps,
+    settings: Settings | None = None,
+    *,
+    changes: Changes = (),
+    sample: int | None = None,
+    seed: int = 1,
+    with_growth: bool = False,
+    workers: int | None = 1,
+    cluster: str | None = None,
+    on_outcome: Callable[[Outcome], None] | None = None,
+) -> SweepResult:
+    """Analyze each variant of whatever describes a system.
+
+    >>> sweep("app.yaml", {"Executor_Task.period": ["1 ms", "2 ms", "5 ms"]}).to_dataframe()  # doctest: +SKIP
+
+    Ctrl-C ends it early; the result has the variants that were finished.
+
+    Parameters
+    ----------
+    subject : as for `analyze`
+    sweeps : `{"OBJECT.KEY": [value, ...]}`, or texts as for `amuros sweep --sweep`; with several, all combinations
+    changes : made in all variants
+    sample : number of combinations chosen at random, by the seed; None: all of them
+    with_growth : also find out by what factor all execution times may grow together before something is missed
+    workers : analyses at the same time on this computer; None: as many as there are cores
+    cluster : address of a Dask scheduler, on whose workers the analyses are executed instead
+    on_outcome : called after each analysis
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in a description is wrong.
+    InvalidArgumentError : the changes, sweeps or settings name what does not exist, or a value is wrong; the cluster cannot be used.
+    """
+    plan = plan_sweep(as_sweeps(sweeps), sample, seed)
+    return sweep_opened(
+        open_subject(subject),
+        plan,
+        settings or Settings(),
+        as_changes(changes),
+        with_growth=with_growth,
+        workers=workers,
+        cluster=cluster,
+        on_outcome=on_outcome,
+    )
+
+
+def sweep_files(
+    paths: StrPath | Iterable[StrPath],
+    plan: SweepPlan,
+    settings: Settings,
+    changes: Sequence[Change] = (),
+    *,
+    with_growth: bool = False,
+    with_bus: bool = False,
+    workers: int | None = None,
+    cluster: str | None = None,
+    on_outcome: Callable[[Outcome], None] | None = None,
+) -> SweepResult:
+    """Analyze each variant of an `app.yaml` or of AMALTHEA models; parameters and errors as for `sweep`.
+
+    Parameters
+    ----------
+    with_bus : also analyze the messages on the CAN bus of an `app.yaml`
+    """
+    files = as_paths(paths)
+    opened = open_system(files, with_bus=with_bus)
+    found = sweep_opened(
+        opened,
+        plan,
+        settings,
+        changes,
+        with_growth=with_growth,
+        workers=workers,
+        cluster=cluster,
+        on_outcome=on_outcome,
+    )
+    return replace(found, source=" ".join(map(str, files)))
+
+
+def sweep_opened(
+    opened: SystemInput,
+    plan: SweepPlan,
+    settings: Settings,
+    changes: Sequence[Change] = (),
+    *,
+    with_growth: bool = False,
+    workers: int | None = None,
+    cluster: str | None = None,
+    on_outcome: Callable[[Outcome], None] | None = None,
+) -> SweepResult:
+    """Analyze each variant of what was opened; parameters and errors as for `sweep`."""
+    present = Configuration(opened.system, settings)
+    require_settings(present.settings, present.system)
+    differences = described(present, changes)
+    _check_values(present, changes, plan.sweeps)
+    job = AnalysisJob(*present, tuple(changes), with_growth)
+    executor = executor_for(len(plan.runs), workers, cluster)
+    return SweepResult(
+        plan=plan,
+        outcomes=finished_runs(job, plan.runs, executor, on_outcome),
+        differences=differences,
+        findings=unsuppressed(opened.findings),
+    )
+
+
+def plan_sweep(sweeps: tuple[Sweep, ...], sample: int | None = None, seed: int = 1) -> SweepPlan:
+    """The variants of all combinations, or of a sample.
+
+    Raises
+    ------
+    InvalidArgumentError : nothing is swept, a sample without anything, too many combinations, or two sweeps of one property.
+    """
+    if not sweeps:
+        raise InvalidArgumentError(f"nothing is swept; expected {FORM}")
+    if sample is not None and sample < 1:
+        raise InvalidArgumentError(f"a sample of {sample} variants is not possible; expected at least 1")
+    found = variants(sweeps) if sample is None else sampled(sweeps, sample, seed)
+    runs = tuple(Run(number, seed, changes) for number, changes in enumerate(found, start=1))
+    return SweepPlan(sweeps=sweeps, runs=runs, total=combinations(sweeps), seed=None if sample is None else seed)
+
+
+def as_sweeps(sweeps: Sweeps) -> tuple[Sweep, ...]:
+    """Sweeps in any of the forms that callers give.
+
+    Raises
+    ------
+    InvalidArgumentError : a text is not of the form of a sweep, or a list of values is empty.
+    """
+    if isinstance(sweeps, Mapping):
+        return tuple(_listed(target, values) for target, values in sweeps.items())
+    texts: Sequence[str | Sweep] = [sweeps] if isinstance(sweeps, str) else list(sweeps)
+    return tuple(each if isinstance(each, Sweep) else parse_sweep(each) for each in texts)
+
+
+def _listed(target: str, values: Sequence[object]) -> Sweep:
+    if isinstance(values, str):
+        return parse_sweep(f"{target}={values}")
+    if not values:
+        raise InvalidArgumentError(f"{target!r} has no values to try")
+    return Sweep(*split_target(target, target, FORM, "Executor_Task.period"), tuple(map(str, values)))
+
+
+def _check_values(present: Configuration, changes: Sequence[Change], sweeps: Sequence[Sweep]) -> None:
+    """Refuse wrong names and values before the first analysis; of long sweeps the ends are tried."""
+    for each in sweeps:
+        for value in (each.values[0], each.values[-1]):
+            changed = apply(*present, (*changes, Change(each.object, each.key, value)))
+            require_settings(changed.settings, changed.system)
+
+
+def _record(analysis: Analysis) -> dict[str, Value]:
+    """The compared figures of an analysis, by names such as "Executor_Task.worst_case_response_time_ps"."""
+    found: dict[str, Value] = {}
+    names: Counter[str] = Counter()
+    for figure in figures(analysis):
+        name = f"{figure.object}.{figure.quantity}".removeprefix(".")
+        names[name] += 1
+        # Requirements of one name can limit several quantities.
+        number = f" {names[name]}" if names[name] > 1 else ""
+        found[name + number + ("_ps" if figure.unit is Unit.TIME else "")] = _cell(figure)
+    return found
+
+
+def _cell(figure: Figure) -> Value:
+    value = figure.value
+    if value is None or isinstance(value, str):
+        return None if value is None else str(value)
+    return int(value) if figure.unit is Unit.TIME else float(value)
