@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from amalthea_uros.changes.change import Change
 from amalthea_uros.changes.sweep import Sweep, count_variants, variants
@@ -38,8 +38,8 @@ class Run:
         return {"run": self.number, "seed": self.seed, **dict(map(_column, self.changes))}
 
 
-#: What is done in each run; it must be possible to send it to another process.
-Job: TypeAlias = Callable[[Run], Record]
+#: What is done in each run; it must be possible to send it, and what it gives, to another process.
+Job: TypeAlias = Callable[[Run], Mapping[str, Any]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +48,12 @@ class Outcome:
 
     Attributes
     ----------
-    record : empty if the run failed
+    record : what the job gave, for most jobs a row of a table; empty if the run failed
     error : why it failed, "" if it did not
     """
 
     run: Run
-    record: Record
+    record: Mapping[str, Any]
     error: str = ""
 
     def row(self) -> Record:

@@ -13,8 +13,13 @@ from amalthea_uros.perf.system import System
 
 def system_bytes(system: System) -> bytes:
     """A system without the way back to the objects and files that it was extracted from; those stay here."""
+    return compact_bytes(replace(system))  # a replaced system has no tables of names yet
+
+
+def compact_bytes(value: object) -> bytes:
+    """Something with systems, without their way back to objects and files."""
     stream = BytesIO()
-    _Pickler(stream, pickle.HIGHEST_PROTOCOL).dump(replace(system))  # a replaced system has no tables of names yet
+    _Pickler(stream, pickle.HIGHEST_PROTOCOL).dump(value)
     return stream.getvalue()
 
 
