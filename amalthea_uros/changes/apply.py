@@ -61,6 +61,11 @@ def describe(system: System, settings: Settings, changes: Sequence[Change]) -> t
     return tuple(Difference(name, key, _shown(before, name, key), _shown(after, name, key)) for name, key in targets)
 
 
+def check_key(system: System, name: str, key: str) -> None:
+    """Refuse a property that an object does not have; raises InvalidArgumentError."""
+    _keys(system, name, key)
+
+
 def _order(change: Change) -> int:
     return FIRST_KEYS.index(change.key) if change.key in FIRST_KEYS else len(FIRST_KEYS)
 

@@ -37,7 +37,10 @@ from amalthea_uros.timing.settings import Settings
 
 
 def _vary(text: str) -> tuple[Vary, ...]:
-    return tuple(map(Vary, filter(None, map(str.strip, text.split(",")))))
+    found = tuple(filter(None, map(str.strip, text.split(","))))
+    if unknown := [each for each in found if each not in list(Vary)]:
+        raise ValueError(f"{unknown[0]!r} cannot be varied; expected some of {', '.join(Vary)}")
+    return tuple(map(Vary, found))
 
 
 @click.command("optimize")

@@ -110,6 +110,11 @@ def _goal(name: str, system: System) -> Goal:
     return Goal(name=name, unit="ps" if dimension(quantity) is Dimension.TIME else "")
 
 
+def object_of(goal: Goal) -> str:
+    """The object that a goal names; "" if it is about the whole system."""
+    return "" if goal.name in GOALS else split_target(goal.name, goal.name, FORM, EXAMPLE)[0]
+
+
 def value_of(goal: Goal, analysis: Analysis, candidate: Candidate, scale: Scale) -> Fraction | None:
     """The value of a goal in a design; None if it is unknown."""
     if goal.name == CHANGES:

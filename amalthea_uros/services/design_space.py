@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from amalthea_uros.changes.apply import apply, describe
+from amalthea_uros.changes.apply import apply, check_key, describe
 from amalthea_uros.changes.change import Change
 from amalthea_uros.changes.key import UNSET, Configuration
 from amalthea_uros.changes.sweep import Sweep
@@ -88,7 +88,9 @@ def _check_keep(keep: Iterable[str], system: System) -> None:
     known = [*system.processes, *system.cores, *system.schedulers, *system.stimuli_by_name]
     for each in keep:
         if each not in known:
-            require("object to keep", [each.rpartition(".")[0] or each], known)
+            name, _, key = each.rpartition(".")
+            require("object to keep", [name or each], known)
+            check_key(system, name, key)
 
 
 @dataclass(slots=True)
@@ -106,22 +108,21 @@ class _Builder:
 
     def choices(self) -> Iterator[Choice]:
         """Single values; offers of the user replace what would be on offer by itself."""
-        offered = {f"{each.object}.{each.key}": each for each in self.wishes.offers}
         for offer in self.wishes.offers:
             yield self._offered(offer)
         for choice in self._own_choices():
-            if choice.target not in offered and not self._is_kept(choice.object, choice.key) and len(choice.options) > 1:
+            if self._is_free(choice.object, choice.key) and len(choice.options) > 1:
                 yield choice
 
     def orders(self) -> Iterator[PriorityOrder]:
         """The priorities of each scheduler that serves the highest priority first, if they are distinct."""
         for name, scheduler in self.system.schedulers.items():
-            if not is_by_priority(scheduler.policy):
+            if not is_by_priority(scheduler.policy) or name in self.wishes.keep:
                 continue
             tasks = [
                 (each.priority, each.task)
                 for each in self.system.mapping.tasks
-                if each.scheduler == name and each.priority is not None and not self._is_kept(each.task, "priority")
+                if each.scheduler == name and each.priority is not None and self._is_free(each.task, "priority")
             ]
             ordered = sorted(tasks, key=lambda pair: -pair[0])
             numbers = tuple(number for number, _ in ordered)
@@ -172,6 +173,8 @@ class _Builder:
 
     def _offered(self, offer: Sweep) -> Choice:
         target = f"{offer.object}.{offer.key}"
+        if [(each.object, each.key) for each in self.wishes.offers].count((offer.object, offer.key)) > 1:
+            raise InvalidArgumentError(f"{target!r} is on offer twice; offer all its values together")
         if self._is_kept(offer.object, offer.key):
             raise InvalidArgumentError(f"{target!r} is both on offer and kept")
         texts = [self._shown(change) for change in offer.changes()]
@@ -185,6 +188,10 @@ class _Builder:
         apply(*self.present, [change])
         after = describe(*self.present, [change])[0].after
         return change.value if after == UNSET else after
+
+    def _is_free(self, name: str, key: str) -> bool:
+        """Whether the user neither keeps a property nor offers values of it."""
+        return not self._is_kept(name, key) and (name, key) not in {(each.object, each.key) for each in self.wishes.offers}
 
     def _is_kept(self, name: str, key: str) -> bool:
         return name in self.wishes.keep or f"{name}.{key}" in self.wishes.keep

@@ -19,7 +19,7 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.optimize.evaluation import DesignEvaluator
-from amalthea_uros.optimize.goals import Scale, goals_of, latency_limits
+from amalthea_uros.optimize.goals import Scale, goals_of, latency_limits, object_of
 from amalthea_uros.optimize.limits import Limit, check_limit, parse_limit
 from amalthea_uros.optimize.lower_bounds import sampled_chains
 from amalthea_uros.optimize.problem import Evaluation, Feasibility, Goal, Problem, SearchResult
@@ -170,7 +170,13 @@ def plan_optimization(
         scale=Scale(figures=figures, latencies=latency_limits(before, stated, figures)),
     )
     problem = Problem(
-        present=present, space=space, goals=evaluator.goals, configure=designs.configure, evaluate=evaluator, seed=seed
+        present=present,
+        space=space,
+        goals=evaluator.goals,
+        configure=designs.configure,
+        evaluate=evaluator,
+        seed=seed,
+        named=frozenset([limit.object for limit in stated] + [object_of(goal) for goal in evaluator.goals]),
     )
     findings = unsuppressed((*opened.findings, *before.findings))
     return Plan(subject=subject, problem=problem, before=before, evaluator=evaluator, findings=findings)

@@ -97,6 +97,8 @@ class Partition:
 
     def _are_alike(self, one: str, other: str) -> bool:
         """Whether two cores differ only in their names and those of their schedulers, with nothing bound to them."""
+        if not self.problem.named.isdisjoint((one, other)):
+            return False
         offers = [choice.options for choice in self.choices.values()]
         if self.fixed[one] or self.fixed[other] or any((one in offer) != (other in offer) for offer in offers):
             return False
