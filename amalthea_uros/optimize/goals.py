@@ -110,9 +110,9 @@ def _goal(name: str, system: System) -> Goal:
     return Goal(name=name, unit="ps" if dimension(quantity) is Dimension.TIME else "")
 
 
-def object_of(goal: Goal) -> str:
-    """The object that a goal names; "" if it is about the whole system."""
-    return "" if goal.name in GOALS else split_target(goal.name, goal.name, FORM, EXAMPLE)[0]
+def named_by(goals: Iterable[Goal]) -> frozenset[tuple[str, str]]:
+    """The objects and quantities that goals name."""
+    return frozenset(split_target(goal.name, goal.name, FORM, EXAMPLE) for goal in goals if goal.name not in GOALS)
 
 
 def value_of(goal: Goal, analysis: Analysis, candidate: Candidate, scale: Scale) -> Fraction | None:

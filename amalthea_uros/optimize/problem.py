@@ -79,7 +79,7 @@ class Problem:
     configure : the system and settings of a design; InvalidArgumentError if it is impossible
     goals : the first one counts most; where they are equal, the next one, and in the end the number of changes
     seed : of all random numbers
-    named : objects of which limits and goals speak by name, so that none can take the place of a like one
+    named : objects and their quantities of which limits and goals speak by name
     """
 
     present: Configuration
@@ -88,7 +88,7 @@ class Problem:
     configure: Callable[[Candidate], Configuration]
     evaluate: Evaluator
     seed: int = 1
-    named: frozenset[str] = frozenset()
+    named: frozenset[tuple[str, str]] = frozenset()
 
 
 class Conclusion(StrEnum):

@@ -19,7 +19,7 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.optimize.evaluation import DesignEvaluator
-from amalthea_uros.optimize.goals import Scale, goals_of, latency_limits, object_of
+from amalthea_uros.optimize.goals import Scale, goals_of, latency_limits, named_by
 from amalthea_uros.optimize.limits import Limit, check_limit, parse_limit
 from amalthea_uros.optimize.lower_bounds import sampled_chains
 from amalthea_uros.optimize.problem import Evaluation, Feasibility, Goal, Problem, SearchResult
@@ -176,7 +176,7 @@ def plan_optimization(
         configure=designs.configure,
         evaluate=evaluator,
         seed=seed,
-        named=frozenset([limit.object for limit in stated] + [object_of(goal) for goal in evaluator.goals]),
+        named=frozenset([(limit.object, limit.quantity) for limit in evaluator.limits]) | named_by(evaluator.goals),
     )
     findings = unsuppressed((*opened.findings, *before.findings))
     return Plan(subject=subject, problem=problem, before=before, evaluator=evaluator, findings=findings)

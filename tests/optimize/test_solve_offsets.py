@@ -1,5 +1,6 @@
 """Offsets, against all vectors of offsets."""
 
+from dataclasses import replace
 from itertools import combinations
 from math import lcm, prod
 
@@ -7,9 +8,13 @@ import pytest
 from design_search import offset_problem, offsets, problem_of
 from design_systems import DESIGN, system_of
 
-from amalthea_uros.optimize.problem import Conclusion
+from amalthea_uros.changes.sweep import parse_sweep
+from amalthea_uros.optimize.exhaustive import try_all
+from amalthea_uros.optimize.problem import Conclusion, Goal
 from amalthea_uros.optimize.solvers.offsets import offset_classes, solve_offsets
 from amalthea_uros.optimize.space import Choice, Kind, Space
+from amalthea_uros.services.design_space import Wishes
+from amalthea_uros.services.optimize import plan_optimization
 from amalthea_uros.units import MICROSECOND as US
 
 
@@ -44,6 +49,22 @@ def test_shifts_of_each_other_have_equal_values():
         # The present design is first where it is one of them.
         assert all(len(designs[0]) <= len(design) for design in designs)
     assert all(not set(one) & set(other) for one, other in combinations(classes, 2))
+
+
+def test_what_depends_on_the_start_is_judged_for_each_vector():
+    # All have the same distances, but A is sometimes released alone at the start, and is then earlier than ever after.
+    tasks = [
+        {"name": "A", "C": 1, "T": 3, "O": 2},
+        {"name": "B", "C": 2, "T": 6, "O": 0},
+        {"name": "C", "C": 1, "T": 3, "O": 0},
+    ]
+    offers = tuple(parse_sweep(f"{task['name']}.offset=" + ",".join(f"{n}us" for n in range(task["T"]))) for task in tasks)
+    problem = plan_optimization(system_of(tasks, "ACB"), Wishes(vary=(), offers=offers), goals=["jitter"]).problem
+    assert {len(designs) for designs in offset_classes(problem)} == {1}
+    every = try_all(problem, is_complete=True)
+    assert solve_offsets(problem).best[0].values == every.best[0].values
+    shifted = replace(problem, goals=(Goal(name="load"), Goal(name="changes")), named=frozenset({("A", "response_time")}))
+    assert len(offset_classes(shifted)) == 3 * 6 * 3 // 6
 
 
 def test_jitter_leaves_nothing_to_shift():

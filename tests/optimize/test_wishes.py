@@ -1,5 +1,7 @@
 """What a user says about the space of designs holds: nothing kept changes, and each value is decided once."""
 
+from fractions import Fraction
+
 import pytest
 from design_systems import system_of
 
@@ -56,3 +58,18 @@ def test_like_cores_cannot_take_the_place_of_one_that_a_limit_or_goal_names(limi
     if found is not None:
         assert found.conclusion is Conclusion.OPTIMAL
         assert found.best[0].values == every.best[0].values
+
+
+def test_a_core_that_no_moved_task_uses_can_have_the_largest_load():
+    tasks = [
+        {"name": "A", "C": 1, "T": 8, "D": 8},
+        {"name": "B", "C": 4, "T": 8, "D": 8},
+        {"name": "C", "C": 1, "T": 8, "D": 8},
+    ]
+    cores, core_of = ("one", "two", "three"), {"A": "three", "B": "three", "C": "two"}
+    system = system_of(tasks, cores=cores, core_of=core_of)
+    wishes = Wishes(vary=(), offers=(parse_sweep("A.core=three,two"), parse_sweep("C.core=two,one")))
+    found = solve_mapping(plan_optimization(system, wishes, goals=["load"]).problem)
+    # B alone needs half of its core, so that it is enough to move A, although A and C could have a core each.
+    assert (found.conclusion, [change.target for change in found.best[0].candidate]) == (Conclusion.OPTIMAL, ["A.core"])
+    assert found.best[0].values[0] == Fraction(1, 2)

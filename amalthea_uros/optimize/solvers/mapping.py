@@ -106,7 +106,7 @@ class BranchAndBound:
         partition = self.partition
         sets = {core: frozenset[str]() for core in partition.cores}
         if all(partition.fits(core, frozenset()) for core in partition.cores if partition.fixed[core]):
-            self._extend(partition.tasks(), sets, Fraction(0))
+            self._extend(partition.tasks(), sets, partition.least if self.goal == LOAD else Fraction(0))
         return self._best
 
     def _extend(self, tasks: Sequence[str], sets: dict[str, frozenset[str]], value: Fraction) -> None:

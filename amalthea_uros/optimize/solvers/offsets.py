@@ -13,21 +13,30 @@ from itertools import combinations, product
 from math import gcd, prod
 from typing import TypeAlias
 
+from amalthea_uros.analyze.results import JobMetric, Quantity
 from amalthea_uros.changes.change import Change
 from amalthea_uros.changes.key import Configuration
 from amalthea_uros.optimize.candidate import Candidate
 from amalthea_uros.optimize.problem import Problem, SearchResult
+from amalthea_uros.optimize.quantities import FROM_ARRIVAL, JITTER, LOAD
 from amalthea_uros.optimize.solvers.judged import Judged
 from amalthea_uros.optimize.space import Choice, Kind
+from amalthea_uros.perf.constraints import LatencyConstraint, TimeLimit, TimeMetric
 from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.critical_sections import Protection
 from amalthea_uros.timing.phases import unknown_phases
+from amalthea_uros.timing.preemption import is_preemptive
 from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.timing.scheduling import EqualPriority
 from amalthea_uros.units import Time
 
 #: At most so many vectors are compared, and so many judged.
 MAX_VECTORS, MAX_DESIGNS = 200_000, 5000
+
+#: Quantities that are the same wherever a schedule starts.
+_LASTING = (*Quantity, FROM_ARRIVAL, JobMetric.RESPONSE_TIME, LOAD)
 
 #: The offsets and periods of processes with known releases.
 Releases: TypeAlias = Mapping[str, tuple[Time, Time]]
@@ -54,7 +63,7 @@ def offset_classes(problem: Problem) -> Sequence[Sequence[Candidate]] | None:
     varied = [choice for choice in problem.space.choices if len(choice.options) > 1]
     if not varied or problem.space.orders or any(choice.kind is not Kind.OFFSET for choice in varied):
         return None
-    shifts = _Shifts.of(problem, varied) if _can_be_shifted(problem.present) else None
+    shifts = _Shifts.of(problem, varied) if _can_be_shifted(problem.present) and not _depends_on_start(problem) else None
     classes: dict[object, list[Candidate]] = {}
     for number, design in enumerate(_designs(varied)):
         classes.setdefault(number if shifts is None else shifts.key(design), []).append(design)
@@ -83,6 +92,27 @@ def _can_be_shifted(configuration: Configuration) -> bool:
     if len(context.demands) < len(system.processes):
         return False
     return all(frame.is_always for demand in context.demands.values() for frame in demand.frames)
+
+
+def _depends_on_start(problem: Problem) -> bool:
+    """Whether something that counts can be another one if the same schedule starts at another time, when nothing is pending.
+
+    Nothing ends later at the start than in the long run if all are preemptive, and latencies of chains are those in the long run. But
+    something can end earlier at the start, which has an effect on jitter.
+    """
+    system, settings = problem.present
+    limits = [requirement.limit for requirement in system.constraints.requirements]
+    if not all(isinstance(limit, TimeLimit) and limit.metric is TimeMetric.RESPONSE_TIME for limit in limits):
+        return True
+    if not all(isinstance(constraint, LatencyConstraint) for constraint in system.constraints.constraints):
+        return True
+    if any(quantity not in _LASTING for _, quantity in problem.named) or any(goal.name == JITTER for goal in problem.goals):
+        return True
+    context = TimingContext.of(system, settings)
+    return not all(
+        is_preemptive(item) and item.equal_priority is EqualPriority.FIFO and context.protection[item.name] == Protection()
+        for item in context.scheduled.values()
+    )
 
 
 def _is_shiftable(process: str, system: System) -> bool:

@@ -53,12 +53,14 @@ class Partition:
     ----------
     fixed : the processes of each core that stay there
     is_certain : whether each set that was found not to fit misses a deadline for certain
+    least : the largest load of a core by what stays there, also of cores that are not on offer
     """
 
     problem: Problem
     choices: Mapping[str, Choice]
     fixed: Mapping[str, frozenset[str]]
     is_certain: bool = True
+    least: Fraction = Fraction(0)
     _loads: dict[tuple[str, str], Fraction] = field(default_factory=dict)
     _class_of: dict[str, str] = field(default_factory=dict)
     _fits: dict[tuple[str, frozenset[str]], Fit] = field(default_factory=dict)
@@ -81,11 +83,14 @@ class Partition:
 
     def _find_loads(self) -> bool:
         """Find the loads of single tasks, and the cores that are alike; False if a load is unknown."""
-        for core in self.cores:
+        for core in self.problem.present.system.cores:
             base = self._analysis(core, frozenset()).processors[core].worst
             if base is None:
                 return False
             self._loads[core, ""] = base
+            self.least = max(self.least, base)
+        for core in self.cores:
+            base = self.base(core)
             for task, choice in self.choices.items():
                 if core in choice.options:
                     worst = self._analysis(core, frozenset([task])).processors[core].worst
@@ -97,7 +102,7 @@ class Partition:
 
     def _are_alike(self, one: str, other: str) -> bool:
         """Whether two cores differ only in their names and those of their schedulers, with nothing bound to them."""
-        if not self.problem.named.isdisjoint((one, other)):
+        if {one, other} & {name for name, _ in self.problem.named}:
             return False
         offers = [choice.options for choice in self.choices.values()]
         if self.fixed[one] or self.fixed[other] or any((one in offer) != (other in offer) for offer in offers):
