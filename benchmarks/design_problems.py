@@ -22,6 +22,7 @@ sys.path[:0] = [str(TESTS), str(TESTS / "optimize")]
 from design_search import cores_of, mapping_problem, offset_problem, order_problem, orders_of, problem_of  # noqa: E402
 from design_systems import DESIGN, system_of  # noqa: E402
 from random_orders import all_orders, random_sets  # noqa: E402
+from thesis_designs import changes_of, choose_periods  # noqa: E402
 
 from amalthea_uros import extract, load  # noqa: E402
 from amalthea_uros.analyze.assignment import Outcome, propose_priorities  # noqa: E402
@@ -34,6 +35,7 @@ from amalthea_uros.optimize.solvers.mapping import solve_mapping  # noqa: E402
 from amalthea_uros.optimize.solvers.offsets import solve_offsets  # noqa: E402
 from amalthea_uros.optimize.solvers.priorities import solve_priorities  # noqa: E402
 from amalthea_uros.optimize.space import Choice, Kind, Space  # noqa: E402
+from amalthea_uros.services.optimize import plan_optimization  # noqa: E402
 from amalthea_uros.timing.settings import Settings  # noqa: E402
 from amalthea_uros.units import MICROSECOND as US  # noqa: E402
 
@@ -63,6 +65,25 @@ def mappings(case: dict[str, Any]) -> str:
     return answer(found, case["feasible"], not found.best or found.best[0].values[0] == Fraction(case["min_max_load"]))
 
 
+def periods(case: dict[str, Any]) -> str:
+    found = choose_periods(case).search
+    is_right = len(found.best) == len(case["feasible"])
+    is_best = not found.best or found.best[0].values[0] == Fraction(case["least_load"])
+    return answer(found, bool(case["feasible"]), is_right and is_best)
+
+
+def thesis(case: dict[str, Any]) -> str:
+    """Whether each single change of the thesis's application has the latency that its schedule has."""
+    plan = plan_optimization(TESTS.parent / "samples" / "bodas-test-advanced.yaml", may_be_later=True)
+    figures = plan.evaluator.scale.figures
+    for each in case["rows"]:
+        analysis = analyze_system(*plan.evaluator.designs.configure(changes_of(each)))
+        found = figures.range(analysis, "factor-to-output", "max_reduced_reaction_time")
+        if not found.is_exact or found.upper != each["worst"] * US:
+            return "WRONG"
+    return "found"
+
+
 def answer(found: SearchResult, exists: bool, is_right: bool) -> str:
     """What is known in the end; `open` if a design exists and none was found, or the other way round without a proof."""
     if found.conclusion is Conclusion.NONE:
@@ -78,6 +99,8 @@ GROUPS: dict[str, Callable[[dict[str, Any]], str]] = {
     "audsley_fails": orders,
     "offset_problems": offsets,
     "mapping_problems": mappings,
+    "period_problems": periods,
+    "thesis": thesis,
 }
 
 

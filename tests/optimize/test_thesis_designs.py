@@ -9,9 +9,9 @@ from fractions import Fraction
 
 import pytest
 from support import ROOT, SHARED
+from thesis_designs import changes_of, choose_periods
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.changes.change import Change
 from amalthea_uros.optimize.problem import Conclusion
 from amalthea_uros.optimize.quantities import FROM_ARRIVAL
 from amalthea_uros.services.optimize import optimize, plan_optimization
@@ -28,16 +28,6 @@ ROWS = [row for problem in DESIGN.get("thesis", ()) for row in problem["rows"]]
 @pytest.fixture(scope="module", name="plan")
 def fixture_plan():
     return plan_optimization(SAMPLE, may_be_later=True)
-
-
-def changes_of(row):
-    found = []
-    for key, value in row["change"].items():
-        if key == "priority_order":
-            found += [Change(task, "priority", str(number)) for task, number in zip(value, (3, 2, 1), strict=True)]
-        else:
-            found.append(Change(*key.rsplit(".", 1), f"{value}us"))
-    return tuple(found)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: str(row["change"]))
@@ -96,58 +86,9 @@ def test_a_slower_executor_is_not_proposed_even_where_a_later_answer_is_allowed(
 PROBLEMS = [problem for problem in DESIGN.get("period_problems", ()) if problem["id"][-2:] not in ("03", "09", "11")]
 
 
-def application(problem):
-    executor, subscription, timer = problem["executor"], problem["subscription"], problem["timer"]
-    longest_execution = max(executor["with_message"], subscription["execution_time"], timer["execution_time"])
-    shortest = min(period for period in problem["periods_on_offer"] if period > longest_execution)
-    return f"""
-amuros: 1
-name: periods
-hardware: single-core
-middleware:
-  executor:
-    name: Executor_Task
-    period: {shortest} us
-    priority: 3
-    execution_time: {{base: {executor["base"]} us, per_message: {executor["with_message"] - executor["base"]} us}}
-application:
-  nodes:
-    - name: node
-      timers:
-        - name: Control_Function
-          period: {shortest} us
-          priority: 2
-          execution_time: {timer["execution_time"]} us
-          reads: [b]
-          writes: [c]
-      subscriptions:
-        - name: Message_Factor
-          topic: factor
-          rate: {Fraction(10**6, problem["message_interval"])} Hz
-          message_size: 4 B
-          task_period: {shortest} us
-          priority: 1
-          buffer: a
-          execution_time: {subscription["execution_time"]} us
-          writes: [b]
-chains:
-  - {{name: chain, path: [Executor_Task, Message_Factor, Control_Function], reaction: {problem["chain_limit"]} us}}
-"""
-
-
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem["id"])
 def test_periods_on_offer_are_chosen_as_by_trying_all(problem):
-    offers = ",".join(f"{period}us" for period in problem["periods_on_offer"])
-    tasks = ("Executor_Task", "Message_Factor", "Control_Function")
-    found = optimize(
-        application(problem),
-        vary=(),
-        offers=[f"{task}.period={offers}" for task in tasks],
-        goals=["load", "chain.max_reduced_reaction_time"],
-        is_rate_monotonic=True,
-        may_be_later=True,
-        proposals=0,
-    )
+    found = choose_periods(problem)
     assert found.space.size == len(problem["periods_on_offer"]) ** 3
     assert len(found.search.best) == len(problem["feasible"])
     assert sum(found.search.broken.values()) <= len(problem["excluded"])
