@@ -14,6 +14,7 @@ from amalthea_uros.optimize.solvers.integer_program import solve_program
 from amalthea_uros.optimize.solvers.mapping import BranchAndBound, solve_mapping
 from amalthea_uros.optimize.solvers.partition import Partition
 from amalthea_uros.optimize.space import Choice, Kind, Space
+from amalthea_uros.perf.os import Policy
 
 CASES = DESIGN.get("mapping_problems", ())
 needs_ortools = pytest.mark.skipif(not find_spec("ortools"), reason="OR-tools is not installed")
@@ -102,6 +103,16 @@ def test_equal_runs_of_the_integer_program_are_equal():
     assert results[0] == results[1]
     # Nine tasks of 4.2 cores in total do not fit.
     assert (results[0].assignment, results[0].is_proved) == (None, True)
+
+
+def test_tasks_that_share_time_in_slices_are_left_to_others():
+    # Without one of them, the slices of the others come at other times, which can be later ones.
+    problem = mapping_problem(TASKS, ["one", "two"])
+    system = problem.present.system
+    (os,) = system.os.systems
+    schedulers = tuple(replace(each, policy=Policy.PRIORITY_BASED_ROUND_ROBIN) for each in os.schedulers)
+    slices = replace(system, os=replace(system.os, systems=(replace(os, schedulers=schedulers),)))
+    assert solve_mapping(replace(problem, present=problem.present._replace(system=slices))) is None
 
 
 def test_tasks_that_block_each_other_are_left_to_others():

@@ -28,6 +28,7 @@ from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.critical_sections import Protection
 from amalthea_uros.timing.preemption import is_preemptive
+from amalthea_uros.timing.scheduling import EqualPriority
 from amalthea_uros.timing.settings import Memory
 
 #: All exchanges of at most so many cores are tried.
@@ -188,7 +189,7 @@ class Partition:
 
 
 def _is_separable(problem: Problem) -> bool:
-    """Whether the tasks of a core depend on nothing that others do, and do not block each other."""
+    """Whether the tasks of a core depend on nothing that others do, do not block each other, and do not share time in slices."""
     system, settings = problem.present
     if settings.memory is not Memory.NONE:
         return False
@@ -197,7 +198,10 @@ def _is_separable(problem: Problem) -> bool:
         return False
     context = TimingContext.of(system, settings)
     return len(context.scheduled) == len(system.processes) and all(
-        is_preemptive(item) and item.server is None and context.protection[item.name] == Protection()
+        is_preemptive(item)
+        and item.server is None
+        and item.equal_priority is not EqualPriority.ROUND_ROBIN
+        and context.protection[item.name] == Protection()
         for item in context.scheduled.values()
     )
 
