@@ -1,5 +1,6 @@
 """What a user says about the space of designs holds: nothing kept changes, and each value is decided once."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -11,7 +12,7 @@ from amalthea_uros.optimize.exhaustive import try_all
 from amalthea_uros.optimize.problem import Conclusion
 from amalthea_uros.optimize.solvers.mapping import solve_mapping
 from amalthea_uros.services.design_space import Vary, Wishes
-from amalthea_uros.services.optimize import plan_optimization
+from amalthea_uros.services.optimize import optimize, plan_optimization
 
 TASKS = [{"name": "A", "C": 5, "T": 10, "D": 10}, {"name": "B", "C": 2, "T": 10, "D": 10}]
 
@@ -73,3 +74,19 @@ def test_a_core_that_no_moved_task_uses_can_have_the_largest_load():
     # B alone needs half of its core, so that it is enough to move A, although A and C could have a core each.
     assert (found.conclusion, [change.target for change in found.best[0].candidate]) == (Conclusion.OPTIMAL, ["A.core"])
     assert found.best[0].values[0] == Fraction(1, 2)
+
+
+def test_the_order_of_tasks_in_a_file_does_not_count():
+    tasks = [{"name": name, "C": 1, "T": 20, "D": 20, "O": 0} for name in "ABCD"]
+
+    def proposed(system):
+        found = optimize(system, goals=["jitter"], vary=["offsets"], designs=40, seed=3)
+        return [proposal.changes for proposal in found.proposals]
+
+    system = system_of(tasks)
+    reverse = replace(
+        system,
+        software=replace(system.software, tasks=system.software.tasks[::-1]),
+        mapping=replace(system.mapping, tasks=system.mapping.tasks[::-1]),
+    )
+    assert proposed(system) == proposed(reverse) != []

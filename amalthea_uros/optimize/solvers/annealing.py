@@ -115,7 +115,7 @@ def solve_by_annealing(problem: Problem, designs: int = 2000, ended: Callable[[]
     ----------
     ended : asked between rounds: why to end early, "" to go on
     """
-    space, judged = problem.space, Judged(problem)
+    space, judged = _sorted(problem.space), Judged(problem)
     judged.judge([UNCHANGED])
     scale = sum(each or 0 for each in judged[UNCHANGED].violations.values()) or 1
     start = Design.present(space)
@@ -141,6 +141,14 @@ def solve_by_annealing(problem: Problem, designs: int = 2000, ended: Callable[[]
     if len(judged) == space.size:
         return judged.concluded(f"all {space.size} designs were judged")
     return judged.concluded("", ended=reason or f"{len(judged)} designs were judged")
+
+
+def _sorted(space: Space) -> Space:
+    """The space in an order that does not depend on that of a file."""
+    return Space(
+        choices=tuple(sorted(space.choices, key=lambda choice: choice.target)),
+        orders=tuple(sorted(space.orders, key=lambda order: order.scheduler)),
+    )
 
 
 def _every(space: Space) -> Iterator[Design]:
