@@ -8,7 +8,6 @@ import json
 from fractions import Fraction
 
 import pytest
-from effort import every
 from support import ROOT, SHARED
 
 from amalthea_uros.analyze.system import analyze_system
@@ -136,7 +135,7 @@ chains:
 """
 
 
-@pytest.mark.parametrize("problem", every(2, PROBLEMS), ids=lambda problem: problem["id"])
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem["id"])
 def test_periods_on_offer_are_chosen_as_by_trying_all(problem):
     offers = ",".join(f"{period}us" for period in problem["periods_on_offer"])
     tasks = ("Executor_Task", "Message_Factor", "Control_Function")
