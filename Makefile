@@ -19,6 +19,8 @@ demo: $(READY)
 	$(BIN)/amuros build build/faster.yaml -o build/faster.amxmi
 	$(BIN)/amuros diff build/app.amxmi build/faster.amxmi || true
 	$(BIN)/amuros report samples/bodas-test-advanced.yaml -o build/report.html
+	$(BIN)/amuros measure samples/bodas-test-measured.log --markers samples/bodas-test-measured.markers.yml --select Executor_Task
+	$(BIN)/amuros optimize samples/bodas-test-advanced.yaml --limit 'factor-to-output.max_reduced_reaction_time<11ms' --proposals 1
 
 test: $(READY)
 	$(BIN)/python -m pytest -n auto

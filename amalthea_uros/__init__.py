@@ -9,12 +9,12 @@
 This module is the public interface:
 
 - answers about whatever describes a system (files, the text or content of an `app.yaml`, a model, a system): `analyze`, `simulate`,
-  `what_if`; why, and what would be better: `explain`, `improvements`, `optimize`; their results have `to_records()` and
+  `what_if`; why, and what would be better: `explain`, `improvements`; their results have `to_records()` and
   `to_dataframe()`, and notebooks display them as tables
 - synthetic tasks and chains without any file: `taskset`, `task`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
-- measured times in a description: `calibrate`
+- from measurements to better designs: `measure`, `compare`, `calibrate`, `optimize`, `sweep`, with their results
 - reports of all of these as one HTML page: `report`
 - events of simulations: `EventTable`; changes of values: `parse_change`, `parse_sweep`
 - AMALTHEA models: `Model` (`Model.new()` is an empty one), `check`, `extract`; all AMALTHEA classes are in `amuros.am`
@@ -83,6 +83,8 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Document as Document
     from amalthea_uros.metamodel.model import Model as Model
     from amalthea_uros.metamodel.model import Reference as Reference
+    from amalthea_uros.optimize.problem import Conclusion as Conclusion
+    from amalthea_uros.optimize.problem import SearchResult as SearchResult
     from amalthea_uros.perf.activities import Communication as Communication
     from amalthea_uros.perf.system import System as System
     from amalthea_uros.report.library import Report as Report
@@ -96,6 +98,7 @@ if TYPE_CHECKING:
     from amalthea_uros.services.build import describe as describe
     from amalthea_uros.services.calibrate import Calibration as Calibration
     from amalthea_uros.services.calibrate import calibrate as calibrate
+    from amalthea_uros.services.calibration.values import CalibratedValue as CalibratedValue
     from amalthea_uros.services.campaign.run import Outcome as Outcome
     from amalthea_uros.services.campaign.run import Run as Run
     from amalthea_uros.services.campaign.tables import write_table as write_table
@@ -107,6 +110,7 @@ if TYPE_CHECKING:
     from amalthea_uros.services.comparison.naming import Names as Names
     from amalthea_uros.services.comparison.results import Comparison as Comparison
     from amalthea_uros.services.comparison.results import ComparisonRow as ComparisonRow
+    from amalthea_uros.services.comparison.results import MeasuredLimit as MeasuredLimit
     from amalthea_uros.services.diff import DiffResult as DiffResult
     from amalthea_uros.services.diff import diff as diff
     from amalthea_uros.services.explain import explain as explain
@@ -176,12 +180,14 @@ _NAMES = {
     "measure.statistics": ("Statistics",),
     "metamodel.element": ("Element",),
     "metamodel.model": ("Document", "Model", "Reference"),
+    "optimize.problem": ("Conclusion", "SearchResult"),
     "perf.activities": ("Communication",),
     "perf.system": ("System",),
     "report.library": ("Report", "report"),
     "services.analyze": ("AnalysisResult", "Explanation", "analyze", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
     "services.calibrate": ("Calibration", "calibrate"),
+    "services.calibration.values": ("CalibratedValue",),
     "services.campaign.run": ("Outcome", "Run"),
     "services.campaign.tables": ("write_table",),
     "changes.change": ("Change", "parse_change"),
@@ -189,7 +195,7 @@ _NAMES = {
     "services.check": ("CheckResult", "check", "check_files"),
     "services.compare": ("compare",),
     "services.comparison.naming": ("Meaning", "Names"),
-    "services.comparison.results": ("Comparison", "ComparisonRow"),
+    "services.comparison.results": ("Comparison", "ComparisonRow", "MeasuredLimit"),
     "services.diff": ("DiffResult", "diff"),
     "services.explain": ("explain",),
     "services.improvements": ("Improvement", "Improvements", "improvements"),

@@ -9,6 +9,9 @@ from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import ModelRule, Profile, Rule
 
+#: Families of findings whose examples are logs.
+_TRACES = ("CAN", "TRC")
+
 
 def rule_pages() -> Iterator[tuple[str, str]]:
     """Path and text of each page; rules of users have none."""
@@ -44,11 +47,11 @@ def _examples(kind: FindingKind) -> Iterator[str]:
     if isinstance(kind, ModelRule) and kind.beside is not None:
         yield _example("With another file of the model", kind.beside)
     if kind.fails:
-        yield _example("Fails", kind.fails)
+        yield _example("Fails", kind.fails, "text" if kind.id[:3] in _TRACES else "yaml")
     if isinstance(kind, Rule):
         yield _example("Passes", kind.passes)
 
 
-def _example(title: str, text: str) -> str:
-    language = "xml" if text.lstrip().startswith("<") else "yaml"
+def _example(title: str, text: str, other: str = "yaml") -> str:
+    language = "xml" if text.lstrip().startswith("<") else other
     return f"## {title}\n\n```{language}\n{text.strip(chr(10)).rstrip()}\n```"

@@ -30,7 +30,8 @@ from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import Assignment, analysis_options, set_option
 from amalthea_uros.services.campaign.run import Outcome
 from amalthea_uros.services.campaign.tables import table_format, write_table
-from amalthea_uros.services.sweep import SweepResult, plan_sweep, sweep_files
+from amalthea_uros.services.sweep import SweepResult, sweep_files
+from amalthea_uros.services.sweep_plan import plan_sweep
 from amalthea_uros.timing.settings import Settings
 
 

@@ -8,7 +8,8 @@ from amalthea_uros.analyze.summary import Schedulable
 from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.swept import SweptPicture, draw_swept
-from amalthea_uros.services.sweep import SCHEDULABLE, SweepResult
+from amalthea_uros.services.sweep import SweepResult
+from amalthea_uros.services.sweep_job import SCHEDULABLE
 
 _VERDICTS = {Schedulable.YES: Verdict.MET, Schedulable.NO: Verdict.MISSED, Schedulable.UNKNOWN: Verdict.UNKNOWN}
 

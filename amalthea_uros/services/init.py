@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,10 +43,12 @@ class InitResult:
     ----------
     path : the file
     origin : the board or the example that it is for, as people say it
+    measurement : what was measured of the example: a log of a CAN bus and its markers, in the same folder
     """
 
     path: Path
     origin: str
+    measurement: tuple[Path, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,11 +92,13 @@ def init_from_board(target: Path, board: str = DEFAULT_BOARD, *, force: bool = F
     text = environment.get_template(FILE_NAME).render(
         board=board, summary=_offered(PLATFORMS / f"{board}.yaml").summary, documentation=DOCUMENTATION
     )
-    return InitResult(path=_write(target, text, force), origin=f"board {board}")
+    path = _place(target)
+    _write({path: text}, force)
+    return InitResult(path=path, origin=f"board {board}")
 
 
 def init_from_example(target: Path, example: str, *, force: bool = False) -> InitResult:
-    """Write a copy of an example.
+    """Write a copy of an example, and of its measurement if it has one.
 
     Parameters
     ----------
@@ -102,10 +107,19 @@ def init_from_example(target: Path, example: str, *, force: bool = False) -> Ini
 
     Raises
     ------
-    WriteError : the file exists, or cannot be written.
+    WriteError : a file exists, or cannot be written.
     """
-    text = (_samples() / f"{example}.yaml").read_text(encoding="utf-8")
-    return InitResult(path=_write(target, text, force), origin=f"example {example}")
+    path = _place(target)
+    origins = {path: _samples() / f"{example}.yaml"}
+    if not is_stream(path):
+        origins |= {path.parent / origin.name: origin for origin in _measurement(example)}
+    _write({place: origin.read_text(encoding="utf-8") for place, origin in origins.items()}, force)
+    return InitResult(path=path, origin=f"example {example}", measurement=tuple(origins)[1:])
+
+
+def _measurement(example: str) -> list[Path]:
+    found = (_samples() / f"{example}{suffix}" for suffix in (".log", ".markers.yml"))
+    return [path for path in found if path.exists()]
 
 
 def _samples() -> Path:
@@ -118,14 +132,21 @@ def _offered(path: Path) -> Offered:
     return Offered(name=path.stem, summary=_SENTENCE_END.split(text)[0])
 
 
-def _write(target: Path, text: str, force: bool) -> Path:
-    from amalthea_uros.xmi.files import FileText, write_text
+def _place(target: Path) -> Path:
+    return target if is_stream(target) or (target.suffix in _SUFFIXES and not target.is_dir()) else target / FILE_NAME
 
-    path = target if is_stream(target) or (target.suffix in _SUFFIXES and not target.is_dir()) else target / FILE_NAME
-    if not force and not is_stream(path) and path.exists():
-        advice = "Use --force to replace it, or name another file."
-        raise WriteError([Finding("XMI101", Severity.ERROR, "the file exists already", Location(path), advice)])
-    if path != target:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    write_text(path, FileText(text))
-    return path
+
+def _write(texts: Mapping[Path, str], force: bool) -> None:
+    """Write all files, or none."""
+    from amalthea_uros.xmi.files import FileText, write_texts
+
+    advice = "Use --force to replace it, or name another file."
+    found = [path for path in texts if not force and not is_stream(path) and path.exists()]
+    if found:
+        raise WriteError(
+            [Finding("XMI101", Severity.ERROR, "the file exists already", Location(path), advice) for path in found]
+        )
+    for path in texts:
+        if not is_stream(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+    write_texts({path: FileText(text) for path, text in texts.items()})

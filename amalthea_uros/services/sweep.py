@@ -2,60 +2,30 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias
 
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.impact import Figure, Unit, figures
-from amalthea_uros.analyze.results import Analysis
-from amalthea_uros.analyze.sensitivity import max_growth
 from amalthea_uros.analyze.summary import Schedulable
-from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.changes.apply import Difference, apply
-from amalthea_uros.changes.change import Change, split_target
+from amalthea_uros.changes.change import Change
 from amalthea_uros.changes.key import Configuration
-from amalthea_uros.changes.sweep import FORM, Sweep, combinations, parse_sweep, sampled, variants
+from amalthea_uros.changes.sweep import Sweep
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.names import require
-from amalthea_uros.perf.system import System
 from amalthea_uros.services.campaign.campaign import finished_runs
 from amalthea_uros.services.campaign.executors import executor_for
-from amalthea_uros.services.campaign.run import Outcome, Record, Run, Value
-from amalthea_uros.services.campaign.sending import system_bytes, system_from
+from amalthea_uros.services.campaign.run import Outcome, Record
 from amalthea_uros.services.inputs import SystemInput, open_system
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.services.subject import Subject, open_subject
+from amalthea_uros.services.sweep_job import SCHEDULABLE, AnalysisJob
+from amalthea_uros.services.sweep_plan import SweepPlan, Sweeps, as_sweeps, plan_sweep
 from amalthea_uros.services.timing_changes import described
 from amalthea_uros.services.what_if import Changes, as_changes
 from amalthea_uros.timing.settings import Settings
-
-#: Sweeps as callers give them: `{"Task.period": ["1 ms", "2 ms"]}` or `["Task.period=1ms..5ms/1ms"]`.
-Sweeps: TypeAlias = Mapping[str, Sequence[object]] | Iterable[str | Sweep]
-
-SCHEDULABLE, GROWTH = "schedulable", "maximum_growth"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SweepPlan:
-    """What is to be analysed.
-
-    Attributes
-    ----------
-    sweeps : the values to try
-    runs : the variants
-    total : number of all combinations, of which a sample has fewer
-    seed : of the sample; None without one
-    """
-
-    sweeps: tuple[Sweep, ...]
-    runs: tuple[Run, ...]
-    total: int
-    seed: int | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -122,32 +92,6 @@ class SweepResult(Shown):
         known = {name.removesuffix("_ps"): name for name in self.quantities}
         require("quantity", [quantity.removesuffix("_ps")], known)
         return known[quantity.removesuffix("_ps")]
-
-
-@dataclass(frozen=True, slots=True)
-class AnalysisJob:
-    """Analyses a system with the changes of a run."""
-
-    system: System
-    settings: Settings
-    changes: tuple[Change, ...] = ()
-    with_growth: bool = False
-
-    def __call__(self, run: Run) -> Record:
-        """The results as a row of a table."""
-        analysis = analyze_system(*apply(self.system, self.settings, (*self.changes, *run.changes)))
-        found = _record(analysis)
-        if self.with_growth:
-            growth = max_growth(analysis)
-            found[GROWTH] = None if growth is None else float(growth)
-        return found
-
-    def __reduce__(self) -> tuple[object, ...]:
-        return _received_job, (system_bytes(self.system), self.settings, self.changes, self.with_growth)
-
-
-def _received_job(system: bytes, settings: Settings, changes: tuple[Change, ...], with_growth: bool) -> AnalysisJob:
-    return AnalysisJob(system_from(system), settings, changes, with_growth)
 
 
 def sweep(
@@ -257,66 +201,9 @@ def sweep_opened(
     )
 
 
-def plan_sweep(sweeps: tuple[Sweep, ...], sample: int | None = None, seed: int = 1) -> SweepPlan:
-    """The variants of all combinations, or of a sample.
-
-    Raises
-    ------
-    InvalidArgumentError : nothing is swept, a sample without anything, too many combinations, or two sweeps of one property.
-    """
-    if not sweeps:
-        raise InvalidArgumentError(f"nothing is swept; expected {FORM}")
-    if sample is not None and sample < 1:
-        raise InvalidArgumentError(f"a sample of {sample} variants is not possible; expected at least 1")
-    found = variants(sweeps) if sample is None else sampled(sweeps, sample, seed)
-    runs = tuple(Run(number, seed, changes) for number, changes in enumerate(found, start=1))
-    return SweepPlan(sweeps=sweeps, runs=runs, total=combinations(sweeps), seed=None if sample is None else seed)
-
-
-def as_sweeps(sweeps: Sweeps) -> tuple[Sweep, ...]:
-    """Sweeps in any of the forms that callers give.
-
-    Raises
-    ------
-    InvalidArgumentError : a text is not of the form of a sweep, or a list of values is empty.
-    """
-    if isinstance(sweeps, Mapping):
-        return tuple(_listed(target, values) for target, values in sweeps.items())
-    texts: Sequence[str | Sweep] = [sweeps] if isinstance(sweeps, str) else list(sweeps)
-    return tuple(each if isinstance(each, Sweep) else parse_sweep(each) for each in texts)
-
-
-def _listed(target: str, values: Sequence[object]) -> Sweep:
-    if isinstance(values, str):
-        return parse_sweep(f"{target}={values}")
-    if not values:
-        raise InvalidArgumentError(f"{target!r} has no values to try")
-    return Sweep(*split_target(target, target, FORM, "Executor_Task.period"), tuple(map(str, values)))
-
-
 def _check_values(present: Configuration, changes: Sequence[Change], sweeps: Sequence[Sweep]) -> None:
     """Refuse wrong names and values before the first analysis; of long sweeps the ends are tried."""
     for each in sweeps:
         for value in (each.values[0], each.values[-1]):
             changed = apply(*present, (*changes, Change(each.object, each.key, value)))
             require_settings(changed.settings, changed.system)
-
-
-def _record(analysis: Analysis) -> dict[str, Value]:
-    """The compared figures of an analysis, by names such as "Executor_Task.worst_case_response_time_ps"."""
-    found: dict[str, Value] = {}
-    names: Counter[str] = Counter()
-    for figure in figures(analysis):
-        name = f"{figure.object}.{figure.quantity}".removeprefix(".")
-        names[name] += 1
-        # Requirements of one name can limit several quantities.
-        number = f" {names[name]}" if names[name] > 1 else ""
-        found[name + number + ("_ps" if figure.unit is Unit.TIME else "")] = _cell(figure)
-    return found
-
-
-def _cell(figure: Figure) -> Value:
-    value = figure.value
-    if value is None or isinstance(value, str):
-        return None if value is None else str(value)
-    return int(value) if figure.unit is Unit.TIME else float(value)

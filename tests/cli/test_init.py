@@ -1,6 +1,7 @@
 """`amuros init`: a description that works at once, and never a file lost."""
 
 import json
+import re
 
 import pytest
 from command import amuros
@@ -44,13 +45,39 @@ def test_an_example_is_copied_as_it_is(example, tmp_path):
     assert (tmp_path / "app.yaml").read_bytes() == (ROOT / "samples" / f"{example}.yaml").read_bytes()
 
 
+def test_an_example_has_its_measurement_beside_it(tmp_path):
+    run = amuros("init", "new/my.yaml", "--example", "bodas-test-measured", cwd=tmp_path)
+    files = ["bodas-test-measured.log", "bodas-test-measured.markers.yml"]
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == [*files, "my.yaml"]
+    assert all((tmp_path / "new" / name).read_bytes() == (ROOT / "samples" / name).read_bytes() for name in files)
+    (command,) = re.findall("amuros (calibrate .*?) +#", run.stdout)
+    assert amuros(*command.split(), "--quiet", cwd=tmp_path).returncode == 0
+
+
+def test_a_measurement_that_exists_is_not_replaced_and_nothing_is_written(tmp_path):
+    log = tmp_path / "bodas-test-measured.log"
+    log.write_text("mine")
+    run = amuros("init", "--example", "bodas-test-measured", cwd=tmp_path)
+    assert (run.returncode, run.stderr.partition("\n")[0]) == (2, f"{log.name}: XMI101 error: the file exists already")
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["mine"]
+
+
+def test_standard_output_has_no_measurement(tmp_path):
+    run = amuros("init", "-", "--example", "bodas-test-measured", cwd=tmp_path)
+    assert run.stdout == (ROOT / "samples" / "bodas-test-measured.yaml").read_text()
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_every_example_is_in_the_wheel():
     import tomllib
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())
     included = project["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"]
     samples = {source: target for source, target in included.items() if source.startswith("samples/")}
-    assert samples == {f"samples/{name}.yaml": f"amalthea_uros/samples/{name}.yaml" for name in example_names()}
+    examples = [f"{name}{suffix}" for name in example_names() for suffix in (".yaml", ".log", ".markers.yml")]
+    assert samples == {
+        f"samples/{name}": f"amalthea_uros/samples/{name}" for name in examples if (ROOT / "samples" / name).exists()
+    }
 
 
 @pytest.mark.parametrize(

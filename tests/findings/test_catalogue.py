@@ -7,11 +7,12 @@ from collections import defaultdict
 import pytest
 from support import MODEL, ROOT
 
-from amalthea_uros import build, load
+from amalthea_uros import build, load, measure
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings import catalogue
 from amalthea_uros.services.settings import project_settings
+from amalthea_uros.trace.state_charts import check_trace
 from amalthea_uros.validate import registry
 
 ALL_KINDS = [kind for family in catalogue.FAMILIES for kind in catalogue.kinds(family)]
@@ -86,6 +87,8 @@ def reported(example, family, folder):
                 path = folder / "app.yaml"
                 path.write_text(example)
                 return build(path).assembly.findings
+            case "CAN" | "MEA" | "TRC":
+                return found_in_trace(example, folder)
         path = folder / "model.amxmi"
         whole = example.lstrip().startswith(("<am:", "<!"))
         path.write_text(example.lstrip() if whole else MODEL.format(example))
@@ -93,6 +96,19 @@ def reported(example, family, folder):
         return [*model.findings, *extract(model).findings]
     except ReadError as error:
         return error.findings
+
+
+def found_in_trace(example, folder):
+    """The findings of measuring in an example: a file of markers, or a trace whose format its text shows."""
+    if example.startswith("Task:"):
+        (folder / "markers.yaml").write_text(example)
+        return measure(ROOT / "samples" / "bodas-test-measured.log", markers=folder / "markers.yaml").findings
+    suffix = "log" if example.startswith("(") else "csv" if example.startswith("object") else "btf"
+    path = folder / f"run.{suffix}"
+    path.write_text(example)
+    if suffix == "btf":
+        return check_trace(path)
+    return measure(path, **({"start": "123#11", "end": "123#12"} if suffix == "log" else {})).findings
 
 
 def test_ids_of_nothing():

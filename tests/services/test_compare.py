@@ -163,11 +163,11 @@ def test_the_same_mean_with_another_distribution_is_told():
 def test_a_latency_without_the_number_of_its_stimulus_proves_no_limit_as_kept():
     # The real latencies are at least these: the limit of 25 ms may be missed.
     quick = series("factor-to-output", "reduced_reaction_time", [900] * 10, Kind.CHAIN, is_least=True)
-    found = compare(ADVANCED, measurement(quick))
+    found = compare(ADVANCED, measurement(quick), by=["analysis"])
     assert [(row.statistic, row.verdict) for row in found.find(quick.name, quick.quantity)] == [("max", "within")]
     assert [limit.verdict for limit in found.limits if limit.object == quick.name] == ["not_observed"]
     slow = series("factor-to-output", "reduced_reaction_time", [30_000] * 10, Kind.CHAIN, is_least=True)
-    found = compare(ADVANCED, measurement(slow))
+    found = compare(ADVANCED, measurement(slow), by=["analysis"])
     assert found.find(slow.name, slow.quantity)[0].verdict == "refuted"
     assert [limit.verdict for limit in found.limits if limit.object == slow.name] == ["observed_missed"]
 

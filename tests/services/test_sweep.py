@@ -29,9 +29,12 @@ def test_other_results_depend_on_neither_workers_nor_their_number():
 
 
 def test_the_reserve_of_a_variant_is_that_of_its_analysis():
-    row = amuros.sweep(YAML, {"Control_Function.execution_time": ["50 us"]}, with_growth=True).to_records()[0]
-    changed = amuros.analyze(YAML, changes=["Control_Function.execution_time=50us"])
-    assert row["maximum_growth"] == float(amuros.sensitivity(changed).everything)
+    tasks = amuros.taskset([(10, 1), (20, 4)], unit="ms", priorities="rate monotonic")
+    rows = amuros.sweep(tasks, {"T1.execution_time": ["2 ms", "8 ms"]}, with_growth=True).to_records()
+    changed = amuros.analyze(tasks, changes=["T1.execution_time=2ms"])
+    assert rows[0]["maximum_growth"] == float(amuros.sensitivity(changed).everything)
+    # Both tasks together need 2 * 2 + 4 or 2 * 8 + 4 of 20 ms, so that they may grow to 20/8 or 1, in steps of the search.
+    assert [row["maximum_growth"] for row in rows] == pytest.approx([2.5, 1], abs=0.01)
 
 
 def test_a_sample_has_other_variants_for_other_seeds_and_none_twice():

@@ -12,6 +12,10 @@ KINDS = (
         severity=Severity.ERROR,
         rationale="The line is damaged, or has no time stamp or one that cannot be right. It is ignored, so a frame may be missing.",
         remedy="Check that the log is complete. candump writes time stamps with `-l`, `-L` or `-ta`.",
+        fails="""\
+(1436509052.249713) can0 123#11
+(1436509052.250713) can0 123#112
+""",
     ),
     FindingKind(
         id="CAN002",
@@ -19,6 +23,9 @@ KINDS = (
         severity=Severity.WARNING,
         rationale="The last line has no end. Some of its data may be missing, so it is not used.",
         remedy="Check that the log was written and copied completely.",
+        fails="""\
+(1436509052.249713) can0 123#11
+(1436509052.250713) can0 123#1""",
     ),
     FindingKind(
         id="CAN003",
@@ -26,6 +33,11 @@ KINDS = (
         severity=Severity.WARNING,
         rationale="The recorder, or the controller, received more frames than it could store. Nothing is paired across the gap.",
         remedy="Record with a larger buffer (`candump -r`) or with filters, or evaluate only the part without gaps.",
+        fails="""\
+(1436509052.249713) can0 123#11
+DROPCOUNT: dropped 12 CAN frames on 'can0' socket (total drops 12)
+(1436509052.250713) can0 123#11
+""",
     ),
     FindingKind(
         id="CAN004",
@@ -33,6 +45,10 @@ KINDS = (
         severity=Severity.WARNING,
         rationale="The controller reported an error of the bus. A frame that is sent again after an error is late.",
         remedy="Check the wiring, the bit rate and the load of the bus.",
+        fails="""\
+(1436509052.249713) can0 123#11
+(1436509052.250713) can0 20000008#0000040000000000
+""",
     ),
     FindingKind(
         id="CAN005",
@@ -68,6 +84,10 @@ KINDS = (
         severity=Severity.WARNING,
         rationale="Somebody or something set the clock of the recorder. How long the interval across the step was is not known.",
         remedy="Keep the clock from being set while recording, e.g. by a time server.",
+        fails="""\
+(1436509052.249713) can0 123#11
+(1436509051.250713) can0 123#11
+""",
     ),
     FindingKind(
         id="CAN010",
@@ -75,6 +95,11 @@ KINDS = (
         severity=Severity.INFO,
         rationale="The bus may have been silent; but a clock that was set forward, or an interrupted recording, looks the same.",
         remedy="Check what happened then; evaluate only the part before or after if it was not the bus.",
+        fails="""\
+(1436509052.249713) can0 123#11
+(1436509052.250713) can0 123#11
+(1436509092.251713) can0 123#11
+""",
     ),
     FindingKind(
         id="CAN011",
@@ -85,6 +110,12 @@ KINDS = (
             "different frames."
         ),
         remedy="Choose one of the channels.",
+        fails="""\
+(1436509052.249713) can0 123#11
+(1436509052.249714) can1 123#11
+(1436509052.250713) can0 123#12
+(1436509052.250714) can1 123#12
+""",
     ),
     FindingKind(
         id="CAN012",

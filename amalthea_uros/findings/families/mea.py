@@ -71,6 +71,11 @@ KINDS = (
         severity=Severity.ERROR,
         rationale="The line has too few fields, or something else in the place of a time. It is ignored, so a value is missing.",
         remedy="Correct the line, or the tool that wrote it.",
+        fails="""\
+object,value_us
+Task,12.5
+Task,fast
+""",
     ),
     FindingKind(
         id="MEA010",
@@ -78,6 +83,9 @@ KINDS = (
         severity=Severity.ERROR,
         rationale="The file cannot be read, or an object in it has no markers or keys that are not known.",
         remedy="Correct the place; an example: `Task: {start: 0x18000001, end: 0x18000002}`.",
+        fails="""\
+Task: {start: 0x18000001, stop: 0x18000002}
+""",
     ),
     FindingKind(
         id="MEA011",

@@ -19,6 +19,11 @@ KINDS = (
         severity=Severity.ERROR,
         rationale="The line has too few fields, or something else in the place of a number. It is ignored, so an event is missing.",
         remedy="Correct the line, or the tool that wrote it.",
+        fails="""\
+#version 2.3.0
+#timeScale ns
+0,Core_0,0,T,Task
+""",
     ),
     FindingKind(
         id="TRC003",
@@ -27,6 +32,11 @@ KINDS = (
         rationale="The format does not define the event for entities of this type, or the event is not about scheduling, interrupts, "
         "runnables or data. It is ignored.",
         remedy="Check the spelling; if the event is an extension of another tool, nothing needs to be done.",
+        fails="""\
+#version 2.3.0
+#timeScale ns
+0,Core_0,0,T,Task,0,begin
+""",
     ),
     FindingKind(
         id="TRC004",
@@ -34,6 +44,12 @@ KINDS = (
         severity=Severity.ERROR,
         rationale="The lines of a trace are in the order of time. The event is ignored, because it is not known when it occurred.",
         remedy="Sort the events by time without changing the order of those at the same time.",
+        fails="""\
+#version 2.3.0
+#timeScale ns
+1000,Stimulus,0,T,Task,0,activate
+500,Core_0,0,T,Task,0,start
+""",
     ),
     FindingKind(
         id="TRC005",
@@ -41,6 +57,9 @@ KINDS = (
         severity=Severity.WARNING,
         rationale="The header states the unit of the times and the version of the format; a wrong unit makes all results wrong.",
         remedy="Add the missing line, e.g. `#timescale ns`.",
+        fails="""\
+0,Stimulus,0,T,Task,0,activate
+""",
     ),
     FindingKind(
         id="TRC006",
@@ -55,6 +74,12 @@ KINDS = (
         severity=Severity.ERROR,
         rationale="The state chart of BTF does not allow the event in this state. Times in states are then not reliable.",
         remedy="Check for lost events, and whether the tool that wrote the trace follows BTF 2.3.0.",
+        fails="""\
+#version 2.3.0
+#timeScale ns
+0,Stimulus,0,T,Task,0,activate
+100,Core_0,0,T,Task,0,terminate
+""",
     ),
     FindingKind(
         id="TRC011",

@@ -7,8 +7,8 @@ from typing import Any
 from amalthea_uros.measure.series import Counts, Measurement, Series
 from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.report.findings import finding_json
+from amalthea_uros.report.json.simulation_result import histogram_json
 from amalthea_uros.report.measured import closing_line, exceedance, histogram_of
-from amalthea_uros.simulate.results import Histogram
 from amalthea_uros.units import Time
 
 
@@ -42,7 +42,7 @@ def series_json(series: Series, resolution: Time | None = None) -> dict[str, Any
         "latency": None if found is None else statistics_json(found),
         "jitter": None if found is None else _jitter(series, found),
         "exceedance": None if limit is None else float(limit),
-        "histogram": None if histogram is None else _histogram(histogram),
+        "histogram": None if histogram is None else histogram_json(histogram),
         "counts": _counts(series.counts),
         "baseline": None if series.baseline is None else statistics_json(series.baseline),
         "net_range": None if series.net_range is None else dict(zip(("min_ps", "max_ps"), series.net_range, strict=True)),
@@ -80,7 +80,3 @@ def _counts(counts: Counts) -> dict[str, int]:
         "duplicated": counts.duplicated,
         "reordered": counts.reordered,
     }
-
-
-def _histogram(found: Histogram) -> dict[str, list[int]]:
-    return {"edges_ps": [round(edge) for edge in found.edges], "counts": list(found.counts)}

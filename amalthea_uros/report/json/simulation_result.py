@@ -138,7 +138,7 @@ def _observation(found: MetricObservation) -> dict[str, Any]:
         "jitter_ps": round(found.jitter),
         "at_min": _occurrence(found.at_min),
         "at_max": _occurrence(found.at_max),
-        **({} if found.histogram is None else {"histogram": _histogram(found.histogram)}),
+        **({} if found.histogram is None else {"histogram": histogram_json(found.histogram)}),
     }
 
 
@@ -146,7 +146,8 @@ def _occurrence(found: Occurrence) -> dict[str, int]:
     return {"instance": found.instance, "time_ps": round(found.time)}
 
 
-def _histogram(found: Histogram) -> dict[str, list[int]]:
+def histogram_json(found: Histogram) -> dict[str, list[int]]:
+    """The edges of the bins, and the values in each."""
     return {"edges_ps": [round(edge) for edge in found.edges], "counts": list(found.counts)}
 
 

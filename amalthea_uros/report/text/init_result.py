@@ -14,18 +14,27 @@ _NEXT = (
     ("amuros report {} -o report.html", "show it to others"),
     ("amuros build {}", "make the AMALTHEA model"),
 )
+#: With a measurement, a log and its markers.
+_NEXT_MEASURED = (
+    ("amuros measure {1} --markers {2}", "show what was measured"),
+    ("amuros calibrate {0} {1} --markers {2}", "put measured times into the description"),
+)
 
 
 def write(result: InitResult, terminal: Terminal) -> None:
     """Write the name of the file, and the next commands."""
     write_closing(result, terminal)
     terminal.heading("Next:")
-    commands = [(command.format(shlex.quote(str(result.path))), purpose) for command, purpose in _NEXT]
+    files = [shlex.quote(str(path)) for path in (result.path, *result.measurement)]
+    following = (*_NEXT, *_NEXT_MEASURED) if result.measurement else _NEXT
+    commands = [(command.format(*files), purpose) for command, purpose in following]
     width = max(len(command) for command, _ in commands)
     for command, purpose in commands:
         terminal.line(f"  {command.ljust(width)}  {terminal.style(f'# {purpose}', '2')}")
 
 
 def write_closing(result: InitResult, terminal: Terminal) -> None:
-    """Write the name of the file."""
+    """Write the names of the files."""
     terminal.line(f"{terminal.style(str(result.path), '1')}: written from {result.origin}")
+    if result.measurement:
+        terminal.line(f"{', '.join(terminal.style(str(path), '1') for path in result.measurement)}: its measurement")
