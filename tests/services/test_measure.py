@@ -3,6 +3,7 @@
 import random
 import shutil
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
 from command import amuros as command
@@ -134,6 +135,52 @@ def test_damaged_lines_are_counted_and_the_rest_is_measured(tmp_path):
     found = amuros.measure(path, start="101", end="102")
     assert microseconds(found.series[0]) == [30, 40]
     assert any(rule.startswith("CAN") for rule in rules(found))
+
+
+@pytest.mark.parametrize("options", [{}, {"counter": "byte 0"}])
+def test_damage_that_shows_makes_no_value_that_nobody_traced(options, tmp_path):
+    """Characters too many, missing or of another kind, cut and repeated lines: only a digit for a digit leaves a line valid."""
+    generator = random.Random(7)
+    times = [generator.randrange(40, 70) for _ in range(2000)]
+    starts = [300 * job + generator.randrange(200) for job in range(2000)]
+    frames = [
+        (start + wait, f"{marker}#{job % 256:02X}")
+        for job, (start, time) in enumerate(zip(starts, times, strict=True))
+        for wait, marker in ((0, "101"), (time, "102"))
+    ]
+    path = log(tmp_path, *frames)
+    lines = [damaged(generator, line) if generator.random() < 0.1 else line for line in path.read_text().splitlines()]
+    path.write_text("\n".join(lines) + "\n")
+    found = amuros.measure(path, start="101", end="102", **options)
+    duration, distance = found.series
+    known = dict(zip(starts, times, strict=True))
+    for value, end in zip(microseconds(duration), duration.times.tolist(), strict=True):
+        assert known[starts[0] + end // US - value] == value
+    assert set(microseconds(distance)) <= {later - earlier for earlier, later in pairwise(starts)}
+    assert duration.statistics.count > 1500
+    assert "MEA013" in rules(found)
+
+
+def damaged(generator, line):
+    place = generator.randrange(len(line))
+    match generator.randrange(5):
+        case 0:
+            return line[:place] + line[place + 1 :]
+        case 1:
+            return line[:place] + generator.choice("0x#( \x00") + line[place:]
+        case 2:
+            return line[:place] + generator.choice("z?.;\x7f") + line[place + 1 :]
+        case 3:
+            return line[:place]
+        case _:
+            return line + "\n" + line
+
+
+def test_nothing_is_paired_across_a_line_that_cannot_be_read(tmp_path):
+    """The end of one job and the start of the next are in two lines that are damaged: that is no job of 1,040 us."""
+    path = log(tmp_path, (0, "101"), (40, "1?2"), (1000, "1?1"), (1040, "102"), (2000, "101"), (2030, "102"))
+    found = amuros.measure(path, start="101", end="102")
+    assert [microseconds(series) for series in found.series] == [[30]]
 
 
 def test_a_window_leaves_out_the_start_up(tmp_path):

@@ -93,4 +93,12 @@ KINDS = (
         rationale="Its times are to be subtracted from those of others, which therefore still contain the cost of measuring.",
         remedy="Check the markers of the empty object, or give the trace with it: `--baseline-from TRACE`.",
     ),
+    FindingKind(
+        id="MEA013",
+        title="minimum and maximum of a damaged log",
+        severity=Severity.WARNING,
+        rationale="Many lines cannot be read, so others are probably damaged in a way that leaves them valid: a wrong digit in a time "
+        "makes one value longer or shorter. Nothing is paired across the lines that cannot be read.",
+        remedy="Copy or record the log again. Means and percentiles change little by a few wrong values, a minimum and a maximum much.",
+    ),
 )
