@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -86,8 +87,9 @@ def reactions(
     is_back = np.concatenate([[False], (time[1:] < time[:-1]) & (segment[1:] == segment[:-1])])[: len(time)]
     segment = segment + np.cumsum(is_back)
     found, unanswered = LatencyLists(), 0
-    for part in np.unique(segment).tolist():
-        here = segment == part
+    borders = [0, *(np.flatnonzero(np.diff(segment)) + 1).tolist(), len(segment)]
+    for first, end in pairwise(borders if len(segment) else []):
+        here = slice(first, end)
         latencies = RouteLatencies(found.note)
         kept, stamps, repeated = _stamped(is_response[here], None if number is None else number[here])
         duplicated += repeated

@@ -1,5 +1,6 @@
 """Measuring files: logs of a CAN bus with markers, traces of events, tables of values."""
 
+import gzip
 import random
 import shutil
 from fractions import Fraction
@@ -7,9 +8,11 @@ from itertools import pairwise
 
 import pytest
 from command import amuros as command
+from ctf_traces import write_zephyr, zephyr_event
 from support import ROOT
 
 import amalthea_uros as amuros
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.measure.series import Kind
 from amalthea_uros.units import MICROSECOND as US
@@ -176,6 +179,19 @@ def damaged(generator, line):
             return line + "\n" + line
 
 
+@pytest.mark.parametrize("step", [2_000, 500_000])
+def test_a_clock_that_is_set_forward_within_a_job_is_told(step, tmp_path):
+    """A job that took so long would look the same: the time is kept, since it may be the one that matters."""
+    frames = [(1000 * job + wait, marker) for job in range(100) for wait, marker in ((0, "101"), (40, "102"))]
+    frames[101:] = [(time + step, marker) for time, marker in frames[101:]]
+    found = amuros.measure(log(tmp_path, *frames), start="101", end="102")
+    assert found.series[0].statistics.max == (40 + step) * US
+    [finding] = [finding for finding in found.findings if finding.rule == "MEA014"]
+    assert (finding.severity, finding.object) == (Severity.WARNING, "interval")
+    without = amuros.measure(log(tmp_path, *frames[:100]), start="101", end="102")
+    assert "MEA014" not in rules(without)
+
+
 def test_nothing_is_paired_across_a_line_that_cannot_be_read(tmp_path):
     """The end of one job and the start of the next are in two lines that are damaged: that is no job of 1,040 us."""
     path = log(tmp_path, (0, "101"), (40, "1?2"), (1000, "1?1"), (1040, "102"), (2000, "101"), (2030, "102"))
@@ -337,6 +353,34 @@ def test_hostile_logs_are_measured_or_refused_in_words(tmp_path):
 def test_options_that_cannot_be_right_are_refused(options, says):
     with pytest.raises(ValueError, match=says):
         amuros.measure(LOG, **options)
+
+
+def test_a_folder_of_a_tracer_is_measured(tmp_path):
+    """Three jobs of 6 us: ready, switched in, waiting, switched out."""
+    steps = (("thread_ready", 0), ("thread_switched_in", 1), ("thread_pending", 5), ("thread_switched_out", 6))
+    events = [zephyr_event(1000 * (100 * job + at), name, (1, "control")) for job in range(3) for name, at in steps]
+    folder = write_zephyr(tmp_path / "ctf", events)
+    found = amuros.measure(folder)
+    assert microseconds(found.find("control", "response_time")) == [6, 6, 6]
+    assert (found.format, len(found.digest)) == ("CTF", 64)
+    (folder / "channel0_0").write_bytes(b"".join(events[:-1]))
+    assert amuros.measure(folder).digest != found.digest
+    refused = command("measure", str(folder), "--markers", str(MARKERS))
+    assert (refused.exit_code, "not a log of a CAN bus" in refused.stderr) == (2, True)
+
+
+@pytest.mark.parametrize("name", ["run.txt", "run", "run.asc", "run.csv", "run.packed"])
+def test_a_log_of_candump_is_recognised_whatever_it_is_called(name, tmp_path):
+    path = tmp_path / name
+    path.write_bytes(gzip.compress(LOG.read_bytes()) if name == "run.packed" else LOG.read_bytes())
+    assert amuros.measure(path, markers=MARKERS).series == amuros.measure(LOG, markers=MARKERS).series
+
+
+def test_a_log_of_an_operating_system_is_none_of_a_bus(tmp_path):
+    path = tmp_path / "run.log"
+    path.write_text("+0; Control; activate;\n+1000; Control; switch;\n+6000; Control; terminate;\n")
+    found = amuros.measure(path)
+    assert (found.format, microseconds(found.find("Control", "response_time"))) == ("TRACE32 task events", [6])
 
 
 def test_the_command_shows_a_table_and_draws_a_picture(tmp_path):

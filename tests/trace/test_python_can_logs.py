@@ -149,6 +149,13 @@ def test_a_line_on_which_python_can_fails_is_counted_and_the_rest_is_read(tmp_pa
     assert "(2 times" in finding.message
 
 
+def test_a_damaged_packed_file_is_read_up_to_the_damage(tmp_path):
+    packed = gzip.compress((ASC + "   0.010000 1  123             Rx   d 1 11\n" * 5000).encode())
+    frames, log = read(tmp_path / "run.asc.gz", packed[: len(packed) // 2])
+    assert 0 < len(frames) < 5000
+    assert rules(log) == ["TRC006"]
+
+
 @pytest.mark.parametrize("suffix", FORMATS)
 def test_damaged_files_are_findings(tmp_path, suffix):
     whole = tmp_path / f"whole{suffix}"

@@ -29,7 +29,7 @@ _NEVER_PACKED = ".mf4"
 _BEGINS = {".blf": b"LOGG", ".mf4": b"MDF     4", ".trc": b";$FILEVERSION"}
 #: So many bytes and lines are looked at, of which the first may be damaged.
 _HEAD, _LINES = 1 << 14, 50
-#: What comes from standard input: candump writes to a pipe.
+#: What comes from standard input or another pipe: candump writes to it.
 _PIPED = ".log"
 
 
@@ -62,7 +62,7 @@ def open_can_log(path: Path, *, channel: str | None = None) -> CanLog:
 
 
 def _suffix(path: Path) -> str | None:
-    if path == STANDARD_INPUT:
+    if path == STANDARD_INPUT or path.is_fifo():
         return _PIPED
     return _recognised(first_bytes(path, _HEAD)) or _named(path)
 

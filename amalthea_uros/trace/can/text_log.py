@@ -74,7 +74,9 @@ class TextLog(PythonCanLog):
                 message = next(messages)
             except StopIteration:
                 return
-            except Exception:  # of many kinds, which python-can does not document; the line is to blame
+            except Exception as error:  # of many kinds, which python-can does not document; the line is to blame
+                if feed.failure is not None:
+                    raise feed.failure from error
                 self._report_damage("a line cannot be read; it is ignored", feed.place)
                 self._note_loss(feed.place)
                 feed.use()
