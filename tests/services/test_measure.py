@@ -366,7 +366,7 @@ def test_a_folder_of_a_tracer_is_measured(tmp_path):
     (folder / "channel0_0").write_bytes(b"".join(events[:-1]))
     assert amuros.measure(folder).digest != found.digest
     refused = command("measure", str(folder), "--markers", str(MARKERS))
-    assert (refused.exit_code, "not a log of a CAN bus" in refused.stderr) == (2, True)
+    assert (refused.returncode, "not a log of a CAN bus" in refused.stderr) == (2, True)
 
 
 @pytest.mark.parametrize("name", ["run.txt", "run", "run.asc", "run.csv", "run.packed"])
