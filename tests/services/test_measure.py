@@ -369,6 +369,35 @@ def test_a_folder_of_a_tracer_is_measured(tmp_path):
     assert (refused.returncode, "not a log of a CAN bus" in refused.stderr) == (2, True)
 
 
+@pytest.mark.parametrize("end", ["btf", "csv"])
+def test_an_event_that_cannot_be_read_makes_no_value_that_nobody_traced(end, tmp_path):
+    """A job whose start is damaged would else be one that takes no time, and a missing one would double a period."""
+    trace = tmp_path / f"run.{end}"
+    run = command("simulate", ROOT / "samples" / "bodas-test-advanced.yaml", "--duration", "60ms", "--trace", trace)
+    assert run.returncode == 0, run.stderr
+    lines = trace.read_text().splitlines(keepends=True)
+    whole = {(series.name, series.quantity): set(series.values.tolist()) for series in amuros.measure(trace).series}
+    generator = random.Random(3)
+    for _ in range(12):
+        place = generator.randrange(len(lines) // 3, len(lines))
+        trace.write_text("".join([*lines[:place], "damaged\n", *lines[place + 1 :]]))
+        found = amuros.measure(trace)
+        assert "TRC002" in rules(found)
+        for series in found.series:
+            assert set(series.values.tolist()) <= whole[series.name, series.quantity]
+
+
+def test_a_chain_begins_with_the_activation_or_is_not_measured(tmp_path):
+    """A trace that begins between the activation of a job and its first step does not have the begin of that chain."""
+    trace = tmp_path / "run.csv"
+    command("simulate", ROOT / "samples" / "executor.amxmi", "--duration", "60ms", "--trace", trace)
+    header, *lines = trace.read_text().splitlines(keepends=True)
+    whole = set(amuros.measure(trace).find("factor_to_output", "reduced_reaction_time").values.tolist())
+    for first in range(0, len(lines) // 2, 37):
+        trace.write_text("".join([header, *lines[first:]]))
+        assert set(amuros.measure(trace).find("factor_to_output", "reduced_reaction_time").values.tolist()) <= whole
+
+
 @pytest.mark.parametrize("name", ["run.txt", "run", "run.asc", "run.csv", "run.packed"])
 def test_a_log_of_candump_is_recognised_whatever_it_is_called(name, tmp_path):
     path = tmp_path / name
