@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from amalthea_uros.trace.can.frames import EXTENDED, CanLog, FrameKind, FrameTable
+from amalthea_uros.trace.can.frames import EXTENDED, UNKNOWN, CanLog, FrameKind, FrameTable
 from amalthea_uros.trace.can.logs import open_can_log
 
 SECOND, MS, US = 10**12, 10**9, 10**6
@@ -16,7 +16,9 @@ def rows(tables: Iterable[FrameTable]) -> list[tuple]:
     for table in tables:
         columns = [column.tolist() for column in (table.time, table.channel, table.identifier, table.kind)]
         for time, channel, identifier, kind, data in zip(*columns, table.data, strict=True):
-            found.append((time, table.channels[channel], identifier, FrameKind(kind), bytes(data)))
+            found.append(
+                (time, "" if channel == UNKNOWN else table.channels[channel], identifier, FrameKind(kind), bytes(data))
+            )
     return found
 
 

@@ -57,7 +57,8 @@ def command(
     """Measure the times in a trace: minimum, mean, maximum, jitter and percentiles.
 
     TRACE is a log of a CAN bus (candump .log; .asc, .blf, .trc, .mf4), whose frames at starts and ends are given by --start and --end
-    or in a file; a trace of events such as .btf, whose processes, runnables and chains are measured; or a .csv of measured values.
+    or in a file; a trace of events such as .btf or a folder with a CTF trace, whose processes, runnables and chains are measured; or a
+    .csv of measured values.
     The exit code is 1 if nothing was measured, or if a part of the trace is damaged.
     """
     outputs = beside_files(outputs, [("--histogram", path) for _, path in histograms])

@@ -79,9 +79,13 @@ def measure_object(item: Measurable, found: Occurrences) -> MeasuredObject:
 
 def without_duplicates(found: Occurrences) -> tuple[Occurrences, int]:
     """Each frame once, and the number of the others: they have the same stamp, marker and payload."""
-    seen: set[tuple[int, int, bytes]] = set()
     is_first = np.ones(len(found), bool)
-    for number, key in enumerate(zip(found.time.tolist(), found.marker.tolist(), found.data, strict=True)):
+    order = np.lexsort((found.marker, found.time))
+    is_again = (np.diff(found.time[order]) == 0) & (np.diff(found.marker[order]) == 0)
+    seen: set[tuple[int, int, bytes]] = set()
+    # Only few frames have the stamp of another one; of those the payloads decide.
+    for number in np.unique([order[:-1][is_again], order[1:][is_again]]).tolist():
+        key = int(found.time[number]), int(found.marker[number]), found.data[number]
         is_first[number] = key not in seen
         seen.add(key)
     return found.where(is_first), int(np.count_nonzero(~is_first))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.measure.reactions import BY_NUMBER, LatencyLists
+from amalthea_uros.measure.reactions import BY_NUMBER, LatencyLists, is_after_loss
 from amalthea_uros.measure.series import Counts, Series
 from amalthea_uros.timing.route_latencies import RouteLatencies
 from amalthea_uros.trace.table import NO_NOTE, EventKind, EventTable
@@ -89,27 +89,34 @@ class ChainSteps:
     def _ends(self, steps: Numbers, begin: EventKind) -> _Steps:
         time, _, stimulus, step, segment, job = steps
         is_first, is_last = step == 0, step == step.max()
-        times = np.concatenate([self._begun(begin, job[is_first], time[is_first]), time[is_last]])
+        begun, is_known = self._begun(begin, job)
+        if is_known[is_first].any():
+            # A step without it is at the edge of the trace, or events are missing: the chain began earlier.
+            is_first &= is_known
+        else:
+            begun = time
+        times = np.concatenate([begun[is_first], time[is_last]])
         is_response = np.repeat([False, True], [np.count_nonzero(is_first), np.count_nonzero(is_last)])
         order = np.lexsort((is_response, times))
         stimuli, segments = (np.concatenate([column[is_first], column[is_last]])[order] for column in (stimulus, segment))
-        return _Steps(times[order], stimuli, segments, is_response[order])
+        return _Steps(
+            times[order], stimuli, segments + np.cumsum(is_after_loss(stimuli, is_response[order])), is_response[order]
+        )
 
-    def _begun(self, kind: EventKind, jobs: Numbers, otherwise: Numbers) -> Numbers:
-        """When jobs were activated or started, or another time where the trace does not say it."""
+    def _begun(self, kind: EventKind, jobs: Numbers) -> tuple[Numbers, NDArray[np.bool_]]:
+        """When jobs were activated or started, and whether the trace says it."""
         known, times = np.concatenate(self._begins[kind], axis=1)
+        if not len(known):
+            return jobs, np.zeros(len(jobs), bool)
         order = np.argsort(known, kind="stable")
-        place = np.searchsorted(known, jobs, sorter=order)
-        found = order[np.minimum(place, max(len(order) - 1, 0))] if len(order) else np.zeros(0, np.int64)
-        if not len(found):
-            return otherwise
-        return np.where(known[found] == jobs, times[found], otherwise)
+        found = order[np.minimum(np.searchsorted(known, jobs, sorter=order), len(order) - 1)]
+        return times[found], known[found] == jobs
 
 
 def _latencies(name: str, steps: _Steps, begin: EventKind) -> Iterator[Series]:
     found, unanswered = LatencyLists(), 0
-    for part in np.unique(steps.segment).tolist():
-        here = steps.segment == part
+    order = np.argsort(steps.segment, kind="stable")
+    for here in np.split(order, np.flatnonzero(np.diff(steps.segment[order])) + 1):
         is_response, stimulus = steps.is_response[here], steps.stimulus[here]
         latencies = RouteLatencies(found.note)
         latencies.add(is_response, steps.time[here], _in_order(is_response, stimulus))

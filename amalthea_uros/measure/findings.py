@@ -14,6 +14,8 @@ from amalthea_uros.units import Time, time_text
 
 #: Shorter times are measured too coarsely, in steps of the clock.
 _FEWEST_STEPS = 10
+#: A maximum so many times as long as the second longest of at least so many values is doubtful.
+_FAR, _ENOUGH = 10, 20
 
 
 def judged(measurement: Measurement) -> Iterator[Finding]:
@@ -28,6 +30,7 @@ def judged(measurement: Measurement) -> Iterator[Finding]:
             seen.add(series.name)
             yield from _uncounted(series, place)
         yield from _baseline(series, place)
+        yield from _outlier(series, place)
     yield from _coarse(measurement, place)
 
 
@@ -58,6 +61,22 @@ def _few_steps(series: Series, found: Statistics, resolution: Time, place: Locat
         f"clock ({time_text(resolution)}): a single value is only known to +-{error:.0f} %"
     )
     return Finding("MEA007", Severity.WARNING, message, place, "Use a finer clock, or the mean of many values.", series.name)
+
+
+def _outlier(series: Series, place: Location) -> Iterator[Finding]:
+    """A maximum that nothing else is near: a hang of the software is measured like that, and so is a clock that was set forward."""
+    if series.values is None or series.quantity not in WITH_COST or len(series.values) < _ENOUGH:
+        return
+    largest = int(series.values.max())
+    others = series.values[series.values < largest]
+    next_ = int(others.max()) if len(others) else 0
+    if next_ > 0 and largest > _FAR * next_ and len(series.values) - len(others) == 1:
+        message = (
+            f"the maximum of {series.name!r}, {time_text(largest)}, is more than {_FAR} times as long as all its other times "
+            f"(up to {time_text(next_)})"
+        )
+        help_ = "Check what happened then: the software may have been late, or the clock was set, or events are missing."
+        yield Finding("MEA014", Severity.WARNING, message, place, help_, series.name)
 
 
 def _baseline(series: Series, place: Location) -> Iterator[Finding]:

@@ -159,7 +159,14 @@ class JobWalk:
         newest = self._newest.get(process)
         if newest is not None and instance > newest + 1:
             self._of(process).lost += instance - newest - 1
+            self._interrupt(process)
         self._newest[process] = instance if newest is None else max(newest, instance)
+
+    def _interrupt(self, process: int) -> None:
+        """Note that executions of the runnables of a process are missing: the next ones do not follow the last ones."""
+        for (of, _), ended in self._runnables.items():
+            if of == process:
+                ended.segment = -1
 
     def _end(self, time: int, key: tuple[int, int], job: _Open) -> None:
         del self._open[key]
@@ -177,6 +184,7 @@ class JobWalk:
         job = self._open.pop(key)
         if job.is_process:
             self._of(key[0]).incomplete += 1
+        self._interrupt(key[0])
         for runnable, *_ in job.runnables:
             self._of_runnable(key[0], runnable).incomplete += 1
 
@@ -190,6 +198,8 @@ class JobWalk:
                 if kind == EventKind.RUNNABLE_TERMINATE:
                     self._of_runnable(process, runnable).incomplete += 1
                 return
+            if process in self._newest:  # it has events of its own, and those of this job are missing
+                self._interrupt(process)
             job = self._open[key] = _Open("running", time, is_process=False)
         if kind == EventKind.RUNNABLE_START:
             job.enter(job.state, time)

@@ -42,6 +42,8 @@ class Occurrences:
 
     def where(self, is_kept: NDArray[np.bool_]) -> Occurrences:
         """Those for which a value is true."""
+        if is_kept.all():
+            return self
         data = [self.data[number] for number in np.flatnonzero(is_kept).tolist()]
         return Occurrences(self.time[is_kept], self.marker[is_kept], self.channel[is_kept], self.segment[is_kept], data)
 
@@ -82,7 +84,10 @@ class Collector:
     def _add(self, table: FrameTable) -> None:
         self.channels = table.channels
         if self.origin is None:
-            self.origin = int(table.time[0])
+            frames = table.time[table.kind != FrameKind.GAP]
+            if not len(frames):
+                return  # nothing is before the first frame
+            self.origin = int(frames[0])
         time = table.time - self.origin
         is_inside = self.window.holds(time)
         if not is_inside.any():

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -81,13 +82,14 @@ def reactions(
         number, run = counted_on(counter, modulus)
         lost = lost_numbers(number[~is_response], run[~is_response])
         is_new = (np.diff(segment) != 0) | (np.diff(run) != 0)
-        segment = np.cumsum(np.concatenate([[False], is_new])[: len(segment)] | _is_after_loss(number, is_response))
+        segment = np.cumsum(np.concatenate([[False], is_new])[: len(segment)] | is_after_loss(number, is_response))
     # A step back ends what can be compared.
     is_back = np.concatenate([[False], (time[1:] < time[:-1]) & (segment[1:] == segment[:-1])])[: len(time)]
     segment = segment + np.cumsum(is_back)
     found, unanswered = LatencyLists(), 0
-    for part in np.unique(segment).tolist():
-        here = segment == part
+    borders = [0, *(np.flatnonzero(np.diff(segment)) + 1).tolist(), len(segment)]
+    for first, end in pairwise(borders if len(segment) else []):
+        here = slice(first, end)
         latencies = RouteLatencies(found.note)
         kept, stamps, repeated = _stamped(is_response[here], None if number is None else number[here])
         duplicated += repeated
@@ -101,7 +103,7 @@ def reactions(
         yield from found.series(name, counts, "by the number of the stimulus", BY_NUMBER)
 
 
-def _is_after_loss(number: Numbers, is_response: Flags) -> Flags:
+def is_after_loss(number: Numbers, is_response: Flags) -> Flags:
     """Which events are stimuli directly after lost ones: how long events waited before them is not known."""
     stimuli = np.flatnonzero(~is_response)
     newest = np.maximum.accumulate(number[stimuli])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from hashlib import file_digest
+from hashlib import file_digest, sha256
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -25,7 +25,8 @@ from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject, system_of
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.trace.can.logs import is_can_log
-from amalthea_uros.trace.readers import READERS
+from amalthea_uros.trace.ctf.folders import trace_files
+from amalthea_uros.trace.readers import format_of
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import Time
 
@@ -175,8 +176,7 @@ def _objects(options: MeasureOptions) -> tuple[Measurable, ...]:
 
 
 def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions) -> Measurement:
-    name = path.name.lower().removesuffix(".gz")
-    if is_can_log(path) or (objects and not name.endswith((".csv", *READERS))):
+    if is_can_log(path) or (objects and not _is_other_trace(path)):
         found = measured_frames(path, objects, options.window, options.channel)
     elif objects:
         raise InvalidArgumentError(f"{path.name!r} is not a log of a CAN bus, so it has no frames with markers; omit them")
@@ -187,8 +187,15 @@ def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions
     return replace(found, digest=_digest(path))
 
 
+def _is_other_trace(path: Path) -> bool:
+    return format_of(path) is not None or is_value_table(path)
+
+
 def _digest(path: Path) -> str:
-    if not path.is_file():  # a folder, or a stream that has been read
+    if path.is_dir():
+        digests = (f"{_digest(file)}  {file.relative_to(path).as_posix()}\n" for file in trace_files(path))
+        return sha256("".join(digests).encode()).hexdigest()
+    if not path.is_file():  # a stream that has been read
         return ""
     with path.open("rb") as stream:
         return file_digest(stream, "sha256").hexdigest()

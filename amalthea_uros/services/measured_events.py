@@ -12,7 +12,7 @@ from amalthea_uros.measure.window import Window
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
-from amalthea_uros.trace.readers import open_trace
+from amalthea_uros.trace.readers import format_name, open_trace
 from amalthea_uros.trace.table import EventKind
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def measured_events(path: Path, window: Window, starts: Mapping[str, EventKind])
         findings.append(Finding("MEA011", Severity.WARNING, message, Location(path), "Measure it between markers.", name))
     return Measurement(
         source=str(path),
-        format=path.name.lower().removesuffix(".gz").rpartition(".")[2].upper(),
+        format=format_name(path),
         digest="",
         duration=int(np.ptp(stamps)) if len(stamps) else 0,
         resolution=resolution_of(stamps),

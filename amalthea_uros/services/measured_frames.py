@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 #: With fewer than 1 in so many of the frames of the busiest bus, frames are strays of a damaged log.
 _STRAY = 100
+#: With more than 1 gap in so many frames, damage that leaves a line valid is to be expected, too.
+_FEW = 1000
 _ADVICE = (
     "a CAN log has no names of tasks; add --start ID and --end ID of the frames at the start and at the end, or --markers FILE with "
     "those of several objects"
@@ -52,6 +54,8 @@ def measured_frames(path: Path, objects: Sequence[Measurable], window: Window, c
         own, told = _measured_object(item, markers, found, occurrences, Location(path))
         series += own
         findings += told
+    if series and found.gaps * _FEW > found.frames:
+        findings.append(_damaged(found, Location(path)))
     return Measurement(
         source=str(path),
         format="CAN log",
@@ -81,6 +85,8 @@ def _measured_object(
     is_stray = numbers_on * _STRAY < numbers_on.max(initial=0)
     if is_stray.any():
         findings.append(_stray(item, int(numbers_on[is_stray].sum()), int(np.count_nonzero(is_stray)), place))
+        # Where a name is damaged a frame of another bus is missing.
+        own = replace(own, segment=own.segment + np.cumsum(np.isin(own.channel, found_on[is_stray])))
     buses = found_on[~is_stray].tolist()
     parts: list[MeasuredObject] = []
     for bus in buses:
@@ -111,6 +117,13 @@ def _missing(item: Measurable, marker: Marker, log: Collector, place: Location) 
     else:
         help_ = f"Check the identifier; the log has {known}." if known else "The log has no frames in this part."
     return Finding("MEA001", Severity.ERROR, f"no frame {marker} of {item.name!r} in the log", place, help_, item.name)
+
+
+def _damaged(log: Collector, place: Location) -> Finding:
+    gaps, frames = counted(log.gaps, "damaged or missing part"), counted(log.frames, "frame")
+    message = f"{gaps} in {frames}: a wrong digit in a time cannot be recognised, so a minimum or maximum may be wrong"
+    advice = "Copy or record the log again; else rely on means and percentiles only."
+    return Finding("MEA013", Severity.WARNING, message, place, advice)
 
 
 def _stray(item: Measurable, number: int, buses: int, place: Location) -> Finding:

@@ -72,7 +72,8 @@ class Reader(LineReader):
                 time_field, source, job_field, kind, target, instance_field, event, *notes = text.split(",")
                 time, job, instance = int(time_field), int(job_field or 0), int(instance_field or 0)
             except ValueError:
-                self._read_other(line, text)
+                if not self._read_other(line, text) and self._patterns:
+                    rows.append(self._gap_row(last, line))
                 limit = MAX // self._header.scale
                 continue
             pattern = numbers.get((source, kind, target, event))
@@ -80,6 +81,7 @@ class Reader(LineReader):
                 pattern = self._new_pattern(source, kind, target, event, Place(line, None, text.rstrip(BLANKS)))
             if not (last <= time <= limit and -1 <= job <= MAX and -1 <= instance <= MAX):
                 self._report_range(time, last, Place(line, 1, text.rstrip(BLANKS)))
+                rows.append(self._gap_row(last, line))
             elif pattern != _LEFT_OUT:
                 last = time
                 rows.append((time, pattern, job, instance, self._note(notes[0], pattern) if notes else NO_NOTE, line))
@@ -120,8 +122,8 @@ class Reader(LineReader):
             source_index = self._index.source_index(self._header.name(source), SOURCES[event])
         return event, source_index, target_index
 
-    def _read_other(self, line: int, text: str) -> None:
-        """Read a line that is not an event."""
+    def _read_other(self, line: int, text: str) -> bool:
+        """Read a line that is not an event; whether nothing is wrong with it."""
         text = text.rstrip(BLANKS)
         if text.startswith("#"):
             self._header.read(text, Place(line, 1, text))
@@ -135,6 +137,8 @@ class Reader(LineReader):
                 column = len(",".join(fields[:wrong])) + (2 if wrong else 1)
                 message = f"the {_FIELDS[wrong]} is not a whole number; this line is ignored"
                 self._problems.add("TRC002", Severity.ERROR, message, Place(line, column, text))
+            return False
+        return True
 
     def _report_range(self, time: int, last: int, place: Place) -> None:
         if 0 <= time < last:

@@ -32,12 +32,12 @@ class Reader(LineReader):
             if next(lines, (0, None))[1] != HEADER:
                 message = f"the first line is not the header of a trace: {','.join(HEADER)}"
                 self._problems.add("TRC005", Severity.WARNING, message, Place(1, 1), "Check that this is a trace.")
-            rows = (row for line, fields in lines if (row := self._row(line, fields)) is not None)
+            rows = (self._row(line, fields) or self._gap_row(self._last, line) for line, fields in lines)
             while block := list(islice(rows, BLOCK)):
                 yield numbered_table(block, self._patterns, self._index, scale=1)
 
     def _lines(self, stream: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
-        """The lines with their numbers; those that are not CSV, such as ones with a carriage return in a name, are left out."""
+        """The lines with their numbers; those that are not CSV, such as ones with a carriage return in a name, are empty."""
         reader = csv.reader(stream)
         while True:
             try:
@@ -47,8 +47,11 @@ class Reader(LineReader):
             except csv.Error as error:
                 message = f"a line is not CSV: {error}; it is ignored"
                 self._problems.add("TRC002", Severity.ERROR, message, Place(reader.line_num, 1))
+                yield reader.line_num, []
 
     def _row(self, line: int, fields: Sequence[str]) -> Row | None:
+        if not fields:
+            return None
         try:
             time_field, event, source_kind, source, job_field, target_kind, target, instance_field, note_field = fields
             time, job, instance = int(time_field), int(job_field), int(instance_field)

@@ -9,8 +9,8 @@ from pathlib import Path
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.trace.entity_index import EntityIndex
 from amalthea_uros.trace.problems import Problems
-from amalthea_uros.trace.row_tables import NumberedTable, Pattern
-from amalthea_uros.trace.table import Entity, EventTable
+from amalthea_uros.trace.row_tables import NumberedTable, Pattern, Row
+from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
 
 
 class LineReader(ABC):
@@ -22,6 +22,7 @@ class LineReader(ABC):
         self._index = EntityIndex()
         self._patterns: list[Pattern] = []
         self._last = 0
+        self._gap: int | None = None
 
     @property
     def entities(self) -> Sequence[Entity]:
@@ -39,3 +40,11 @@ class LineReader(ABC):
     @abstractmethod
     def numbered(self) -> Iterator[NumberedTable]:
         """The events, with the number of the line of each."""
+
+    def _gap_row(self, time: int, line: int) -> Row:
+        """The place of a line that cannot be used: nobody knows which event is missing."""
+        if self._gap is None:
+            recorder = self._index.index(EntityKind.SCHEDULER, "recorder")
+            self._gap = len(self._patterns)
+            self._patterns.append((EventKind.GAP, recorder, recorder))
+        return time, self._gap, 0, 0, NO_NOTE, line

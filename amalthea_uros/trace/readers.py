@@ -70,6 +70,12 @@ def format_of(path: Path) -> str | None:
     return next((module for suffix, module in READERS.items() if name.endswith(suffix)), None)
 
 
+def format_name(path: Path) -> str:
+    """What the format of a trace is called; "" if no reader is known for it."""
+    module = format_of(path)
+    return "" if module is None else FORMATS[module]
+
+
 def open_trace(path: Path) -> TraceReader:
     """A reader for a file or a folder, by its name and content.
 

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import gzip
-import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from io import TextIOWrapper
 from pathlib import Path
-from typing import IO, TextIO, cast
+from typing import IO, TextIO
 
 from amalthea_uros._internal.limits import TRACE_LINE
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.trace.packed_files import DAMAGED, opened
 from amalthea_uros.trace.problems import Place, Problems
-
-_DAMAGED = (EOFError, gzip.BadGzipFile, zlib.error)
 
 
 @contextmanager
@@ -27,11 +24,10 @@ def opened_bytes(path: Path, problems: Problems) -> Iterator[IO[bytes]]:
     ------
     ReadError : there is no such file, or it may not be read.
     """
-    opening = gzip.open if path.name.lower().endswith(".gz") else open
     try:
-        with opening(path, "rb") as stream:
-            yield cast("IO[bytes]", stream)
-    except _DAMAGED as error:
+        with opened(path) as stream:
+            yield stream
+    except DAMAGED as error:
         message = f"the compressed file is damaged: {error}; only the events before that are used"
         problems.add("TRC006", Severity.ERROR, message, advice="Check that it was written completely.")
     except LineTooLongError as error:

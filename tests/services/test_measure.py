@@ -1,14 +1,18 @@
 """Measuring files: logs of a CAN bus with markers, traces of events, tables of values."""
 
+import gzip
 import random
 import shutil
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
 from command import amuros as command
+from ctf_traces import write_zephyr, zephyr_event
 from support import ROOT
 
 import amalthea_uros as amuros
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.measure.series import Kind
 from amalthea_uros.units import MICROSECOND as US
@@ -134,6 +138,65 @@ def test_damaged_lines_are_counted_and_the_rest_is_measured(tmp_path):
     found = amuros.measure(path, start="101", end="102")
     assert microseconds(found.series[0]) == [30, 40]
     assert any(rule.startswith("CAN") for rule in rules(found))
+
+
+@pytest.mark.parametrize("options", [{}, {"counter": "byte 0"}])
+def test_damage_that_shows_makes_no_value_that_nobody_traced(options, tmp_path):
+    """Characters too many, missing or of another kind, cut and repeated lines: only a digit for a digit leaves a line valid."""
+    generator = random.Random(7)
+    times = [generator.randrange(40, 70) for _ in range(2000)]
+    starts = [300 * job + generator.randrange(200) for job in range(2000)]
+    frames = [
+        (start + wait, f"{marker}#{job % 256:02X}")
+        for job, (start, time) in enumerate(zip(starts, times, strict=True))
+        for wait, marker in ((0, "101"), (time, "102"))
+    ]
+    path = log(tmp_path, *frames)
+    lines = [damaged(generator, line) if generator.random() < 0.1 else line for line in path.read_text().splitlines()]
+    path.write_text("\n".join(lines) + "\n")
+    found = amuros.measure(path, start="101", end="102", **options)
+    duration, distance = found.series
+    known = dict(zip(starts, times, strict=True))
+    for value, end in zip(microseconds(duration), duration.times.tolist(), strict=True):
+        assert known[starts[0] + end // US - value] == value
+    assert set(microseconds(distance)) <= {later - earlier for earlier, later in pairwise(starts)}
+    assert duration.statistics.count > 1500
+    assert "MEA013" in rules(found)
+
+
+def damaged(generator, line):
+    place = generator.randrange(len(line))
+    match generator.randrange(5):
+        case 0:
+            return line[:place] + line[place + 1 :]
+        case 1:
+            return line[:place] + generator.choice("0x#( \x00") + line[place:]
+        case 2:
+            return line[:place] + generator.choice("z?.;\x7f") + line[place + 1 :]
+        case 3:
+            return line[:place]
+        case _:
+            return line + "\n" + line
+
+
+@pytest.mark.parametrize("step", [2_000, 500_000])
+def test_a_clock_that_is_set_forward_within_a_job_is_told(step, tmp_path):
+    """A job that took so long would look the same: the time is kept, since it may be the one that matters."""
+    frames = [(1000 * job + wait, marker) for job in range(100) for wait, marker in ((0, "101"), (40, "102"))]
+    frames[101:] = [(time + step, marker) for time, marker in frames[101:]]
+    found = amuros.measure(log(tmp_path, *frames), start="101", end="102")
+    assert found.series[0].statistics.max == (40 + step) * US
+    [finding] = [finding for finding in found.findings if finding.rule == "MEA014"]
+    assert (finding.severity, finding.object) == (Severity.WARNING, "interval")
+    without = amuros.measure(log(tmp_path, *frames[:100]), start="101", end="102")
+    assert "MEA014" not in rules(without)
+
+
+def test_nothing_is_paired_across_a_line_that_cannot_be_read(tmp_path):
+    """The end of one job and the start of the next are in two lines that are damaged: that is no job of 1,040 us."""
+    path = log(tmp_path, (0, "101"), (40, "1?2"), (1000, "1?1"), (1040, "102"), (2000, "101"), (2030, "102"))
+    found = amuros.measure(path, start="101", end="102")
+    assert [microseconds(series) for series in found.series] == [[30]]
 
 
 def test_a_window_leaves_out_the_start_up(tmp_path):
@@ -290,6 +353,63 @@ def test_hostile_logs_are_measured_or_refused_in_words(tmp_path):
 def test_options_that_cannot_be_right_are_refused(options, says):
     with pytest.raises(ValueError, match=says):
         amuros.measure(LOG, **options)
+
+
+def test_a_folder_of_a_tracer_is_measured(tmp_path):
+    """Three jobs of 6 us: ready, switched in, waiting, switched out."""
+    steps = (("thread_ready", 0), ("thread_switched_in", 1), ("thread_pending", 5), ("thread_switched_out", 6))
+    events = [zephyr_event(1000 * (100 * job + at), name, (1, "control")) for job in range(3) for name, at in steps]
+    folder = write_zephyr(tmp_path / "ctf", events)
+    found = amuros.measure(folder)
+    assert microseconds(found.find("control", "response_time")) == [6, 6, 6]
+    assert (found.format, len(found.digest)) == ("CTF", 64)
+    (folder / "channel0_0").write_bytes(b"".join(events[:-1]))
+    assert amuros.measure(folder).digest != found.digest
+    refused = command("measure", str(folder), "--markers", str(MARKERS))
+    assert (refused.returncode, "not a log of a CAN bus" in refused.stderr) == (2, True)
+
+
+@pytest.mark.parametrize("end", ["btf", "csv"])
+def test_an_event_that_cannot_be_read_makes_no_value_that_nobody_traced(end, tmp_path):
+    """A job whose start is damaged would else be one that takes no time, and a missing one would double a period."""
+    trace = tmp_path / f"run.{end}"
+    run = command("simulate", ROOT / "samples" / "bodas-test-advanced.yaml", "--duration", "60ms", "--trace", trace)
+    assert run.returncode == 0, run.stderr
+    lines = trace.read_text().splitlines(keepends=True)
+    whole = {(series.name, series.quantity): set(series.values.tolist()) for series in amuros.measure(trace).series}
+    generator = random.Random(3)
+    for _ in range(12):
+        place = generator.randrange(len(lines) // 3, len(lines))
+        trace.write_text("".join([*lines[:place], "damaged\n", *lines[place + 1 :]]))
+        found = amuros.measure(trace)
+        assert "TRC002" in rules(found)
+        for series in found.series:
+            assert set(series.values.tolist()) <= whole[series.name, series.quantity]
+
+
+def test_a_chain_begins_with_the_activation_or_is_not_measured(tmp_path):
+    """A trace that begins between the activation of a job and its first step does not have the begin of that chain."""
+    trace = tmp_path / "run.csv"
+    command("simulate", ROOT / "samples" / "executor.amxmi", "--duration", "60ms", "--trace", trace)
+    header, *lines = trace.read_text().splitlines(keepends=True)
+    whole = set(amuros.measure(trace).find("factor_to_output", "reduced_reaction_time").values.tolist())
+    for first in range(0, len(lines) // 2, 37):
+        trace.write_text("".join([header, *lines[first:]]))
+        assert set(amuros.measure(trace).find("factor_to_output", "reduced_reaction_time").values.tolist()) <= whole
+
+
+@pytest.mark.parametrize("name", ["run.txt", "run", "run.asc", "run.csv", "run.packed"])
+def test_a_log_of_candump_is_recognised_whatever_it_is_called(name, tmp_path):
+    path = tmp_path / name
+    path.write_bytes(gzip.compress(LOG.read_bytes()) if name == "run.packed" else LOG.read_bytes())
+    assert amuros.measure(path, markers=MARKERS).series == amuros.measure(LOG, markers=MARKERS).series
+
+
+def test_a_log_of_an_operating_system_is_none_of_a_bus(tmp_path):
+    path = tmp_path / "run.log"
+    path.write_text("+0; Control; activate;\n+1000; Control; switch;\n+6000; Control; terminate;\n")
+    found = amuros.measure(path)
+    assert (found.format, microseconds(found.find("Control", "response_time"))) == ("TRACE32 task events", [6])
 
 
 def test_the_command_shows_a_table_and_draws_a_picture(tmp_path):

@@ -105,7 +105,8 @@ def test_the_lines_of_the_console(log, line, expected):
 )
 def test_other_lines_are_counted_and_the_rest_is_read(log, line):
     frames, found = log(f"{HEAD}123#11\n{line}\n{line}\n{HEAD}123#22\n")
-    assert [data for *_, data in frames] == [b"\x11", b"\x22"]
+    # Nobody knows what was in the line, so nothing may be paired across it.
+    assert [(kind, data) for *_, kind, data in frames] == [(DATA, b"\x11"), (GAP, b""), (GAP, b""), (DATA, b"\x22")]
     [finding] = found.findings
     assert (finding.rule, finding.location.line, finding.location.text) == ("CAN001", 2, line)
     assert "(2 times, this is the first)" in finding.message
@@ -113,7 +114,7 @@ def test_other_lines_are_counted_and_the_rest_is_read(log, line):
 
 def test_frames_without_time_are_refused_with_what_to_do(log):
     frames, found = log(" can0  123   [1]  11\n")
-    assert frames == []
+    assert [kind for *_, kind, _ in frames] == [GAP]
     [finding] = found.findings
     assert "no time stamp" in finding.message
     assert "candump" in finding.help
@@ -131,9 +132,14 @@ def test_nanoseconds_of_newer_versions(log):
     assert found.resolution == 1000
 
 
-def test_the_resolution_is_the_coarsest(log):
-    _, found = log("(1700000000.000000001) can0 123#\n(1700000000.123456) can0 123#\n")
-    assert found.resolution == US
+@pytest.mark.parametrize(
+    "wrong", ["(1700000000.00005) can0 123#", "(1700000000.0000050) can0 123#", "(1700000000.000005000) can0 123#"]
+)
+def test_a_time_with_a_digit_more_or_less_is_damaged(log, wrong):
+    """candump writes all times of a log with the same number of digits, so those after a missing one are at the wrong place."""
+    frames, found = log(f"(1700000000.000001) can0 123#\n{wrong}\n(1700000000.000009) can0 123#\n")
+    assert [(time, kind) for time, *_, kind, _ in frames] == [(US, DATA), (US, GAP), (9 * US, DATA)]
+    assert (rules(found), found.resolution) == (["CAN001"], US)
 
 
 def test_times_since_the_first_frame(log):
@@ -224,7 +230,7 @@ def test_one_channel_can_be_chosen(log):
 
 def test_a_time_that_cannot_be_right_does_not_move_all_others(log):
     frames, found = log("(9999999999.000000) can0 123#\n" + f"{HEAD}123#\n" * 3 + "(0000000001.000000) can0 123##4\n")
-    assert [time for time, *_ in frames] == [0, 0, 0]
+    assert [(time, kind) for time, *_, kind, _ in frames] == [(0, GAP), (0, DATA), (0, DATA), (0, DATA), (0, GAP)]
     assert rules(found) == ["CAN001"]
 
 

@@ -140,11 +140,20 @@ def test_an_overrun_in_asc_is_a_gap(tmp_path):
 )
 def test_a_line_on_which_python_can_fails_is_counted_and_the_rest_is_read(tmp_path, name, head, good, bad):
     frames, log = read(tmp_path / name, head + good + bad + good + bad + good)
-    assert [(time, data) for time, *_, data in frames] == [(10 * MS, b"\x11")] * 3
+    # Nobody knows what was in the line, so nothing may be paired across it.
+    good_row, gap = (10 * MS, DATA, b"\x11"), (10 * MS, GAP, b"")
+    assert [(time, kind, data) for time, *_, kind, data in frames] == [good_row, gap, good_row, gap, good_row]
     [finding] = log.findings
     assert finding.rule in ("CAN001", "CAN006")
     assert finding.location.line == head.count("\n") + 2
     assert "(2 times" in finding.message
+
+
+def test_a_damaged_packed_file_is_read_up_to_the_damage(tmp_path):
+    packed = gzip.compress((ASC + "   0.010000 1  123             Rx   d 1 11\n" * 5000).encode())
+    frames, log = read(tmp_path / "run.asc.gz", packed[: len(packed) // 2])
+    assert 0 < len(frames) < 5000
+    assert rules(log) == ["TRC006"]
 
 
 @pytest.mark.parametrize("suffix", FORMATS)

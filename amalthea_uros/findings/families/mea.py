@@ -101,4 +101,20 @@ Task: {start: 0x18000001, stop: 0x18000002}
         rationale="Its times are to be subtracted from those of others, which therefore still contain the cost of measuring.",
         remedy="Check the markers of the empty object, or give the trace with it: `--baseline-from TRACE`.",
     ),
+    FindingKind(
+        id="MEA013",
+        title="minimum and maximum of a damaged log",
+        severity=Severity.WARNING,
+        rationale="Many lines cannot be read, so others are probably damaged in a way that leaves them valid: a wrong digit in a time "
+        "makes one value longer or shorter. Nothing is paired across the lines that cannot be read.",
+        remedy="Copy or record the log again. Means and percentiles change little by a few wrong values, a minimum and a maximum much.",
+    ),
+    FindingKind(
+        id="MEA014",
+        title="maximum far from all other times",
+        severity=Severity.WARNING,
+        rationale="One time is more than ten times as long as the second longest. It is measured, since software that was late once "
+        "looks like that; but a clock that was set forward, or an end and a start that are missing, do so too.",
+        remedy="Check what happened then. If it was the clock or the recording, measure the part before or after: `--from`, `--to`.",
+    ),
 )

@@ -21,6 +21,10 @@ _STAMP = re.compile(r"\s*([0-9]{1,9})\.([0-9]{1,12})\s+(\S*)")
 _REMARK = re.compile(
     r"\s*(?://|date\s|base\s|begin\s|end\s|(?:no\s+)?internal\s|[0-9.]+\s+start\s+of\s+measurement|$)", re.IGNORECASE
 )
+#: Records that recorders write between frames, with nothing lost.
+_RECORD = re.compile(
+    r"\s*[0-9.]+\s+\S*\s*(?:Statistic:|J1939TP|CAN\s+\d+\s+Status:|Status:|SV:|log\s+(?:direct|trigger)\b)", re.IGNORECASE
+)
 _OVERRUN = re.compile(r"over\s?run", re.IGNORECASE)
 _PICOSECONDS = 12
 
@@ -62,5 +66,7 @@ class AscLog(TextLog):
                 self._report_channel(place)
                 return
             self._gap = Row(self._time, match[3], 0, FrameKind.GAP, place.line or 0, b"")
+        elif _RECORD.match(line):
+            self._problems.add("CAN006", Severity.INFO, "a record is not a frame; it is ignored", place)
         elif not _REMARK.match(line):
             super()._leave_out(line, place)

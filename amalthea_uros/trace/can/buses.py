@@ -15,8 +15,9 @@ from amalthea_uros.trace.problems import Problems
 _TOLERANCE = 10**9
 #: From this share on, equal frames of two channels are no coincidence.
 _SHARE = 0.5
-#: Only so many channels are compared, those with the most frames: damaged names look like further channels.
-_COMPARED = 4
+#: Only so many channels are compared, those with the most frames, and none with fewer than 1 in 100 of those of the busiest: damaged
+#: names look like further channels.
+_COMPARED, _STRAY = 4, 100
 
 
 class BusWatch:
@@ -40,7 +41,12 @@ class BusWatch:
         identifiers: dict[int, Counter[int]] = {}
         for (channel, identifier), count in self._frames.items():
             identifiers.setdefault(channel, Counter())[identifier] = count
-        largest = sorted(identifiers, key=lambda channel: -identifiers[channel].total())[:_COMPARED]
+        totals = {channel: found.total() for channel, found in identifiers.items()}
+        largest = [
+            channel
+            for channel in sorted(totals, key=lambda channel: -totals[channel])[:_COMPARED]
+            if totals[channel] * _STRAY >= max(totals.values())
+        ]
         for first, second in combinations(sorted(largest), 2):
             common = identifiers[first].keys() & identifiers[second].keys()
             frames = min(sum(identifiers[channel][one] for one in common) for channel in (first, second))
@@ -76,6 +82,7 @@ class BusWatch:
             & (table.channel[first] != table.channel[second])
             & (table.time[second] - table.time[first] <= _TOLERANCE)
             & (table.kind[first] <= FrameKind.REMOTE)
+            & (table.kind[second] <= FrameKind.REMOTE)
         )
         pairs = zip(table.channel[first[is_twice]].tolist(), table.channel[second[is_twice]].tolist(), strict=True)
         self._twice.update((min(pair), max(pair)) for pair in pairs)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
@@ -13,9 +14,9 @@ import numpy as np
 from amalthea_uros._internal.limits import TRACE_LINE
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.can.candump_blocks import Lines, read_lines
-from amalthea_uros.trace.can.candump_lines import Line, NotAFrameError, Stamp, parse
+from amalthea_uros.trace.can.candump_lines import Line, NotAFrameError, parse
 from amalthea_uros.trace.can.error_frames import is_receive_overflow, report_error, report_lost
-from amalthea_uros.trace.can.frames import FrameKind, FrameTable
+from amalthea_uros.trace.can.frames import UNKNOWN, FrameKind, FrameTable
 from amalthea_uros.trace.can.log_reader import LogReader
 from amalthea_uros.trace.problems import Place
 from amalthea_uros.trace.text_lines import LineTooLongError, opened_bytes
@@ -31,7 +32,11 @@ _RANGE = 4 * 10**18
 _NEAR = 10**6 * _SECOND
 #: candump writes times since 1970 with ten digits, others with three or a few more.
 _ABSOLUTE_DIGITS = 10
+#: candump writes all times of a log with the same number of digits; a digit more or less moves those after it.
+_MICROSECOND, _NANOSECOND = 10**6, 10**3
 _SHOWN = 200
+_FAR = "the time of a frame is years or months from that of the others; it is ignored"
+_DIGITS = "the time of a frame has more or fewer decimals than those of the others; it is ignored"
 _ADVICE = "Check that the log is complete, and that candump wrote it (e.g. with -l)."
 
 
@@ -71,34 +76,52 @@ class CandumpLog(LogReader):
             self._problems.add("CAN002", Severity.WARNING, message, self._place(rest, 0), "Check that the log is complete.")
 
     def _table(self, block: bytes) -> FrameTable:
+        """A row for each line that is not empty; those that cannot be used are gaps, since nobody knows what they were."""
         lines = read_lines(block, self._channel)
         others = self._other_lines(block, lines)
         if self._origin is None:
             self._begin(lines, others)
+        is_frame = lines.is_plain & self._is_usual(block, lines)
+        lines.channel[~is_frame], lines.identifier[~is_frame], lines.length[~is_frame] = UNKNOWN, 0, 0
         first_second = self.origin // _SECOND
-        is_near = abs(lines.seconds - first_second) < _RANGE // _SECOND
-        for number in np.flatnonzero(lines.is_plain & ~is_near).tolist():
-            self._report_range(self._place(_line(block, lines, number), number))
-        time = (np.where(is_near, lines.seconds, first_second) - first_second) * _SECOND + lines.fraction * 1000
-        kind, is_kept, data = np.zeros(len(time), np.int8), lines.is_plain & is_near, lines.payloads()
+        time = np.where(is_frame, (lines.seconds - first_second) * _SECOND + lines.fraction * 1000, 0)
+        kind, data = np.where(is_frame, FrameKind.DATA, FrameKind.GAP).astype(np.int8), lines.payloads()
         for number, line in others.items():
-            stamp = line.stamp or Stamp(self.origin, 0, _ABSOLUTE_DIGITS)
-            if abs(stamp.time - self.origin) > _RANGE:
-                self._report_range(self._place(_line(block, lines, number), number))
-                continue
-            channel = self._channel(line.channel)
-            if channel < 0:
-                self._report_channel(self._place(_line(block, lines, number), number))
-                continue
-            is_kept[number], kind[number], time[number] = True, line.kind, stamp.time - self.origin
-            lines.channel[number], lines.identifier[number] = channel, line.identifier
-            data[number] = line.data
-        self._note_resolution(lines, others)
+            channel = self._channel_of(line, self._place(_line(block, lines, number), number))
+            if channel != UNKNOWN:
+                if line.stamp is not None and line.kind is not FrameKind.GAP:  # that has the time of the frame before it
+                    time[number] = line.stamp.time - self.origin
+                kind[number], lines.channel[number], lines.identifier[number] = line.kind, channel, line.identifier
+                data[number] = line.data
         numbers = np.arange(self._line, self._line + len(time))
         self._line += len(time)
         table = FrameTable(self._channels, time, lines.channel, lines.identifier, kind, numbers, data)
-        table = table if is_kept.all() else table.take(np.flatnonzero(is_kept))
+        is_row = lines.end > lines.start
+        table = table if is_row.all() else table.take(np.flatnonzero(is_row))
         return replace(table, time=self._completed(table.time, table.kind))
+
+    def _is_usual(self, block: bytes, lines: Lines) -> NDArray[np.bool_]:
+        """Whether the times of plain lines are like those of the other lines; others are reported."""
+        is_near: NDArray[np.bool_] = abs(lines.seconds - self.origin // _SECOND) < _RANGE // _SECOND
+        has_digits: NDArray[np.bool_] = np.where(lines.has_nanoseconds, _NANOSECOND, _MICROSECOND) == self._resolution
+        for number in np.flatnonzero(lines.is_plain & ~(is_near & has_digits)).tolist():
+            place = self._place(_line(block, lines, number), number)
+            self._report_time(_DIGITS if is_near[number] else _FAR, place)
+        return is_near & has_digits
+
+    def _channel_of(self, line: Line, place: Place) -> int:
+        """The channel of a line that is not plain, `UNKNOWN` if it cannot be used; that is reported."""
+        if line.kind is FrameKind.GAP:
+            return self._channel(line.channel)
+        if line.stamp is not None and abs(line.stamp.time - self.origin) > _RANGE:
+            self._report_time(_FAR, place)
+        elif line.stamp is not None and line.stamp.step != self._resolution:
+            self._report_time(_DIGITS, place)
+        elif (channel := self._channel(line.channel)) == UNKNOWN:
+            self._report_channel(place)
+        else:
+            return channel
+        return UNKNOWN
 
     def _completed(self, time: NDArray[np.int64], kind: NDArray[np.int8]) -> NDArray[np.int64]:
         """The times in which differences are added up, and gaps have the time of the frame before them."""
@@ -129,13 +152,16 @@ class CandumpLog(LogReader):
         return found
 
     def _begin(self, lines: Lines, others: Mapping[int, Line]) -> None:
-        """Find the origin of the times, and whether they are differences, from the first lines."""
+        """Find the origin of the times, their digits, and whether they are differences, from the first lines."""
         stamps = {number: line.stamp for number, line in others.items() if line.stamp is not None}
         times = {number: stamp.time for number, stamp in stamps.items()}
         times |= {int(number): int(lines.seconds[number]) * _SECOND for number in np.flatnonzero(lines.is_plain)}
         if not times:
             return
         middle = sorted(times.values())[len(times) // 2]
+        steps = Counter(stamp.step for stamp in stamps.values())
+        steps.update(np.where(lines.has_nanoseconds, _NANOSECOND, _MICROSECOND)[lines.is_plain].tolist())
+        self._resolution = max(steps, key=lambda step: (steps[step], step))
         first = next(time for _, time in sorted(times.items()) if abs(time - middle) < _NEAR)
         self._origin = first // _SECOND * _SECOND
         relative = [stamp.time for stamp in stamps.values() if stamp.digits < _ABSOLUTE_DIGITS]
@@ -147,18 +173,10 @@ class CandumpLog(LogReader):
             message = "the times are dates in a local time zone, which may change between summer and winter"
             self._problems.add("CAN005", Severity.WARNING, message, advice="Record with candump -ta, or better with -l.")
 
-    def _note_resolution(self, lines: Lines, others: Mapping[int, Line]) -> None:
-        """Lines need not have the same number of digits; the least says how exact all are."""
-        steps = {line.stamp.step for line in others.values() if line.stamp is not None}
-        steps |= {1000 if has_nanoseconds else 10**6 for has_nanoseconds in set(lines.has_nanoseconds[lines.is_plain].tolist())}
-        if steps:
-            self._resolution = max(steps | {self._resolution or 0})
-
     def _place(self, text: bytes, number: int) -> Place:
         return Place(self._line + number, 1, text[:_SHOWN].decode(errors="replace"))
 
-    def _report_range(self, place: Place) -> None:
-        message = "the time of a frame is years or months from that of the others; it is ignored"
+    def _report_time(self, message: str, place: Place) -> None:
         self._problems.add("CAN001", Severity.ERROR, message, place, _ADVICE)
 
 

@@ -101,6 +101,14 @@ def parse(text: str) -> Line:
     raise NotAFrameError(_NOT_A_FRAME)
 
 
+def is_frame(text: str) -> bool:
+    """Whether a line without its end is a frame."""
+    try:
+        return parse(text).kind is not FrameKind.GAP
+    except NotAFrameError:
+        return False
+
+
 def stamp_of(text: str) -> Stamp:
     """The time in the parentheses of a line.
 

@@ -19,8 +19,12 @@ EXTENDED = 1 << 31
 XL = 1 << 32
 
 
+#: Index of the channel of a gap of which it is not known on which bus it is.
+UNKNOWN = -1
+
+
 class FrameKind(IntEnum):
-    """What a row of a log is; a gap stands where the recorder says that it lost frames."""
+    """What a row of a log is; a gap is where frames are lost: the recorder says so, or a line cannot be read."""
 
     DATA = 0
     REMOTE = 1
@@ -36,7 +40,7 @@ class FrameTable:
     ----------
     channels : names of the buses, the same for all tables of a log so far
     time : picoseconds from the origin of the log, int64; of a gap, that of the frame before it
-    channel : index into `channels`, int16
+    channel : index into `channels`, int16; `UNKNOWN` of some gaps
     identifier : with the bit `EXTENDED` if it has 29 bits, or `XL`; of an error the bits of its class; of a gap 0; int64
     kind : of `FrameKind`, int8
     line : number of the line or of the record in the file, from 1, int64

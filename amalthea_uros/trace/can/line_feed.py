@@ -18,6 +18,7 @@ class LineFeed:
     Attributes
     ----------
     is_at_end : whether all lines have been read
+    failure : why no more lines can be read; None: all could be
     """
 
     def __init__(self, lines: Iterator[str], prepare: Callable[[str], str], left_out: Callable[[str, Place], None]) -> None:
@@ -25,6 +26,7 @@ class LineFeed:
         self._number, self._text, self._is_used = 0, "", True
         self._first: list[str] = []
         self.is_at_end = False
+        self.failure: Exception | None = None
 
     def __iter__(self) -> Iterator[str]:
         return self
@@ -37,6 +39,9 @@ class LineFeed:
             self._text = next(self._lines)
         except StopIteration:
             self.is_at_end = True
+            raise
+        except Exception as error:  # readers of python-can take it for their own
+            self.is_at_end, self.failure = True, error
             raise
         self._number += 1
         self._is_used = False

@@ -12,7 +12,7 @@ import numpy as np
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.trace.can.buses import BusWatch
 from amalthea_uros.trace.can.clocks import ClockWatch
-from amalthea_uros.trace.can.frames import FrameTable
+from amalthea_uros.trace.can.frames import UNKNOWN, FrameTable
 from amalthea_uros.trace.problems import Place, Problems
 
 if TYPE_CHECKING:
@@ -70,11 +70,11 @@ class LogReader(ABC):
         """The frames of all channels, as the file has them."""
 
     def _channel(self, name: str) -> int:
-        """The index of a channel, which gets one with its first frame; -1 if there are too many: then the names are damaged."""
+        """The index of a channel, which gets one with its first frame; `UNKNOWN` if there are too many: then the names are damaged."""
         index = self._indices.get(name)
         if index is None:
             if len(self._channels) == _MOST_CHANNELS:
-                return -1
+                return UNKNOWN
             index = self._indices[name] = len(self._channels)
             self._channels.append(name)
         return index
@@ -86,7 +86,8 @@ class LogReader(ABC):
     def _selected(self, table: FrameTable) -> FrameTable:
         if self._wanted is None:
             return table
-        places: NDArray[np.int64] = np.flatnonzero(table.channel == self._indices.get(self._wanted, -1))
+        wanted = [UNKNOWN, self._indices.get(self._wanted, UNKNOWN)]
+        places: NDArray[np.int64] = np.flatnonzero(np.isin(table.channel, wanted))
         return table if len(places) == len(table) else table.take(places)
 
     def _report_missing_channel(self, channel: str) -> None:

@@ -9,7 +9,10 @@ from typing import cast
 
 from amalthea_uros._internal.files import STANDARD_INPUT
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.trace.can.candump_lines import is_frame
 from amalthea_uros.trace.can.frames import CanLog
+from amalthea_uros.trace.file_heads import first_bytes
+from amalthea_uros.trace.readers import format_of
 
 #: The modules that read a format, and their classes, by the ends of the names of files.
 _READERS = {
@@ -22,17 +25,21 @@ _READERS = {
 #: The ends of the names of files. `.gz` may follow them, apart from .mf4.
 SUFFIXES = tuple(_READERS)
 _NEVER_PACKED = ".mf4"
-#: What comes from standard input: candump writes to a pipe.
+#: The first bytes of formats that are recognised by them.
+_BEGINS = {".blf": b"LOGG", ".mf4": b"MDF     4", ".trc": b";$FILEVERSION"}
+#: So many bytes and lines are looked at, of which the first may be damaged.
+_HEAD, _LINES = 1 << 14, 50
+#: What comes from standard input or another pipe: candump writes to it.
 _PIPED = ".log"
 
 
 def is_can_log(path: Path) -> bool:
-    """Whether the name of a file is one of a log of a CAN bus."""
+    """Whether a file is a log of a CAN bus, by its first bytes, or by its name if they say nothing."""
     return _suffix(path) is not None
 
 
 def open_can_log(path: Path, *, channel: str | None = None) -> CanLog:
-    """The frames of a log, by the end of the name of its file.
+    """The frames of a log, by the first bytes or the end of the name of its file.
 
     Parameters
     ----------
@@ -46,8 +53,8 @@ def open_can_log(path: Path, *, channel: str | None = None) -> CanLog:
     suffix = _suffix(path)
     if suffix is None:
         raise InvalidArgumentError(
-            f"the format of the log {path.name!r} is not known; the name of the file must end in one of {', '.join(SUFFIXES)}, "
-            f"and, apart from {_NEVER_PACKED}, may be followed by .gz, e.g. run.log.gz"
+            f"the format of the log {path.name!r} is not known; its first lines are not those of candump, and its name does not end in "
+            f"one of {', '.join(SUFFIXES)}, which, apart from {_NEVER_PACKED}, may be followed by .gz, e.g. run.log.gz"
         )
     module, name = _READERS[suffix]
     reader = getattr(import_module(f"amalthea_uros.trace.can.{module}"), name)
@@ -55,8 +62,23 @@ def open_can_log(path: Path, *, channel: str | None = None) -> CanLog:
 
 
 def _suffix(path: Path) -> str | None:
-    if path == STANDARD_INPUT:
+    if path == STANDARD_INPUT or path.is_fifo():
         return _PIPED
+    return _recognised(first_bytes(path, _HEAD)) or _named(path)
+
+
+def _named(path: Path) -> str | None:
     name = path.name.lower()
     plain = name.removesuffix(".gz")
-    return next((end for end in SUFFIXES if (name if end == _NEVER_PACKED else plain).endswith(end)), None)
+    found = next((end for end in SUFFIXES if (name if end == _NEVER_PACKED else plain).endswith(end)), None)
+    # Logs of operating systems have the same name.
+    return None if found == _PIPED and format_of(path) is not None else found
+
+
+def _recognised(head: bytes) -> str | None:
+    """The usual end of the name of a file with this begin."""
+    for end, begin in _BEGINS.items():
+        if head.startswith(begin):
+            return end
+    lines = head.decode("utf-8-sig", errors="replace").splitlines()[:_LINES]
+    return _PIPED if any(map(is_frame, lines)) else None

@@ -18,7 +18,7 @@ import numpy as np
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.error_frames import report_error
-from amalthea_uros.trace.can.frames import EXTENDED, FrameKind, FrameTable
+from amalthea_uros.trace.can.frames import EXTENDED, UNKNOWN, FrameKind, FrameTable
 from amalthea_uros.trace.can.log_reader import LogReader
 from amalthea_uros.trace.problems import Place
 
@@ -32,10 +32,10 @@ _MAX_TIME = 4 * 10**18
 
 
 class Row(NamedTuple):
-    """A row of a table of frames, with the name of the channel."""
+    """A row of a table of frames, with the name of the channel; None of a gap of which it is not known."""
 
     time: int
-    channel: str
+    channel: str | None
     identifier: int
     kind: FrameKind
     line: int
@@ -92,7 +92,7 @@ class PythonCanLog(LogReader):
         return FrameTable(
             self._channels,
             np.array(time, np.int64),
-            np.array([self._channel(name) for name in channel], np.int16),
+            np.array([UNKNOWN if name is None else self._channel(name) for name in channel], np.int16),
             np.array(identifier, np.int64),
             np.array(kind, np.int8),
             np.array(line, np.int64),

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import IO, TYPE_CHECKING, cast
 
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.trace.can.frames import FrameKind
 from amalthea_uros.trace.can.line_feed import LineFeed
 from amalthea_uros.trace.can.python_can import PythonCanLog, Row, python_can
 from amalthea_uros.trace.problems import Place
@@ -23,12 +24,13 @@ class TextLog(PythonCanLog):
     ----------
     _time : of the line that was read last, in picoseconds
     _gap : where frames were lost before the line that was read last; None if none were
+    _before : time of the last frame
     """
 
     #: For a reader that is started again: a line that ends the header, None if the next frame does.
     header_end: str | None = None
 
-    _time = 0
+    _time = _before = 0
     _gap: Row | None = None
 
     def _rows(self) -> Iterator[Row]:
@@ -37,8 +39,10 @@ class TextLog(PythonCanLog):
             feed = LineFeed(lines, self._prepared, self._leave_out)
             for message in self._messages(self._reader(cast("IO[str]", feed)), feed):
                 row = self._row(message, self._time, self._channel_name(message), feed.place)
+                if row is None:
+                    self._note_loss(feed.place)
                 yield from filter(None, (self._gap, row))
-                self._gap = None
+                self._gap, self._before = None, self._before if row is None else row.time
             yield from filter(None, (self._gap,))
 
     @abstractmethod
@@ -54,9 +58,14 @@ class TextLog(PythonCanLog):
         """The channel as the file names it."""
 
     def _leave_out(self, line: str, place: Place) -> None:
-        """Report a line of which the reader has made nothing, if it could be more than a remark."""
+        """Report a line of which the reader has made nothing, if it could be more than a remark; it may have been a frame."""
         message = "a record is not a frame; it is ignored"
         self._problems.add("CAN006", Severity.INFO, message, place)
+        self._note_loss(place)
+
+    def _note_loss(self, place: Place) -> None:
+        """Note that it is not known what a line was."""
+        self._gap = self._gap or Row(self._before, None, 0, FrameKind.GAP, place.line or 0, b"")
 
     def _messages(self, reader: Iterable[Message], feed: LineFeed) -> Iterator[Message]:
         messages = iter(reader)
@@ -65,8 +74,11 @@ class TextLog(PythonCanLog):
                 message = next(messages)
             except StopIteration:
                 return
-            except Exception:  # of many kinds, which python-can does not document; the line is to blame
+            except Exception as error:  # of many kinds, which python-can does not document; the line is to blame
+                if feed.failure is not None:
+                    raise feed.failure from error
                 self._report_damage("a line cannot be read; it is ignored", feed.place)
+                self._note_loss(feed.place)
                 feed.use()
                 if self.header_end is not None:
                     feed.push(self.header_end)

@@ -39,6 +39,12 @@ def stream_files(folder: Path) -> list[Path]:
     )
 
 
+def trace_files(path: Path) -> Iterator[Path]:
+    """All files of the traces in a folder."""
+    for folder in trace_folders(path):
+        yield from (folder / METADATA, *stream_files(folder))
+
+
 def _listed(folder: Path) -> list[Path]:
     try:
         return list(folder.iterdir())
