@@ -360,3 +360,52 @@ def test_records_have_the_names_of_the_json():
         record
     )
     assert "Model holds" in str(found)
+
+
+@pytest.mark.parametrize(("sample", "chain"), [("drive-and-lift", "valve-to-log"), ("rclc-in-executor", "imu-to-wheels")])
+def test_a_chain_that_begins_within_a_job_is_not_measured_from_another_event_on(sample, chain, tmp_path):
+    # `valve-to-log` begins with the end of a job: from its activation on, it would be 22.3 ms, which is beyond the bound of 22.17 ms.
+    path, trace = ROOT / "samples" / f"{sample}.yaml", tmp_path / "run.csv"
+    simulate(path, "200 ms", seed=3, trace_paths=[trace])
+    found = compare(path, trace, by=["analysis"])
+    (row,) = (row for row in found.rows if row.object == chain)
+    assert row.verdict == "not measured"
+    assert "begins or ends within a job" in row.reason
+    assert not [row for row in found.rows if row.verdict == "refuted"]
+
+
+def test_a_chain_that_was_measured_from_another_event_on_is_not_compared(tmp_path):
+    # The chain begins with the start of the executor's job; without the model, it is measured from the activation on.
+    trace = tmp_path / "run.csv"
+    simulate(ADVANCED, "100 ms", trace_paths=[trace])
+    without, with_model = (
+        compare(ADVANCED, amuros.measure(trace, **more), by=["analysis"]) for more in ({}, {"model": ADVANCED})
+    )
+    (row,) = (row for row in without.rows if (row.object, row.quantity) == ("factor-to-output", "data_age"))
+    assert row.verdict == "not predicted"
+    assert "from the activation of its first job on, and begins in the model with its start" in row.reason
+    assert "not_observed" in {limit.verdict for limit in without.limits if limit.object == "factor-to-output"}
+    assert with_model.find("factor-to-output", "data_age")[0].verdict == "within"
+
+
+@pytest.mark.parametrize("seed", [2, 3])
+def test_the_mean_of_an_analysis_is_one_for_each_phase(seed, tmp_path):
+    # Over all phases, the mean reaction is 10.52 ms; in a single one it is any from 1.016 to 20.03 ms, so that none of them is outside.
+    trace = tmp_path / "run.csv"
+    simulate(ADVANCED, "200 ms", seed=seed, trace_paths=[trace])
+    found = compare(ADVANCED, trace, by=["analysis"])
+    assert found.holds
+    (mean,) = (row for row in found.find("factor-to-output", "reduced_reaction_time") if row.statistic == "mean")
+    low, high = mean.predicted_range
+    assert low <= mean.measured <= high
+    (executor,) = (row for row in found.find("Executor_Task", "response_time") if row.statistic == "mean")
+    assert (executor.predicted, executor.predicted_range) == (12_650_000, None)  # the same in all phases
+
+
+def test_what_nobody_asks_for_is_not_listed_as_missing(tmp_path):
+    # An analysis has no running, polling and parking times; the text counts them.
+    trace = tmp_path / "run.csv"
+    simulate(APP, "20 ms", trace_paths=[trace])
+    text = str(compare(APP, trace, by=["analysis"]))
+    assert "not predicted; --all shows them" in text
+    assert "parking time" not in text
