@@ -207,7 +207,19 @@ def _outcome(result: Comparison) -> str:
         return f"Model does not hold: {len(outside)} of {counted(number, 'comparison')} outside {tolerance}{_largest(outside)}"
     missing = {row.object for row in result.not_compared} - {row.object for row in result.compared}
     rest = f"; not compared: {counted(len(missing), 'object')}" if missing else ""
-    return f"Model holds: {counted(number, 'comparison')} within {tolerance}{_largest(result.compared)}{rest}"
+    return f"Model holds: {counted(number, 'comparison')} within {tolerance}{_largest(result.compared)}{rest}{_scarce(result)}"
+
+
+#: The extremes of fewer values say little.
+_FEW = 5
+
+
+def _scarce(result: Comparison) -> str:
+    """Of what the fewest values were measured, if these are few."""
+    fewest = min(result.compared, key=lambda row: row.samples)
+    if fewest.samples >= _FEW:
+        return ""
+    return f"; only {counted(fewest.samples, 'value')} of the {quantity_text(fewest.quantity)} of {fewest.object}"
 
 
 #: Smaller deviations are shown as none.

@@ -31,6 +31,7 @@ from amalthea_uros.services.comparison.results import (
     Comparison,
     ComparisonRow,
     DistributionRow,
+    MeasuredLimit,
     Source,
     Statistic,
 )
@@ -43,6 +44,8 @@ from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
 from amalthea_uros.services.timing_changes import described
 from amalthea_uros.services.what_if import Changes, as_changes
+from amalthea_uros.simulate.results import ObservedVerdict
+from amalthea_uros.timing.overheads import processes_with_overhead
 from amalthea_uros.timing.phases import unknown_phases, with_first_arrivals
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.trace.table import EventKind
@@ -216,14 +219,19 @@ def _measured(measured: Measured, reading: MeasureOptions, system: System) -> Me
 def _compared(system: System, settings: Settings, measurement: Measurement, options: CompareOptions) -> Comparison:
     require("process", filter(None, options.overheads), system.processes)
     analysis = analyze_system(system, settings) if Source.ANALYSIS in options.sources else None
-    found = tuple(_of_same_begin(targets(measurement, options.names, system), chain_starts(system)))
+    with_overhead = processes_with_overhead(system) | options.overheads.keys()
+    found = tuple(_of_same_begin(targets(measurement, options.names, system, with_overhead), chain_starts(system)))
     _refuse_twice(found)
     runs = _simulated(system, settings, options, measurement) if Source.SIMULATION in options.sources else ()
     simulation = runs[0].simulation if runs else None
     in_phases = () if analysis is None or runs else analyses_in_phases(analysis, system, settings)
     predictor = Predictor(analysis=analysis, runs=runs, in_phases=in_phases, overheads=options.overheads)
     uncertainty = measurement.resolution if options.uncertainty is None else options.uncertainty
-    rule = Rule(tolerance=options.tolerance, uncertainty=uncertainty or 0)
+    rule = Rule(
+        tolerance=options.tolerance,
+        uncertainty=uncertainty or 0,
+        is_reached=options.uncertainty is not None and uncertainty != 0,
+    )
     rows = (*(row for target in found for row in _rows(target, predictor, rule)), *_not_measured(system, found))
     comparison = Comparison(
         model="",
@@ -231,16 +239,24 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
         tolerance=options.tolerance,
         uncertainty=uncertainty,
         rows=rows,
-        limits=tuple(judge_limits(system, settings, measurement, found)),
+        limits=tuple(_with_doubt(limit, rule) for limit in judge_limits(system, settings, measurement, found)),
         distributions=tuple(_distributions(found, rows, runs, rule, options.overheads)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,
-        assumptions=_assumptions(measurement, options, analysis, simulation),
+        assumptions=_assumptions(measurement, found, options, analysis, simulation),
     )
     of_predictions = (each.findings for each in (analysis, simulation) if each is not None)
     reported = (*measurement.findings, *(finding for each in of_predictions for finding in each))
     own = _findings(comparison, found, _phases(system, settings))
     return replace(comparison, findings=tuple(dict.fromkeys((*reported, *own))))
+
+
+def _with_doubt(limit: MeasuredLimit, rule: Rule) -> MeasuredLimit:
+    """A limit that was kept, with the remark that it may have been missed if the measured time is wrong."""
+    is_near = limit.is_time and limit.margin is not None and limit.margin < rule.uncertainty
+    if limit.verdict is not ObservedVerdict.OBSERVED_OK or not is_near:
+        return limit
+    return replace(limit, reason="the distance from the limit is within the uncertainty of the measurement")
 
 
 def _of_same_begin(found: Iterable[Target], starts: Mapping[str, EventKind | None]) -> Iterator[Target]:
@@ -392,13 +408,17 @@ def _phases(system: System, settings: Settings) -> tuple[str, ...]:
     return tuple(dict.fromkeys(occurrence.source for occurrence in unknown_phases(known)))
 
 
-def _assumptions(measurement: Measurement, options: CompareOptions, *predictions: object) -> tuple[str, ...]:
+def _assumptions(
+    measurement: Measurement, found: Sequence[Target], options: CompareOptions, *predictions: object
+) -> tuple[str, ...]:
     stated = [sentence for each in predictions for sentence in getattr(each, "assumptions", ())]
-    subtracted = [series for series in measurement.series if series.baseline is not None]
-    if subtracted:
-        names = ", ".join(dict.fromkeys(series.name for series in subtracted))
-        stated.append(f"the mean of a baseline was subtracted from what was measured of {names}")
-    elif not options.overheads:
+    net = list(dict.fromkeys(series.name for series in measurement.series if series.baseline is not None))
+    again = list(dict.fromkeys(target.series.name for target in found if target.is_with_baseline))
+    if subtracted := [name for name in net if name not in again]:
+        stated.append(f"the mean of a baseline was subtracted from what was measured of {', '.join(subtracted)}")
+    if again:
+        stated.append(f"the baseline of {', '.join(again)} was added again, because the predicted times include an overhead")
+    if not net and not options.overheads:
         stated.append("no baseline was subtracted from the measured times, and no overhead was added to the predicted ones")
     for name, overhead in options.overheads.items():
         whose = name or "every process"

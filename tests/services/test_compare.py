@@ -93,8 +93,10 @@ def test_less_than_a_step_of_the_clock_beyond_a_bound_proves_nothing():
     assert only(vague, "max", "exact").verdict == "within"
     assert "uncertainty" in only(vague, "max", "exact").reason
     assert only(exact, "max", "exact").verdict == "refuted"
-    stated = compare(APP, measurement(measured, resolution=None), uncertainty=MICROSECOND)
+    stated = compare(APP, measurement(measured, resolution=None), uncertainty=MICROSECOND // 2)
     assert only(stated, "max", "exact").verdict == "within"
+    less = compare(APP, measurement(measured, resolution=None), uncertainty=MICROSECOND // 2 - 1)
+    assert only(less, "max", "exact").verdict == "refuted"
 
 
 def test_a_bound_far_above_the_measurement_is_told_and_is_not_outside():
@@ -286,6 +288,19 @@ def test_a_subtracted_baseline_is_told_and_makes_single_values_uncertain():
     assert only(compare(APP, measurement(far, resolution=None)), "max", "exact").verdict == "refuted"
 
 
+def test_a_baseline_is_added_again_where_the_model_has_the_overhead_itself():
+    # The model executes 30 + 11 us of overhead and 4 us; measured were 45 us, of which an empty job of 41 us was subtracted.
+    app = APP.replace("execution_time: 4 us", "execution_time: 4 us, overhead: {activation: 30 us, termination: 11 us}")
+    empty = statistics_of(series("Empty", "duration", [41]).values)
+    net = measurement(series("Control_Function", "net_execution_time", [4], baseline=empty))
+    with_overhead, added, without = compare(app, net), compare(APP, net, overheads={"": 41_000_000}), compare(APP, net)
+    for found, measured in ((with_overhead, 45), (added, 45), (without, 4)):
+        assert found.holds
+        assert {row.measured for row in rows(found, "mean")} == {measured * MICROSECOND}
+    assert any("was added again" in sentence for sentence in with_overhead.assumptions)
+    assert any("was subtracted" in sentence for sentence in without.assumptions)
+
+
 # Limits.
 
 
@@ -409,3 +424,23 @@ def test_what_nobody_asks_for_is_not_listed_as_missing(tmp_path):
     text = str(compare(APP, trace, by=["analysis"]))
     assert "not predicted; --all shows them" in text
     assert "parking time" not in text
+
+
+def test_the_sign_of_a_deviation_is_that_of_the_difference():
+    row = only(compare(APP, measurement(series("Control_Function", "response_time", [-5])), by=["simulation"]), "mean")
+    assert row.deviation < 0  # less was measured than predicted
+
+
+def test_few_values_are_told():
+    one, enough = (compare(APP, measurement(series("Control_Function", "response_time", [57] * count))) for count in (1, 5))
+    assert str(one).endswith("; only 1 value of the response time of Control_Function")
+    assert "only" not in str(enough).splitlines()[-1]
+
+
+def test_a_limit_that_may_have_been_missed_is_told():
+    # The clock has steps of 1 us: 79.5 us may be 80.4 us, which is more than 80 us.
+    near, clear = (compare(APP, measurement(series("Control_Function", "response_time", [value]))) for value in (79.5, 79))
+    told, other = (next(each for each in found.limits if each.object == "Control_Function") for found in (near, clear))
+    assert told.verdict == other.verdict == "observed_ok"
+    assert "within the uncertainty" in told.reason
+    assert other.reason == ""
