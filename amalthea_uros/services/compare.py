@@ -254,7 +254,7 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
 def _with_doubt(limit: MeasuredLimit, rule: Rule) -> MeasuredLimit:
     """A limit that was kept, with the remark that it may have been missed if the measured time is wrong."""
     is_near = limit.is_time and limit.margin is not None and limit.margin < rule.uncertainty
-    if limit.verdict is not ObservedVerdict.OBSERVED_OK or not is_near:
+    if limit.verdict is not ObservedVerdict.OK or not is_near:
         return limit
     return replace(limit, reason="the distance from the limit is within the uncertainty of the measurement")
 
