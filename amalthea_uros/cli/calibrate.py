@@ -9,10 +9,18 @@ from pathlib import Path
 import click
 from click.core import ParameterSource
 
-from amalthea_uros._internal.files import STANDARD_ERROR
+from amalthea_uros._internal.files import STANDARD_ERROR, resolved
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
 from amalthea_uros.cli.measure_options import measure_options
-from amalthea_uros.cli.output import Output, beside_files, output_option, show_findings, show_text, write_outputs
+from amalthea_uros.cli.output import (
+    Output,
+    beside_files,
+    output_option,
+    refuse_input,
+    show_findings,
+    show_text,
+    write_outputs,
+)
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.services.calibrate import Calibration, calibrate_file, parse_share
 from amalthea_uros.services.calibration.options import CalibrationOptions, Form
@@ -79,6 +87,8 @@ def command(
     refutes a value of the file.
     """
     options = CalibrationOptions(form=Form(form), margin=margin, tighten=tighten, judge_on=judge_on)
+    if target is not None and resolved(target) != resolved(description):
+        refuse_input(target, "-o")
     is_diff = target is None or is_dry_run
     outputs = _beside_diff(outputs) if is_diff else beside_files(outputs, [("-o", target)])
     found = calibrate_file(description, [measure_file(trace, reading) for trace in traces], options)

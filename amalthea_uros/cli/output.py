@@ -21,7 +21,7 @@ from amalthea_uros._internal.files import (
     is_stream,
     resolved,
 )
-from amalthea_uros.cli.files import output_path, refuse_mixture
+from amalthea_uros.cli.files import INPUT, output_path, refuse_mixture
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report import formats
 from amalthea_uros.report.display import is_brief
@@ -165,10 +165,11 @@ def refuse_unwritable(path: Path) -> None:
 
 
 def _inputs() -> set[Path]:
-    """The files that the present command reads, as its arguments name them."""
+    """The files that the present command reads, as its arguments name them, and options for files to read."""
     context = click.get_current_context()
-    arguments = (context.params[p.name] for p in context.command.params if isinstance(p, click.Argument) and p.name)
-    paths = (path for given in arguments for path in (given if isinstance(given, tuple) else (given,)))
+    parameters = (each for each in context.command.params if isinstance(each, click.Argument) or each.type is INPUT)
+    values = (context.params.get(each.name) for each in parameters if each.name)
+    paths = (path for given in values for path in (given if isinstance(given, tuple) else (given,)))
     return {resolved(path) for path in paths if isinstance(path, Path)}
 
 

@@ -13,6 +13,7 @@ from dataclasses import replace
 from amalthea_uros.measure.series import Series
 from amalthea_uros.measure.statistics import Statistics, shifted
 from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.units import Time
 
 #: The quantities that contain the cost of measuring once.
 WITH_COST = ("duration", JobMetric.NET_EXECUTION_TIME, JobMetric.GROSS_EXECUTION_TIME)
@@ -60,10 +61,18 @@ class Baselines:
 
 def without(series: Series, baseline: Statistics) -> Series:
     """A series without the mean of a baseline, rounded to a picosecond."""
-    mean = round(baseline.mean)
+    return _moved(series, -round(baseline.mean), baseline)
+
+
+def with_baseline(series: Series) -> Series:
+    """A series as it was measured: with what was subtracted from it."""
+    return series if series.baseline is None else _moved(series, round(series.baseline.mean), None)
+
+
+def _moved(series: Series, time: Time, baseline: Statistics | None) -> Series:
     return replace(
         series,
-        statistics=None if series.statistics is None else shifted(series.statistics, -mean),
-        values=None if series.values is None else series.values - mean,
+        statistics=None if series.statistics is None else shifted(series.statistics, time),
+        values=None if series.values is None else series.values + time,
         baseline=baseline,
     )

@@ -8,7 +8,7 @@ the model. It ends with the last step.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: Numbers of jobs have fewer bits.
 _BITS = 40
 #: The events of a job with which a chain can begin, in words.
-_BEGINS = {EventKind.ACTIVATE: "activation", EventKind.START: "start"}
+BEGINS = {EventKind.ACTIVATE: "activation", EventKind.START: "start"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,15 +51,15 @@ class ChainSteps:
 
     Attributes
     ----------
-    starts : of chains that do not begin with the activation of a job: with which event they do
+    starts : of chains that do not begin with the activation of a job: with which event they do; None: they are not measured
     ambiguous : the chains with several routes, which are not measured
     """
 
-    starts: Mapping[str, EventKind] = field(default_factory=dict)
+    starts: Mapping[str, EventKind | None] = field(default_factory=dict)
     gaps: int = 0
     ambiguous: list[str] = field(default_factory=list)
     _steps: list[Numbers] = field(default_factory=list)
-    _begins: dict[EventKind, list[Numbers]] = field(default_factory=lambda: {kind: [] for kind in _BEGINS})
+    _begins: dict[EventKind, list[Numbers]] = field(default_factory=lambda: {kind: [] for kind in BEGINS})
 
     def add(self, table: EventTable) -> None:
         """Take events in."""
@@ -80,11 +80,15 @@ class ChainSteps:
             return
         steps = np.concatenate(self._steps, axis=1)
         for number in np.unique(steps[1]).tolist():
-            found = self._ends(steps[:, steps[1] == number], self.starts.get(names[number], EventKind.ACTIVATE))
+            name = names[number]
+            begin = self.starts.get(name, EventKind.ACTIVATE)
+            if begin is None:
+                continue
+            found = self._ends(steps[:, steps[1] == number], begin)
             if found.has_several_routes:
-                self.ambiguous.append(names[number])
+                self.ambiguous.append(name)
             else:
-                yield from _latencies(names[number], found, self.starts.get(names[number], EventKind.ACTIVATE))
+                yield from (replace(each, begin=BEGINS[begin]) for each in _latencies(name, found, begin))
 
     def _ends(self, steps: Numbers, begin: EventKind) -> _Steps:
         time, _, stimulus, step, segment, job = steps
@@ -121,7 +125,7 @@ def _latencies(name: str, steps: _Steps, begin: EventKind) -> Iterator[Series]:
         latencies = RouteLatencies(found.note)
         latencies.add(is_response, steps.time[here], _in_order(is_response, stimulus))
         unanswered += latencies.stimuli - 1 - latencies.answered
-    method = f"from the {_BEGINS[begin]} of the job with the first step to the last step, by the number of the stimulus"
+    method = f"from the {BEGINS[begin]} of the job with the first step to the last step, by the number of the stimulus"
     yield from found.series(name, Counts(incomplete=unanswered), method, BY_NUMBER)
 
 

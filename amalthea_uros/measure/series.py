@@ -57,6 +57,7 @@ class Series:
     baseline : of the empty object whose mean was subtracted from the values, None if nothing was
     period : the standard period of distances, None if it is not stated
     is_least : whether the real values are at least these: what a response belongs to is not known
+    begin : with which event of a job a chain of a trace begins, "activation" or "start"; "" for what markers delimit
     """
 
     kind: Kind
@@ -70,6 +71,7 @@ class Series:
     baseline: Statistics | None = None
     period: Time | None = None
     is_least: bool = False
+    begin: str = ""
 
     @property
     def net_range(self) -> tuple[Time, Time] | None:

@@ -143,6 +143,22 @@ def bound_tests(result: Comparison) -> list[BoundTest]:
     return [test for test in found if test.verdict is Agreement.REFUTED or test.reason or _is_shown(result, test.rows[0])]
 
 
+def missing_rows(result: Comparison) -> list[ComparisonRow]:
+    """What is not compared and shown: of what has no prediction, the most important quantities, and times that are none of them."""
+    return [row for row in result.not_compared if _is_telling(result, row)]
+
+
+def _is_telling(result: Comparison, row: ComparisonRow) -> bool:
+    is_usual = row.quantity in (*JobMetric, *ChainQuantity)
+    return row.verdict is not Agreement.NOT_PREDICTED or not is_usual or _is_shown(result, row)
+
+
+def hidden_missing(result: Comparison) -> str:
+    """How many quantities without a prediction are not shown, "" if all are."""
+    rest = len(result.not_compared) - len(missing_rows(result))
+    return f"{counted(rest, 'other quantity')} not predicted; --all shows them" if rest else ""
+
+
 def hidden(result: Comparison) -> str:
     """How many comparisons are not shown, "" if all are."""
     shown = [*(row for each in prediction_groups(result) for row in each.rows)]
@@ -191,7 +207,19 @@ def _outcome(result: Comparison) -> str:
         return f"Model does not hold: {len(outside)} of {counted(number, 'comparison')} outside {tolerance}{_largest(outside)}"
     missing = {row.object for row in result.not_compared} - {row.object for row in result.compared}
     rest = f"; not compared: {counted(len(missing), 'object')}" if missing else ""
-    return f"Model holds: {counted(number, 'comparison')} within {tolerance}{_largest(result.compared)}{rest}"
+    return f"Model holds: {counted(number, 'comparison')} within {tolerance}{_largest(result.compared)}{rest}{_scarce(result)}"
+
+
+#: The extremes of fewer values say little.
+_FEW = 5
+
+
+def _scarce(result: Comparison) -> str:
+    """Of what the fewest values were measured, if these are few."""
+    fewest = min(result.compared, key=lambda row: row.samples)
+    if fewest.samples >= _FEW:
+        return ""
+    return f"; only {counted(fewest.samples, 'value')} of the {quantity_text(fewest.quantity)} of {fewest.object}"
 
 
 #: Smaller deviations are shown as none.

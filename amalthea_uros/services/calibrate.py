@@ -150,7 +150,7 @@ def calibrate_text(text: str, path: Path, measurements: Sequence[Measurement], o
         *calibrated_overheads(measured, before, options),
         *calibrated_periods(measured, before, places, options),
     ]
-    after = _edited(text.removeprefix(_BOM), found)
+    after, found = _edited(text.removeprefix(_BOM), found)
     _check(after, path)
     values = tuple(_placed(value, text.removeprefix(_BOM), after) for value in found)
     findings = findings_of(path, text, values, measured, before, places, options)
@@ -164,12 +164,32 @@ def calibrate_text(text: str, path: Path, measurements: Sequence[Measurement], o
     )
 
 
-def _edited(text: str, values: Sequence[CalibratedValue]) -> str:
-    for value in values:
-        if value.assignment is not None:
-            text = apply_assignments(text, [value.assignment])
-            text = text_edits.with_comment(text, value.assignment.path, f"{value.target}:", value.comment)
-    return text
+def _edited(text: str, values: Sequence[CalibratedValue]) -> tuple[str, list[CalibratedValue]]:
+    """The text with the values, and what became of them: what others share is not written, unless these have got their own by then."""
+    pending, reasons = list(values), dict[int, str]()
+    while pending:
+        refused = []
+        for value in pending:
+            try:
+                text = _with_value(text, value)
+            except InvalidArgumentError as error:
+                reasons[id(value)] = str(error)
+                refused.append(value)
+        if len(refused) == len(pending):
+            break
+        pending = refused
+    lost = {id(value) for value in pending}
+    return text, [
+        replace(value, assignment=None, outcome=Outcome.NOT_WRITTEN, reason=reasons[id(value)]) if id(value) in lost else value
+        for value in values
+    ]
+
+
+def _with_value(text: str, value: CalibratedValue) -> str:
+    if value.assignment is None:
+        return text
+    text = apply_assignments(text, [value.assignment])
+    return text_edits.with_comment(text, value.assignment.path, f"{value.target}:", value.comment)
 
 
 def _check(text: str, path: Path) -> None:

@@ -16,6 +16,7 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.measure.distances import Distance, distance
+from amalthea_uros.measure.event_chains import BEGINS
 from amalthea_uros.measure.series import Kind, Measurement, Series
 from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.names import require
@@ -23,25 +24,31 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.services.comparison.agreement import LEAST, Rule, compared
 from amalthea_uros.services.comparison.limits import judge_limits
 from amalthea_uros.services.comparison.naming import Names, Target, targets
+from amalthea_uros.services.comparison.phases import analyses_in_phases
 from amalthea_uros.services.comparison.predictions import Missing, Predictor, overhead_of
 from amalthea_uros.services.comparison.results import (
     Agreement,
     Comparison,
     ComparisonRow,
     DistributionRow,
+    MeasuredLimit,
     Source,
     Statistic,
 )
 from amalthea_uros.services.comparison.simulated import Run, simulate_measured
 from amalthea_uros.services.measure import MeasureOptions, measure_file
+from amalthea_uros.services.measured_events import chain_starts
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
 from amalthea_uros.services.timing_changes import described
 from amalthea_uros.services.what_if import Changes, as_changes
+from amalthea_uros.simulate.results import ObservedVerdict
+from amalthea_uros.timing.overheads import processes_with_overhead
 from amalthea_uros.timing.phases import unknown_phases, with_first_arrivals
 from amalthea_uros.timing.settings import Settings
+from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import SECOND, Time, time_text
 
 if TYPE_CHECKING:
@@ -127,7 +134,7 @@ def compare(
         overheads=overheads or {},
         uncertainty=uncertainty,
     )
-    return _run(subject, _measured(measured), options, settings or Settings(), as_changes(changes))
+    return _run(subject, measured, MeasureOptions(), options, settings or Settings(), as_changes(changes))
 
 
 def compare_files(
@@ -150,11 +157,16 @@ def compare_files(
     ------
     ReadError, InvalidArgumentError : as for `compare`.
     """
-    return _run(model, _measured_in(traces, reading), options, settings or Settings(), tuple(changes))
+    return _run(model, traces, reading, options, settings or Settings(), tuple(changes))
 
 
 def _run(
-    subject: Subject, measurement: Measurement, options: CompareOptions, settings: Settings, changes: Sequence[Change]
+    subject: Subject,
+    measured: Measured,
+    reading: MeasureOptions,
+    options: CompareOptions,
+    settings: Settings,
+    changes: Sequence[Change],
 ) -> Comparison:
     given = reusable(subject)
     opened = open_subject(given)
@@ -162,7 +174,7 @@ def _run(
     require_settings(settings, opened.system)
     differences = described(configuration, changes)
     system, settings = apply(*configuration, changes)
-    found = _compared(system, settings, measurement, options)
+    found = _compared(system, settings, _measured(measured, reading, system), options)
     return replace(
         found,
         model=" ".join(map(str, paths_of(given) or ())),
@@ -194,26 +206,32 @@ def _source(name: Source | str) -> Source:
     return Source(name)
 
 
-def _measured(measured: Measured) -> Measurement:
-    return measured if isinstance(measured, Measurement) else _measured_in(as_paths(measured), MeasureOptions())
-
-
-def _measured_in(traces: Sequence[StrPath], reading: MeasureOptions) -> Measurement:
+def _measured(measured: Measured, reading: MeasureOptions, system: System) -> Measurement:
+    """What was measured, or is now: of chains what begins as in the model."""
+    if isinstance(measured, Measurement):
+        return measured
     from amalthea_uros.services.comparison.traces import joined
 
-    return joined([measure_file(path, reading) for path in as_paths(traces)])
+    reading = replace(reading, chain_starts=chain_starts(system))
+    return joined([measure_file(path, reading) for path in as_paths(measured)])
 
 
 def _compared(system: System, settings: Settings, measurement: Measurement, options: CompareOptions) -> Comparison:
     require("process", filter(None, options.overheads), system.processes)
     analysis = analyze_system(system, settings) if Source.ANALYSIS in options.sources else None
-    found = tuple(targets(measurement, options.names, system))
+    with_overhead = processes_with_overhead(system) | options.overheads.keys()
+    found = tuple(_of_same_begin(targets(measurement, options.names, system, with_overhead), chain_starts(system)))
     _refuse_twice(found)
     runs = _simulated(system, settings, options, measurement) if Source.SIMULATION in options.sources else ()
     simulation = runs[0].simulation if runs else None
-    predictor = Predictor(analysis=analysis, runs=runs, overheads=options.overheads)
+    in_phases = () if analysis is None or runs else analyses_in_phases(analysis, system, settings)
+    predictor = Predictor(analysis=analysis, runs=runs, in_phases=in_phases, overheads=options.overheads)
     uncertainty = measurement.resolution if options.uncertainty is None else options.uncertainty
-    rule = Rule(tolerance=options.tolerance, uncertainty=uncertainty or 0)
+    rule = Rule(
+        tolerance=options.tolerance,
+        uncertainty=uncertainty or 0,
+        is_reached=options.uncertainty is not None and uncertainty != 0,
+    )
     rows = (*(row for target in found for row in _rows(target, predictor, rule)), *_not_measured(system, found))
     comparison = Comparison(
         model="",
@@ -221,16 +239,42 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
         tolerance=options.tolerance,
         uncertainty=uncertainty,
         rows=rows,
-        limits=tuple(judge_limits(system, settings, measurement, found)),
+        limits=tuple(_with_doubt(limit, rule) for limit in judge_limits(system, settings, measurement, found)),
         distributions=tuple(_distributions(found, rows, runs, rule, options.overheads)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,
-        assumptions=_assumptions(measurement, options, analysis, simulation),
+        assumptions=_assumptions(measurement, found, options, analysis, simulation),
     )
     of_predictions = (each.findings for each in (analysis, simulation) if each is not None)
     reported = (*measurement.findings, *(finding for each in of_predictions for finding in each))
     own = _findings(comparison, found, _phases(system, settings))
     return replace(comparison, findings=tuple(dict.fromkeys((*reported, *own))))
+
+
+def _with_doubt(limit: MeasuredLimit, rule: Rule) -> MeasuredLimit:
+    """A limit that was kept, with the remark that it may have been missed if the measured time is wrong."""
+    is_near = limit.is_time and limit.margin is not None and limit.margin < rule.uncertainty
+    if limit.verdict is not ObservedVerdict.OK or not is_near:
+        return limit
+    return replace(limit, reason="the distance from the limit is within the uncertainty of the measurement")
+
+
+def _of_same_begin(found: Iterable[Target], starts: Mapping[str, EventKind | None]) -> Iterator[Target]:
+    """The targets; chains that were measured from another event of a job on than in the model have no counterpart."""
+    for target in found:
+        measured, modelled = target.series.begin, starts.get(target.name, EventKind.ACTIVATE)
+        if not measured or target.reason or (modelled is not None and measured == BEGINS[modelled]):
+            yield target
+        elif modelled is None:
+            yield replace(target, reason=_WITHIN_A_JOB)
+        else:
+            begins = (
+                f"it was measured from the {measured} of its first job on, and begins in the model with its {BEGINS[modelled]}"
+            )
+            yield replace(target, reason=f"{begins}; measure it with the model")
+
+
+_WITHIN_A_JOB = "it begins or ends within a job, at an event that is not in traces; measure it between markers"
 
 
 def _refuse_twice(found: Iterable[Target]) -> None:
@@ -282,8 +326,12 @@ def _rows(target: Target, predictor: Predictor, rule: Rule) -> Iterator[Comparis
 _UNLIKE = "no prediction has the definition of what was measured"
 
 
+_NOT_IN_TRACE = {Kind.PROCESS: "the trace has no process of this name", Kind.CHAIN: "the trace has no values of this chain"}
+
+
 def _not_measured(system: System, found: Sequence[Target]) -> Iterator[ComparisonRow]:
-    """A row for each process and chain of which the trace has nothing."""
+    """A row for each process and chain of which the trace has nothing, or nothing of the same definition."""
+    starts = chain_starts(system)
     measured = {(target.kind, target.name) for target in found}
     for kind, names in ((Kind.PROCESS, system.processes), (Kind.CHAIN, system.chains)):
         for name in names:
@@ -294,7 +342,7 @@ def _not_measured(system: System, found: Sequence[Target]) -> Iterator[Compariso
                     quantity="",
                     statistic=None,
                     verdict=Agreement.NOT_MEASURED,
-                    reason=f"the trace has no {kind} of this name",
+                    reason=_WITHIN_A_JOB if starts.get(name, ...) is None else _NOT_IN_TRACE[kind],
                 )
 
 
@@ -360,13 +408,17 @@ def _phases(system: System, settings: Settings) -> tuple[str, ...]:
     return tuple(dict.fromkeys(occurrence.source for occurrence in unknown_phases(known)))
 
 
-def _assumptions(measurement: Measurement, options: CompareOptions, *predictions: object) -> tuple[str, ...]:
+def _assumptions(
+    measurement: Measurement, found: Sequence[Target], options: CompareOptions, *predictions: object
+) -> tuple[str, ...]:
     stated = [sentence for each in predictions for sentence in getattr(each, "assumptions", ())]
-    subtracted = [series for series in measurement.series if series.baseline is not None]
-    if subtracted:
-        names = ", ".join(dict.fromkeys(series.name for series in subtracted))
-        stated.append(f"the mean of a baseline was subtracted from what was measured of {names}")
-    elif not options.overheads:
+    net = list(dict.fromkeys(series.name for series in measurement.series if series.baseline is not None))
+    again = list(dict.fromkeys(target.series.name for target in found if target.is_with_baseline))
+    if subtracted := [name for name in net if name not in again]:
+        stated.append(f"the mean of a baseline was subtracted from what was measured of {', '.join(subtracted)}")
+    if again:
+        stated.append(f"the baseline of {', '.join(again)} was added again, because the predicted times include an overhead")
+    if not net and not options.overheads:
         stated.append("no baseline was subtracted from the measured times, and no overhead was added to the predicted ones")
     for name, overhead in options.overheads.items():
         whose = name or "every process"
@@ -395,7 +447,8 @@ def _findings(comparison: Comparison, found: Sequence[Target], phases: Sequence[
 
 def _unknown_phases(comparison: Comparison, phases: Sequence[str]) -> Finding:
     names = ", ".join(map(repr, phases))
-    what = "are ranges over several phases" if comparison.seed is not None else "of means are those over all phases"
+    is_range = comparison.seed is not None or any(row.predicted_range for row in comparison.rows)
+    what = "are ranges over several phases" if is_range else "are bounds, and no means, because there are too many phases"
     message = f"the phase of {names} is unknown: predictions that depend on it {what}"
     return Finding("CMP004", Severity.WARNING, message, help="State it with --phase NAME=TIME to compare more strictly.")
 

@@ -46,7 +46,8 @@ class MeasureOptions:
     period : the standard period, from which the distances of starts deviate
     window : the part of the trace that is measured
     select : the only objects of the result; empty: all
-    chain_starts : of chains that begin with the start of a job instead of its activation: that; `chain_starts` finds them in a model
+    chain_starts : with which event of a job chains begin, by default with its activation; None: they are not measured.
+        `measured_events.chain_starts` finds them in a model
     """
 
     markers: Path | None = None
@@ -61,7 +62,7 @@ class MeasureOptions:
     period: Time | None = None
     window: Window = field(default_factory=Window)
     select: tuple[str, ...] = ()
-    chain_starts: Mapping[str, EventKind] = field(default_factory=dict)
+    chain_starts: Mapping[str, EventKind | None] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if (self.start is None) != (self.end is None):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.measure.window import Window
-from amalthea_uros.perf.events import ProcessChange, ProcessEvent
+from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
 from amalthea_uros.trace.readers import format_name, open_trace
@@ -19,25 +19,43 @@ if TYPE_CHECKING:
     from amalthea_uros.trace.table import EventTable
 
 
-def chain_starts(system: System) -> dict[str, EventKind]:
-    """Of the chains of a system that begin with the start of a job instead of its activation: that."""
-    found = {}
+#: The events of a job with which a chain can begin so that a trace shows it.
+_BEGINS = {ProcessChange.ACTIVATE: EventKind.ACTIVATE, ProcessChange.START: EventKind.START}
+
+
+def chain_starts(system: System) -> dict[str, EventKind | None]:
+    """With which event of a job each chain of a system begins; None if it begins or ends at one that traces do not tell apart."""
+    found: dict[str, EventKind | None] = {}
     for chain in system.chains.values():
         try:
-            events = {system.events_by_name[way[0]] for way in sequences(unfold(chain, system)[0])}
+            routes = [
+                (system.events_by_name[way[0]], system.events_by_name[way[-1]]) for way in sequences(unfold(chain, system)[0])
+            ]
         except UnfoldError:
             continue
-        if all(isinstance(event, ProcessEvent) and event.change is ProcessChange.START for event in events):
-            found[chain.name] = EventKind.START
+        begins = {_begin(first) for first, _ in routes}
+        is_shown = len(begins) == 1 and all(_ends_with_its_step(last) for _, last in routes)
+        found[chain.name] = begins.pop() if is_shown else None
     return found
 
 
-def measured_events(path: Path, window: Window, starts: Mapping[str, EventKind]) -> Measurement:
+def _begin(event: Event) -> EventKind | None:
+    return _BEGINS.get(event.change) if isinstance(event, ProcessEvent) and event.change is not None else None
+
+
+def _ends_with_its_step(event: Event) -> bool:
+    """Whether a response is where the trace has the last step of its chain: not before, as the start of a job that reads later."""
+    if isinstance(event, ProcessEvent | RunnableEvent):
+        return event.change in (ProcessChange.TERMINATE, RunnableChange.TERMINATE)
+    return True
+
+
+def measured_events(path: Path, window: Window, starts: Mapping[str, EventKind | None]) -> Measurement:
     """Measure a trace of events.
 
     Parameters
     ----------
-    starts : of chains that do not begin with the activation of a job: with which event they do
+    starts : of chains that do not begin with the activation of a job: with which event they do; None: they are not measured
 
     Raises
     ------

@@ -66,9 +66,17 @@ ASSUMPTION = (
 
 def has_overhead_of_tasks(system: System) -> bool:
     """Whether tasks execute work of the operating system."""
+    return any(task.name in processes_with_overhead(system) for task in system.software.tasks)
+
+
+def processes_with_overhead(system: System) -> frozenset[str]:
+    """The processes that execute work of the operating system, which is part of their execution times."""
     overheads = {runnable.name for runnable in system.software.runnables if runnable.is_overhead}
-    called = (activity for task in system.software.tasks for activity in task.activities)
-    return any(isinstance(activity, Call) and activity.runnable in overheads for activity in called)
+
+    def is_overhead(activity: Activity) -> bool:
+        return isinstance(activity, Call) and activity.runnable in overheads
+
+    return frozenset(name for name, process in system.processes.items() if any(map(is_overhead, process.activities)))
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, cast
 
+from amalthea_uros._internal.files import is_directory
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.ctf.folders import has_metadata
@@ -59,7 +60,7 @@ class TraceReader(Protocol):
 
 def format_of(path: Path) -> str | None:
     """The module that reads a trace, a key of `FORMATS`, by the name and the first lines of the file; None if no one does."""
-    if path.is_dir() and has_metadata(path):
+    if is_directory(path) and has_metadata(path):
         return "ctf.reader"
     name = path.name.lower().removesuffix(".gz")
     if name.endswith(_AMBIGUOUS):

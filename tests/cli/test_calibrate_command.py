@@ -42,6 +42,15 @@ def test_the_description_itself_can_be_written(given, tmp_path):
     assert "written" not in again.stdout
 
 
+@pytest.mark.parametrize("target", NAMES[1:])
+def test_what_was_measured_is_not_replaced(given, target, tmp_path):
+    before = (tmp_path / target).read_bytes()
+    run = amuros(*given, "-o", target)
+    assert run.returncode == 2
+    assert "-o would replace a file that is read" in run.stderr
+    assert (tmp_path / target).read_bytes() == before
+
+
 def test_a_refuted_value_is_an_error_and_the_file_is_written(given, tmp_path):
     text = (tmp_path / NAMES[0]).read_text().replace("execution_time: 4 us", "execution_time: 1 us")
     (tmp_path / NAMES[0]).write_text(text)

@@ -293,3 +293,52 @@ def test_a_calibration_is_a_table():
     rows = calibrate(ADVANCED, control(3, 5)).to_records()
     assert rows[0]["target"] == "Control_Function.execution_time"
     assert (rows[0]["min_ps"], rows[0]["max_ps"]) == (3 * MICROSECOND, 5 * MICROSECOND)
+
+
+# Text that is written otherwise than in the samples.
+
+
+UGLY = """\
+amuros: 1
+name: ugly
+hardware: {platform: single-core}
+tasks:
+  - {reads: ["a
+      b"], name: A, period: 1 ms, execution_time: 4 us}
+  - &b {name: B, period: 2 ms, execution_time: 4 us}
+  - {<<: *b, name: C}
+  - &d {name: D, period: 4 ms, execution_time: 4 us}
+  - {<<: *d, name: E, execution_time: 5 us}
+"""
+
+
+def of_tasks(**times):
+    return measured(*(series(name, "net_execution_time", us(*each)) for name, each in times.items()))
+
+
+def test_a_comment_is_no_part_of_a_text_of_several_lines():
+    result = calibrate(UGLY, of_tasks(A=[3, 5]))
+    labels = [{label.name for label in describe_text(text).system.software.labels} for text in (UGLY, result.text)]
+    assert labels[0] == labels[1] == {"a b"}
+    assert '"a\n      b"], name: A, period: 1 ms, execution_time: {min: 2 us, max: 6 us}}' in result.text
+
+
+def test_a_value_that_others_share_by_merging_is_not_written():
+    result = calibrate(UGLY, of_tasks(B=[3, 5], A=[3, 5]))
+    (shared,) = (value for value in result.values if value.target == "B.execution_time")
+    assert shared.outcome is Outcome.NOT_WRITTEN
+    assert "shared through the anchor &b" in shared.reason
+    assert "- &b {name: B, period: 2 ms, execution_time: 4 us}" in result.text
+    assert [value.target for value in result.written] == ["A.execution_time"]  # the others are written nevertheless
+    assert any(finding.rule == "CAL003" for finding in result.findings)
+
+
+def test_what_the_others_state_themselves_is_not_shared():
+    assert [value.target for value in calibrate(UGLY, of_tasks(D=[3, 5])).written] == ["D.execution_time"]
+
+
+def test_the_order_of_values_that_share_something_does_not_matter():
+    # C gets a value of its own; only then nobody shares that of B any longer.
+    once = calibrate(UGLY, of_tasks(B=[3, 5], C=[3, 5]))
+    assert len(once.written) == 2
+    assert calibrate(once.text, of_tasks(B=[3, 5], C=[3, 5])).text == once.text

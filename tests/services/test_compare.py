@@ -93,8 +93,10 @@ def test_less_than_a_step_of_the_clock_beyond_a_bound_proves_nothing():
     assert only(vague, "max", "exact").verdict == "within"
     assert "uncertainty" in only(vague, "max", "exact").reason
     assert only(exact, "max", "exact").verdict == "refuted"
-    stated = compare(APP, measurement(measured, resolution=None), uncertainty=MICROSECOND)
+    stated = compare(APP, measurement(measured, resolution=None), uncertainty=MICROSECOND // 2)
     assert only(stated, "max", "exact").verdict == "within"
+    less = compare(APP, measurement(measured, resolution=None), uncertainty=MICROSECOND // 2 - 1)
+    assert only(less, "max", "exact").verdict == "refuted"
 
 
 def test_a_bound_far_above_the_measurement_is_told_and_is_not_outside():
@@ -286,6 +288,19 @@ def test_a_subtracted_baseline_is_told_and_makes_single_values_uncertain():
     assert only(compare(APP, measurement(far, resolution=None)), "max", "exact").verdict == "refuted"
 
 
+def test_a_baseline_is_added_again_where_the_model_has_the_overhead_itself():
+    # The model executes 30 + 11 us of overhead and 4 us; measured were 45 us, of which an empty job of 41 us was subtracted.
+    app = APP.replace("execution_time: 4 us", "execution_time: 4 us, overhead: {activation: 30 us, termination: 11 us}")
+    empty = statistics_of(series("Empty", "duration", [41]).values)
+    net = measurement(series("Control_Function", "net_execution_time", [4], baseline=empty))
+    with_overhead, added, without = compare(app, net), compare(APP, net, overheads={"": 41_000_000}), compare(APP, net)
+    for found, measured in ((with_overhead, 45), (added, 45), (without, 4)):
+        assert found.holds
+        assert {row.measured for row in rows(found, "mean")} == {measured * MICROSECOND}
+    assert any("was added again" in sentence for sentence in with_overhead.assumptions)
+    assert any("was subtracted" in sentence for sentence in without.assumptions)
+
+
 # Limits.
 
 
@@ -360,3 +375,72 @@ def test_records_have_the_names_of_the_json():
         record
     )
     assert "Model holds" in str(found)
+
+
+@pytest.mark.parametrize(("sample", "chain"), [("drive-and-lift", "valve-to-log"), ("rclc-in-executor", "imu-to-wheels")])
+def test_a_chain_that_begins_within_a_job_is_not_measured_from_another_event_on(sample, chain, tmp_path):
+    # `valve-to-log` begins with the end of a job: from its activation on, it would be 22.3 ms, which is beyond the bound of 22.17 ms.
+    path, trace = ROOT / "samples" / f"{sample}.yaml", tmp_path / "run.csv"
+    simulate(path, "200 ms", seed=3, trace_paths=[trace])
+    found = compare(path, trace, by=["analysis"])
+    (row,) = (row for row in found.rows if row.object == chain)
+    assert row.verdict == "not measured"
+    assert "begins or ends within a job" in row.reason
+    assert not [row for row in found.rows if row.verdict == "refuted"]
+
+
+def test_a_chain_that_was_measured_from_another_event_on_is_not_compared(tmp_path):
+    # The chain begins with the start of the executor's job; without the model, it is measured from the activation on.
+    trace = tmp_path / "run.csv"
+    simulate(ADVANCED, "100 ms", trace_paths=[trace])
+    without, with_model = (
+        compare(ADVANCED, amuros.measure(trace, **more), by=["analysis"]) for more in ({}, {"model": ADVANCED})
+    )
+    (row,) = (row for row in without.rows if (row.object, row.quantity) == ("factor-to-output", "data_age"))
+    assert row.verdict == "not predicted"
+    assert "from the activation of its first job on, and begins in the model with its start" in row.reason
+    assert "not_observed" in {limit.verdict for limit in without.limits if limit.object == "factor-to-output"}
+    assert with_model.find("factor-to-output", "data_age")[0].verdict == "within"
+
+
+@pytest.mark.parametrize("seed", [2, 3])
+def test_the_mean_of_an_analysis_is_one_for_each_phase(seed, tmp_path):
+    # Over all phases, the mean reaction is 10.52 ms; in a single one it is any from 1.016 to 20.03 ms, so that none of them is outside.
+    trace = tmp_path / "run.csv"
+    simulate(ADVANCED, "200 ms", seed=seed, trace_paths=[trace])
+    found = compare(ADVANCED, trace, by=["analysis"])
+    assert found.holds
+    (mean,) = (row for row in found.find("factor-to-output", "reduced_reaction_time") if row.statistic == "mean")
+    low, high = mean.predicted_range
+    assert low <= mean.measured <= high
+    (executor,) = (row for row in found.find("Executor_Task", "response_time") if row.statistic == "mean")
+    assert (executor.predicted, executor.predicted_range) == (12_650_000, None)  # the same in all phases
+
+
+def test_what_nobody_asks_for_is_not_listed_as_missing(tmp_path):
+    # An analysis has no running, polling and parking times; the text counts them.
+    trace = tmp_path / "run.csv"
+    simulate(APP, "20 ms", trace_paths=[trace])
+    text = str(compare(APP, trace, by=["analysis"]))
+    assert "not predicted; --all shows them" in text
+    assert "parking time" not in text
+
+
+def test_the_sign_of_a_deviation_is_that_of_the_difference():
+    row = only(compare(APP, measurement(series("Control_Function", "response_time", [-5])), by=["simulation"]), "mean")
+    assert row.deviation < 0  # less was measured than predicted
+
+
+def test_few_values_are_told():
+    one, enough = (compare(APP, measurement(series("Control_Function", "response_time", [57] * count))) for count in (1, 5))
+    assert str(one).endswith("; only 1 value of the response time of Control_Function")
+    assert "only" not in str(enough).splitlines()[-1]
+
+
+def test_a_limit_that_may_have_been_missed_is_told():
+    # The clock has steps of 1 us: 79.5 us may be 80.4 us, which is more than 80 us.
+    near, clear = (compare(APP, measurement(series("Control_Function", "response_time", [value]))) for value in (79.5, 79))
+    told, other = (next(each for each in found.limits if each.object == "Control_Function") for found in (near, clear))
+    assert told.verdict == other.verdict == "observed_ok"
+    assert "within the uncertainty" in told.reason
+    assert other.reason == ""

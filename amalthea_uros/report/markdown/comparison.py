@@ -14,8 +14,11 @@ from amalthea_uros.report.compared import (
     bound_tests,
     closing_line,
     distribution_rows,
+    hidden,
+    hidden_missing,
     limit_cells,
     missing_cells,
+    missing_rows,
     prediction_cells,
     prediction_groups,
     subject_line,
@@ -38,12 +41,14 @@ def lines(result: Comparison) -> Iterator[str]:
         ("Bounds of the analysis", BOUNDS, [*map(bound_cells, bound_tests(result))], range(2, 7)),
         ("Distributions", DISTRIBUTIONS, [*distribution_rows(result)], range(2, 8)),
         ("Limits, as measured", LIMITS, [*map(limit_cells, result.limits)], (3, 4)),
-        ("Not compared", MISSING, [*map(missing_cells, result.not_compared)], ()),
+        ("Not compared", MISSING, [*map(missing_cells, missing_rows(result))], ()),
     )
     for title, headings, rows, right in sections:
         if rows:
             yield from ("", f"## {title}", "")
             yield from table(headings, rows, right)
+    for rest in filter(None, (hidden(result), hidden_missing(result))):
+        yield from ("", escaped(rest))
     if result.assumptions:
         yield from ("", "## Assumptions", "")
         yield from (f"- {escaped(sentence)}" for sentence in result.assumptions)

@@ -13,8 +13,10 @@ from amalthea_uros.report.compared import (
     closing_line,
     distribution_rows,
     hidden,
+    hidden_missing,
     limit_cells,
     missing_cells,
+    missing_rows,
     prediction_cells,
     prediction_groups,
     subject_line,
@@ -46,7 +48,9 @@ def write(result: Comparison, terminal: Terminal) -> None:
         terminal.table(LIMITS, map(limit_cells, result.limits), right=(3, 4))
     if result.not_compared:
         terminal.heading("Not compared")
-        terminal.table(MISSING, map(missing_cells, result.not_compared))
+        terminal.table(MISSING, map(missing_cells, missing_rows(result)))
+        if hidden_missing(result):
+            terminal.line(f"  {hidden_missing(result)}")
     if result.assumptions:
         terminal.heading("Assumptions")
         for sentence in result.assumptions:

@@ -29,7 +29,7 @@ def findings_of(
     options: CalibrationOptions,
 ) -> Iterator[Finding]:
     """What has to be said about a calibration."""
-    lines = text.splitlines()
+    lines = text.replace("\r\n", "\n").split("\n")
     for value in values:
         place = None if value.line is None else Location(path, value.line, None, lines[value.line - 1])
         yield from _about(value, place)

@@ -37,6 +37,13 @@ class Prediction:
         return self.value if self.high is None else min(max(measured, self.value), self.high)
 
 
+class Ends(NamedTuple):
+    """Between which ends a measured value really is."""
+
+    lower: Fraction
+    upper: Fraction
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rule:
     """How values are compared.
@@ -45,10 +52,18 @@ class Rule:
     ----------
     tolerance : of the deviation, relative to the measurement
     uncertainty : by how much a measured time may be wrong, in picoseconds
+    is_reached : whether it may be wrong by all of that; the difference of two time stamps is wrong by less than their step
     """
 
     tolerance: Fraction
     uncertainty: Time
+    is_reached: bool = False
+
+    def is_possible(self, predicted: Fraction, ends: Ends) -> bool:
+        """Whether a measured value may really be a predicted one."""
+        if self.is_reached:
+            return ends.lower <= predicted <= ends.upper
+        return ends.lower < predicted < ends.upper
 
 
 def measured_values(statistics: Statistics) -> Mapping[Statistic, Fraction]:
@@ -102,14 +117,7 @@ def compared(
 LEAST = "without the number of the stimulus, only the least possible latencies are measured"
 
 
-class _Ends(NamedTuple):
-    """Between which ends a measured value really is."""
-
-    lower: Fraction
-    upper: Fraction
-
-
-def _certain(series: Series, statistic: Statistic, value: Fraction, rule: Rule) -> _Ends:
+def _certain(series: Series, statistic: Statistic, value: Fraction, rule: Rule) -> Ends:
     """What is certain of a measured value; of a jitter, both of its ends can be wrong.
 
     With a baseline, its mean was subtracted; the share of a single value is anything within the baseline's values.
@@ -117,11 +125,11 @@ def _certain(series: Series, statistic: Statistic, value: Fraction, rule: Rule) 
     wrong = Fraction(rule.uncertainty) * (2 if statistic is Statistic.JITTER else 1)
     baseline = series.baseline
     if baseline is None or statistic is Statistic.MEAN:
-        return _Ends(value - wrong, value + wrong)
+        return Ends(value - wrong, value + wrong)
     below, above = baseline.max - baseline.mean, baseline.mean - baseline.min
     if statistic is Statistic.JITTER:
         below = above = below + above
-    return _Ends(value - wrong - below, value + wrong + above)
+    return Ends(value - wrong - below, value + wrong + above)
 
 
 def _is_comparable(series: Series, statistic: Statistic, prediction: Prediction) -> bool:
@@ -129,10 +137,10 @@ def _is_comparable(series: Series, statistic: Statistic, prediction: Prediction)
     return not series.is_least or (statistic is Statistic.MAX and is_bound(prediction.claim, statistic))
 
 
-def _judged(statistic: Statistic, measured: Fraction, ends: _Ends, prediction: Prediction, rule: Rule) -> tuple[Agreement, str]:
+def _judged(statistic: Statistic, measured: Fraction, ends: Ends, prediction: Prediction, rule: Rule) -> tuple[Agreement, str]:
     """The verdict, with its reason."""
     predicted = prediction.nearest(measured)
-    is_uncertain = ends.lower < predicted < ends.upper
+    is_uncertain = rule.is_possible(predicted, ends)
     if is_bound(prediction.claim, statistic):
         is_upper = statistic is Statistic.MAX
         beyond = measured - predicted if is_upper else predicted - measured
@@ -145,4 +153,4 @@ def _judged(statistic: Statistic, measured: Fraction, ends: _Ends, prediction: P
     return (Agreement.WITHIN, f"the difference is {_UNCERTAIN}") if is_uncertain else (Agreement.OUTSIDE, "")
 
 
-_UNCERTAIN = "less than the uncertainty of the measurement"
+_UNCERTAIN = "within the uncertainty of the measurement"

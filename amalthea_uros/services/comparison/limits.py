@@ -11,6 +11,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros.measure.baselines import with_baseline
 from amalthea_uros.measure.series import Measurement, Series
 from amalthea_uros.perf.constraints import Bound, Requirement, TimeMetric
 from amalthea_uros.perf.system import System
@@ -93,14 +94,14 @@ def _is_measurable(requirement: Requirement) -> bool:
 
 def _observation(series: Series) -> MetricObservation:
     """A series as what a simulation observes, with the baseline."""
+    series = with_baseline(series)
     statistics = series.statistics
     assert statistics is not None
-    back = 0 if series.baseline is None else round(series.baseline.mean)
     return MetricObservation(
         count=statistics.count,
-        min=Fraction(statistics.min + back),
-        mean=statistics.mean + back,
-        max=Fraction(statistics.max + back),
+        min=Fraction(statistics.min),
+        mean=statistics.mean,
+        max=Fraction(statistics.max),
         std=statistics.std or 0.0,
         at_min=_occurrence(series, statistics.min),
         at_max=_occurrence(series, statistics.max),

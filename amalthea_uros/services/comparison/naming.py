@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.measure.baselines import with_baseline
 from amalthea_uros.measure.series import Kind, Measurement, Series
 from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.names import require
@@ -60,6 +61,7 @@ class Target:
     statistics : those that can be compared
     reason : why nothing can be compared, "" if something can
     is_unknown : whether the model has nothing of the name
+    is_with_baseline : whether a baseline was subtracted and added again
     """
 
     series: Series
@@ -69,6 +71,7 @@ class Target:
     statistics: tuple[Statistic, ...] = tuple(Statistic)
     reason: str = ""
     is_unknown: bool = False
+    is_with_baseline: bool = False
 
 
 def parse_meaning(text: str) -> Meaning:
@@ -88,14 +91,27 @@ def parse_meaning(text: str) -> Meaning:
     return Meaning(measured.strip(), name, quantity)
 
 
-def targets(measurement: Measurement, names: Names, system: System) -> Iterator[Target]:
+def targets(measurement: Measurement, names: Names, system: System, with_overhead: Collection[str]) -> Iterator[Target]:
     """What each measured series is compared with, first those of which the user says it.
+
+    Parameters
+    ----------
+    with_overhead : the processes whose predicted times include an overhead, "" for all: what was subtracted as such is added again
 
     Raises
     ------
     InvalidArgumentError : the user names what the trace or the model does not have, or a sum or quantity that cannot be.
     """
     _check(measurement, names, system)
+    for target in _targets(measurement, names, system):
+        is_included = bool({"", target.name} & set(with_overhead))
+        if is_included and target.kind is Kind.PROCESS and target.series.baseline is not None:
+            yield replace(target, series=with_baseline(target.series), is_with_baseline=True)
+        else:
+            yield target
+
+
+def _targets(measurement: Measurement, names: Names, system: System) -> Iterator[Target]:
     used: set[tuple[Kind, str, str]] = set()
     for meaning in names.meanings:
         parts = _measured(meaning.measured, measurement)

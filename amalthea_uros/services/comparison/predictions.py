@@ -63,11 +63,13 @@ class Predictor:
     ----------
     analysis : None if it is not asked
     runs : simulations, the first one as long as the measurement; none if they are not asked
+    in_phases : the analyses that predict means, in each phase that is possible; none if simulations predict them
     overheads : process -> what is added to its predicted times; "" stands for all others
     """
 
     analysis: Analysis | None
     runs: tuple[Run, ...]
+    in_phases: tuple[Analysis, ...] = ()
     overheads: Mapping[str, Time] = field(default_factory=dict)
 
     def of(self, kind: Kind, name: str, quantity: str) -> Predictions:
@@ -90,41 +92,13 @@ class Predictor:
     def _analyzed(self, kind: Kind, name: str, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
         if self.analysis is None:
             return
-        if kind is Kind.CHAIN:
-            chain = next((each for each in self.analysis.chains if each.name == name), None)
-            if chain is not None:
-                yield from self._of_chain(chain, quantity)
-            return
-        metric = self._metric(self.analysis, kind, name, quantity)
-        if metric is not None:
-            yield from self._of_metric(metric, quantity)
-
-    def _metric(self, analysis: Analysis, kind: Kind, name: str, quantity: str) -> Metric | None:
-        holders = analysis.processes if kind is Kind.PROCESS else analysis.callbacks
-        variants = [each.metrics for each in holders if each.name == name]
-        found: Mapping[JobMetric, Metric] = merged(variants) if variants else {}
-        return next((metric for each, metric in found.items() if each == quantity), None)
-
-    def _of_metric(self, metric: Metric, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
-        claim = PredictionClaim.EXACT if metric.claim is Claim.EXACT else PredictionClaim.BOUND
-        method = f"analysis of the {quantity.replace('_', ' ')}"
-        if metric.min is not None:
-            yield Statistic.MIN, Prediction(value=Fraction(metric.min), claim=claim, method=method)
-        if metric.max is not None:
-            yield Statistic.MAX, Prediction(value=Fraction(metric.max), claim=claim, method=method)
-        if metric.mean is not None and not self.runs:
-            yield Statistic.MEAN, Prediction(value=metric.mean, claim=PredictionClaim.EXACT, method=method)
-
-    def _of_chain(self, chain: ChainResult, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
-        for statistic, end in _ENDS.items():
-            name = getattr(_OF_CHAINS.get(quantity, _Ends()), end)
-            value = None if name is None else chain.value(name)
-            if value is None or value.value is None or (statistic is Statistic.MEAN and self.runs):
-                continue
-            claim = PredictionClaim.EXACT if value.claim is Claim.EXACT else PredictionClaim.BOUND
-            # A bound of a mean is no prediction of it.
-            if statistic is not Statistic.MEAN or claim is PredictionClaim.EXACT:
-                yield statistic, Prediction(value=Fraction(value.value), claim=claim, method=value.method)
+        yield from _extremes(_of(self.analysis, kind, name, quantity))
+        means = [_of(each, kind, name, quantity).get(Statistic.MEAN) for each in self.in_phases]
+        known = [each for each in means if each is not None]
+        # The bound of a mean is no prediction of it.
+        if known and len(known) == len(means) and all(each.claim is PredictionClaim.EXACT for each in known):
+            values = [each.value for each in known]
+            yield Statistic.MEAN, replace(known[0], value=min(values), high=max(values))
 
     # The simulation.
 
@@ -169,6 +143,46 @@ class Predictor:
             yield from (each.reason for each in analysis.chains if (kind, each.name) == (Kind.CHAIN, name))
         if self.runs:
             yield from (each.reason for each in self.runs[0].simulation.chains if (kind, each.name) == (Kind.CHAIN, name))
+
+
+def _of(analysis: Analysis, kind: Kind, name: str, quantity: str) -> dict[Statistic, Prediction]:
+    """What an analysis has of a quantity."""
+    if kind is Kind.CHAIN:
+        chain = next((each for each in analysis.chains if each.name == name), None)
+        return {} if chain is None else dict(_of_chain(chain, quantity))
+    metric = _metric(analysis, kind, name, quantity)
+    return {} if metric is None else dict(_of_metric(metric, quantity))
+
+
+def _extremes(found: Mapping[Statistic, Prediction]) -> Iterator[tuple[Statistic, Prediction]]:
+    yield from ((statistic, each) for statistic, each in found.items() if statistic is not Statistic.MEAN)
+
+
+def _metric(analysis: Analysis, kind: Kind, name: str, quantity: str) -> Metric | None:
+    holders = analysis.processes if kind is Kind.PROCESS else analysis.callbacks
+    variants = [each.metrics for each in holders if each.name == name]
+    found: Mapping[JobMetric, Metric] = merged(variants) if variants else {}
+    return next((metric for each, metric in found.items() if each == quantity), None)
+
+
+def _of_metric(metric: Metric, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
+    claim = PredictionClaim.EXACT if metric.claim is Claim.EXACT else PredictionClaim.BOUND
+    method = f"analysis of the {quantity.replace('_', ' ')}"
+    if metric.min is not None:
+        yield Statistic.MIN, Prediction(value=Fraction(metric.min), claim=claim, method=method)
+    if metric.max is not None:
+        yield Statistic.MAX, Prediction(value=Fraction(metric.max), claim=claim, method=method)
+    if metric.mean is not None:
+        yield Statistic.MEAN, Prediction(value=metric.mean, claim=PredictionClaim.EXACT, method=method)
+
+
+def _of_chain(chain: ChainResult, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
+    for statistic, end in _ENDS.items():
+        name = getattr(_OF_CHAINS.get(quantity, _Ends()), end)
+        value = None if name is None else chain.value(name)
+        if value is not None and value.value is not None:
+            claim = PredictionClaim.EXACT if value.claim is Claim.EXACT else PredictionClaim.BOUND
+            yield statistic, Prediction(value=Fraction(value.value), claim=claim, method=value.method)
 
 
 def _values(run: Run, kind: Kind, name: str, quantity: str) -> dict[Statistic, Fraction]:

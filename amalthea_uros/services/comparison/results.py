@@ -112,7 +112,7 @@ class ComparisonRow(Shown):
             return None
         if self.measured == self.predicted:
             return Fraction(0)
-        return (self.measured - self.predicted) / base if base else None
+        return (self.measured - self.predicted) / abs(base) if base else None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

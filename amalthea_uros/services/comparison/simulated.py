@@ -15,18 +15,18 @@ from amalthea_uros.measure.event_chains import ChainSteps
 from amalthea_uros.measure.jobs import JobWalk
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.comparison.phases import MOST_PHASES, systems_in_phases
+from amalthea_uros.services.measured_events import chain_starts
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.system import simulate_system
-from amalthea_uros.timing.phases import phase_combinations, phase_count, unknown_phases, with_first_arrivals, with_phases
+from amalthea_uros.timing.phases import with_first_arrivals
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.trace.table import Entity, EventTable
 from amalthea_uros.units import SECOND, Time
 
 #: So many events are measured, which takes about a second; more values would hardly change a distribution.
 _MOST_EVENTS = 400_000
-#: Of more phases, so many are taken at random.
-_MOST_PHASES = 32
 #: Further runs are at least so long, unless the first one is shorter.
 _SHORTEST = SECOND
 
@@ -42,9 +42,9 @@ class Run:
 class _Measuring:
     """A sink that measures the first events of a run; it is its own opener."""
 
-    def __init__(self, most_events: int) -> None:
+    def __init__(self, system: System, most_events: int) -> None:
         self._most_events = most_events
-        self._jobs, self._chains = JobWalk(), ChainSteps()
+        self._jobs, self._chains = JobWalk(), ChainSteps(chain_starts(system))
         self._entities: Sequence[Entity] = ()
         self._end, self._events = 0, 0
 
@@ -89,7 +89,7 @@ class _Measuring:
 def simulate_measured(system: System, settings: Settings, duration: Time, seed: int) -> tuple[Run, ...]:
     """A run of a duration, and further ones in other phases if some are unknown."""
     first = _run(system, Options(duration=duration, seed=seed, settings=settings), _MOST_EVENTS)
-    variants = list(_phases(with_first_arrivals(system, settings.phases), seed))
+    variants = list(_phases(system, settings, seed))
     if not variants:
         return (first,)
     shorter = max(duration // len(variants), min(duration, _SHORTEST))
@@ -100,18 +100,17 @@ def simulate_measured(system: System, settings: Settings, duration: Time, seed: 
     )
 
 
-def _phases(system: System, seed: int) -> Iterator[tuple[System, int]]:
+def _phases(system: System, settings: Settings, seed: int) -> Iterator[tuple[System, int]]:
     """The system in each of its phases, or with other seeds if there are too many; nothing if all phases are known."""
-    unknown = unknown_phases(system)
-    if not unknown:
-        return
-    if phase_count(unknown) > _MOST_PHASES:
-        yield from ((system, seed + number) for number in range(1, _MOST_PHASES + 1))
+    variants = systems_in_phases(system, settings)
+    if variants is None:
+        known = with_first_arrivals(system, settings.phases)
+        yield from ((known, seed + number) for number in range(1, MOST_PHASES + 1))
     else:
-        yield from ((with_phases(system, combination), seed) for combination in phase_combinations(unknown))
+        yield from ((each, seed) for each in variants)
 
 
 def _run(system: System, options: Options, most_events: int) -> Run:
-    sink = _Measuring(most_events)
+    sink = _Measuring(system, most_events)
     simulation = simulate_system(system, replace(options, traced=(0, options.duration)), [sink])
     return Run(simulation, sink.measurement())

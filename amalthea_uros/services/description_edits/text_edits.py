@@ -73,7 +73,7 @@ def with_comment(text: str, path: Path, subject: str, comment: str) -> str:
     """
     newline = newline_of(text)
     lines = text.split(newline)
-    row = line_of(text, path) - 1
+    row = text.count("\n", 0, _start_of_line(text, path))
     new = lines[row][: len(lines[row]) - len(lines[row].lstrip())] + f"# {subject} {comment}"
     for above in range(row - 1, -1, -1):
         line = lines[above].strip()
@@ -83,6 +83,17 @@ def with_comment(text: str, path: Path, subject: str, comment: str) -> str:
             lines[above] = new
             return newline.join(lines)
     return newline.join([*lines[:row], new, *lines[row:]])
+
+
+def _start_of_line(text: str, path: Path) -> int:
+    """Where the line of a value starts; if this is within a text of several lines, where the line with the start of that is."""
+    document = read_document(text)
+    place, _ = _found(document, path)
+    start = text.rfind("\n", 0, place.start) + 1
+    for scalar in reversed(document.scalars):
+        if scalar.start < start < scalar.end:
+            start = text.rfind("\n", 0, scalar.start) + 1
+    return start
 
 
 def newline_of(text: str) -> str:
@@ -140,8 +151,12 @@ class _Patcher:
             if isinstance(node, TextScalar):
                 yield self._expanded(node, str(path[depth - 1]), _nested((key, *rest), value))
                 return
+            if node.anchor is not None and self.document.is_shared(node, key):
+                raise _shared(node.anchor)
             inner = _inner(node, key)
             if isinstance(node, TextMapping) and inner is None:
+                if rest and self.document.value(node, str(key)) is not None:
+                    raise _shared("<<")  # the entry would hide the other keys of the one that is merged
                 yield self._added(node, str(key), _nested(rest, value), instead_of if not rest else None)
                 return
             assert inner is not None
@@ -164,8 +179,6 @@ class _Patcher:
         former = mapping.entry(instead_of) if instead_of else None
         if former is not None:
             return _Patch(former.start, former.value.end, new)
-        if isinstance(value, Mapping) and self.document.value(mapping, key) is not None:
-            raise _shared("<<")  # the entry would hide the other keys of the one that is merged
         neighbour = self._neighbour(mapping)
         if mapping.is_flow:
             if neighbour is None:

@@ -85,11 +85,19 @@ AnyNode: TypeAlias = TextScalar | TextAlias | TextSequence | TextMapping
 
 @dataclass(slots=True)
 class Document:
-    """A document: its root, and the nodes with anchors by the order of their occurrence."""
+    """A document: its root, and the nodes with anchors by the order of their occurrence.
+
+    Attributes
+    ----------
+    merging : the mappings that others are merged into
+    scalars : all single values that are no keys
+    """
 
     root: AnyNode
     anchored: list[AnyNode]
     aliases: list[TextAlias]
+    merging: list[TextMapping] = field(default_factory=list)
+    scalars: list[TextScalar] = field(default_factory=list)
 
     def target(self, alias: TextAlias) -> AnyNode:
         """What an alias refers to: the last node before it that has the anchor."""
@@ -102,6 +110,11 @@ class Document:
     def users(self, node: AnyNode) -> list[TextAlias]:
         """The aliases of a node."""
         return [alias for alias in self.aliases if node.anchor == alias.name and self.target(alias) is node]
+
+    def is_shared(self, node: AnyNode, key: str | int) -> bool:
+        """Whether what a node has under a key is also somewhere else, through an alias of the node or by being merged."""
+        merged = [each for each in self.merging if any(other is node for other in self.merged(each))]
+        return len(self.users(node)) > len(merged) or any(each.entry(str(key)) is None for each in merged)
 
     def value(self, mapping: TextMapping, key: str) -> AnyNode | None:
         """The value of a key, also of one that is merged into the mapping."""
@@ -153,6 +166,7 @@ def _node(event: _Event, events: Iterator[_Event], document: Document) -> AnyNod
         style = event.style or ""
         quote = "|" if style in ("|", ">") else style
         node = TextScalar(start=start, end=end, anchor=event.anchor, value=event.value, quote=quote)
+        document.scalars.append(node)
     elif isinstance(event, yaml.SequenceStartEvent):
         node = TextSequence(start=start, end=end, anchor=event.anchor, is_flow=bool(event.flow_style))
         for inner in events:
@@ -177,6 +191,8 @@ def _mapping(event: _Event, events: Iterator[_Event], document: Document) -> Tex
             break
         value = _node(next(events), events, document)
         node.entries.append(Entry(key=key.value, start=key.start_mark.index, end=key.end_mark.index, value=value))
+    if node.entry(MERGE) is not None:
+        document.merging.append(node)
     return node
 
 
