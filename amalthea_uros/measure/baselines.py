@@ -67,3 +67,16 @@ def without(series: Series, baseline: Statistics) -> Series:
         values=None if series.values is None else series.values - mean,
         baseline=baseline,
     )
+
+
+def with_cost(series: Series) -> Series:
+    """A series as it was before its baseline was subtracted: the times themselves."""
+    if series.baseline is None:
+        return series
+    mean = round(series.baseline.mean)
+    return replace(
+        series,
+        statistics=None if series.statistics is None else shifted(series.statistics, mean),
+        values=None if series.values is None else series.values + mean,
+        baseline=None,
+    )

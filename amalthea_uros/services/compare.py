@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
@@ -15,6 +15,7 @@ from amalthea_uros.changes.key import Configuration
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.measure.baselines import with_cost
 from amalthea_uros.measure.distances import Distance, distance
 from amalthea_uros.measure.series import Kind, Measurement, Series
 from amalthea_uros.measure.statistics import Statistics
@@ -40,7 +41,8 @@ from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
 from amalthea_uros.services.timing_changes import described
 from amalthea_uros.services.what_if import Changes, as_changes
-from amalthea_uros.timing.phases import unknown_phases, with_first_arrivals
+from amalthea_uros.timing.overheads import executes_overhead
+from amalthea_uros.timing.phases import unstated_phases
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import SECOND, Time, time_text
 
@@ -207,7 +209,8 @@ def _measured_in(traces: Sequence[StrPath], reading: MeasureOptions) -> Measurem
 def _compared(system: System, settings: Settings, measurement: Measurement, options: CompareOptions) -> Comparison:
     require("process", filter(None, options.overheads), system.processes)
     analysis = analyze_system(system, settings) if Source.ANALYSIS in options.sources else None
-    found = tuple(targets(measurement, options.names, system))
+    with_overhead = executes_overhead(system.processes.values(), system)
+    found = tuple(_like_the_model(target, with_overhead) for target in targets(measurement, options.names, system))
     _refuse_twice(found)
     runs = _simulated(system, settings, options, measurement) if Source.SIMULATION in options.sources else ()
     simulation = runs[0].simulation if runs else None
@@ -225,12 +228,19 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
         distributions=tuple(_distributions(found, rows, runs, rule, options.overheads)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,
-        assumptions=_assumptions(measurement, options, analysis, simulation),
+        assumptions=_assumptions(measurement, found, options, analysis, simulation),
     )
     of_predictions = (each.findings for each in (analysis, simulation) if each is not None)
     reported = (*measurement.findings, *(finding for each in of_predictions for finding in each))
     own = _findings(comparison, found, _phases(system, settings))
     return replace(comparison, findings=tuple(dict.fromkeys((*reported, *own))))
+
+
+def _like_the_model(target: Target, with_overhead: Container[str]) -> Target:
+    """What was measured, with the times of its empty object again if the model has them as overhead of the process."""
+    if target.kind is not Kind.PROCESS or target.name not in with_overhead:
+        return target
+    return replace(target, series=with_cost(target.series))
 
 
 def _refuse_twice(found: Iterable[Target]) -> None:
@@ -356,17 +366,22 @@ def _differs(between: Distance, rule: Rule, series: Series) -> bool:
 
 def _phases(system: System, settings: Settings) -> tuple[str, ...]:
     """What comes from outside with an unknown phase."""
-    known = with_first_arrivals(system, settings.phases)
-    return tuple(dict.fromkeys(occurrence.source for occurrence in unknown_phases(known)))
+    return tuple(dict.fromkeys(occurrence.source for occurrence in unstated_phases(system, settings.phases)))
 
 
-def _assumptions(measurement: Measurement, options: CompareOptions, *predictions: object) -> tuple[str, ...]:
+def _assumptions(
+    measurement: Measurement, found: Iterable[Target], options: CompareOptions, *predictions: object
+) -> tuple[str, ...]:
     stated = [sentence for each in predictions for sentence in getattr(each, "assumptions", ())]
-    subtracted = [series for series in measurement.series if series.baseline is not None]
+    with_baseline = dict.fromkeys(series.name for series in measurement.series if series.baseline is not None)
+    subtracted = dict.fromkeys(target.series.name for target in found if target.series.baseline is not None)
+    kept = [name for name in with_baseline if name not in subtracted]
     if subtracted:
-        names = ", ".join(dict.fromkeys(series.name for series in subtracted))
-        stated.append(f"the mean of a baseline was subtracted from what was measured of {names}")
-    elif not options.overheads:
+        stated.append(f"the mean of a baseline was subtracted from what was measured of {', '.join(subtracted)}")
+    if kept:
+        names = ", ".join(kept)
+        stated.append(f"no baseline was subtracted from what was measured of {names}: the model has the overhead of its jobs")
+    if not with_baseline and not options.overheads:
         stated.append("no baseline was subtracted from the measured times, and no overhead was added to the predicted ones")
     for name, overhead in options.overheads.items():
         whose = name or "every process"

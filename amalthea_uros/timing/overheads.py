@@ -5,7 +5,7 @@ Runnables can be overhead, too, of the process that calls them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -28,7 +28,7 @@ from amalthea_uros.perf.activities import (
     WaitEvent,
 )
 from amalthea_uros.perf.os import Overhead, SemaphoreKind, Service
-from amalthea_uros.perf.software import Isr, IsrCategory
+from amalthea_uros.perf.software import Isr, IsrCategory, Process
 from amalthea_uros.perf.system import System
 
 _OF_ACTIVITIES: dict[type, tuple[Service, ...]] = {
@@ -66,9 +66,17 @@ ASSUMPTION = (
 
 def has_overhead_of_tasks(system: System) -> bool:
     """Whether tasks execute work of the operating system."""
+    return bool(executes_overhead(system.software.tasks, system))
+
+
+def executes_overhead(processes: Iterable[Process], system: System) -> frozenset[str]:
+    """The names of those processes that execute work of the operating system."""
     overheads = {runnable.name for runnable in system.software.runnables if runnable.is_overhead}
-    called = (activity for task in system.software.tasks for activity in task.activities)
-    return any(isinstance(activity, Call) and activity.runnable in overheads for activity in called)
+    return frozenset(
+        process.name
+        for process in processes
+        if any(isinstance(activity, Call) and activity.runnable in overheads for activity in process.activities)
+    )
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.system import simulate_system
-from amalthea_uros.timing.phases import phase_combinations, phase_count, unknown_phases, with_first_arrivals, with_phases
+from amalthea_uros.timing.phases import phase_combinations, phase_count, unstated_phases, with_first_arrivals, with_phases
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.trace.table import Entity, EventTable
 from amalthea_uros.units import SECOND, Time
@@ -89,7 +89,7 @@ class _Measuring:
 def simulate_measured(system: System, settings: Settings, duration: Time, seed: int) -> tuple[Run, ...]:
     """A run of a duration, and further ones in other phases if some are unknown."""
     first = _run(system, Options(duration=duration, seed=seed, settings=settings), _MOST_EVENTS)
-    variants = list(_phases(with_first_arrivals(system, settings.phases), seed))
+    variants = list(_phases(system, settings, seed))
     if not variants:
         return (first,)
     shorter = max(duration // len(variants), min(duration, _SHORTEST))
@@ -100,9 +100,10 @@ def simulate_measured(system: System, settings: Settings, duration: Time, seed: 
     )
 
 
-def _phases(system: System, seed: int) -> Iterator[tuple[System, int]]:
+def _phases(system: System, settings: Settings, seed: int) -> Iterator[tuple[System, int]]:
     """The system in each of its phases, or with other seeds if there are too many; nothing if all phases are known."""
-    unknown = unknown_phases(system)
+    unknown = unstated_phases(system, settings.phases)
+    system = with_first_arrivals(system, settings.phases)
     if not unknown:
         return
     if phase_count(unknown) > _MOST_PHASES:
