@@ -66,6 +66,8 @@ tasks:
 chains:
   - {{name: factor-to-output, path: [Executor_Task, Message_Factor, Control_Function], reaction: 25 ms}}
 """
+#: It sends every 20 ms from the start of the controller on, and delays each message by up to 20 ms.
+AGENT = ("Message_Factor.phase=0ms", "Message_Factor.arrival_jitter=20ms")
 #: What each build has for the words in capitals.
 BUILDS = {
     "profile": {"TIMER": "", "SHARED": FAST, "MAPPED": SLOW},
@@ -123,7 +125,7 @@ def run(build: str, duration: str, seed: int) -> amuros.Simulation:
     with TemporaryDirectory() as folder:
         path = Path(folder) / f"{build}.yaml"
         path.write_text(text)
-        return amuros.simulate(path, duration, seed=seed, changes=["Message_Factor.arrival_jitter=20ms"], trace=True)
+        return amuros.simulate(path, duration, seed=seed, changes=AGENT, trace=True)
 
 
 def write(path: Path, table: EventTable, build: str) -> None:
