@@ -189,4 +189,4 @@ def line(time: int, identifier: int, data: bytes) -> str:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:2])
+    main(" ".join(sys.argv[1:]) or "10 s")
