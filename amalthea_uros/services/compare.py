@@ -46,7 +46,7 @@ from amalthea_uros.services.timing_changes import described
 from amalthea_uros.services.what_if import Changes, as_changes
 from amalthea_uros.simulate.results import ObservedVerdict
 from amalthea_uros.timing.overheads import processes_with_overhead
-from amalthea_uros.timing.phases import unknown_phases, with_first_arrivals
+from amalthea_uros.timing.phases import unstated_phases
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import SECOND, Time, time_text
@@ -404,8 +404,7 @@ def _differs(between: Distance, rule: Rule, series: Series) -> bool:
 
 def _phases(system: System, settings: Settings) -> tuple[str, ...]:
     """What comes from outside with an unknown phase."""
-    known = with_first_arrivals(system, settings.phases)
-    return tuple(dict.fromkeys(occurrence.source for occurrence in unknown_phases(known)))
+    return tuple(dict.fromkeys(occurrence.source for occurrence in unstated_phases(system, settings.phases)))
 
 
 def _assumptions(

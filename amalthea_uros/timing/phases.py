@@ -58,6 +58,14 @@ def unknown_phases(system: System) -> tuple[Occurrence, ...]:
     )
 
 
+def unstated_phases(system: System, times: Mapping[str, Time]) -> tuple[Occurrence, ...]:
+    """What comes from outside with an unknown phase, also with respect to times at which some sources are due for the first time.
+
+    A simulation uses such a time for irregular arrivals, too, although it does not say which jobs take them.
+    """
+    return tuple(each for each in unknown_phases(with_first_arrivals(system, times)) if each.source not in times)
+
+
 def phase_count(occurrences: Sequence[Occurrence]) -> int:
     """The number of combinations of all phases."""
     return prod(occurrence.every for occurrence in occurrences)

@@ -255,6 +255,16 @@ def test_other_tolerances_are_refused(text):
         parse_tolerance(text)
 
 
+def test_other_quantities_of_what_is_named_need_no_name():
+    measured = measurement(
+        series("both", "duration", [57], Kind.INTERVAL), series("both", "start_to_start", [1000], Kind.INTERVAL)
+    )
+    found = compare(APP, measured, names=Names(meanings=(Meaning("both", "Control_Function", "response_time"),)))
+    assert [finding.rule for finding in found.findings] == []
+    (row,) = (each for each in found.rows if each.object == "both")
+    assert row.verdict == "not predicted"
+
+
 # Overheads and baselines.
 
 
@@ -299,6 +309,27 @@ def test_a_baseline_is_added_again_where_the_model_has_the_overhead_itself():
         assert {row.measured for row in rows(found, "mean")} == {measured * MICROSECOND}
     assert any("was added again" in sentence for sentence in with_overhead.assumptions)
     assert any("was subtracted" in sentence for sentence in without.assumptions)
+
+
+def test_overhead_that_the_model_has_is_not_subtracted_from_what_was_measured():
+    # 53 us of which 41 us are overhead: the model has both, so that the 12 us without it are not what it predicts.
+    app = APP.replace("{base: 53 us}", "{base: 12 us}, overhead: 41 us")
+    empty = Statistics(count=10, min=40 * MICROSECOND, mean=Fraction(41 * MICROSECOND), max=42 * MICROSECOND, variance=None)
+    found = compare(app, measurement(series("Executor_Task", "net_execution_time", [12], baseline=empty)))
+    row = only(found, "max", "exact")
+    assert (row.measured, row.predicted, row.verdict) == (53 * MICROSECOND, 53 * MICROSECOND, "within")
+    assert any("was added again" in sentence and "Executor_Task" in sentence for sentence in found.assumptions)
+    # The times are known, so that the spread of the empty task is no excuse.
+    found = compare(app, measurement(series("Executor_Task", "net_execution_time", [13], baseline=empty), resolution=None))
+    assert only(found, "max", "exact").verdict == "refuted"
+
+
+def test_a_phase_that_is_stated_is_known_also_if_messages_jitter():
+    measured = measurement(series("Control_Function", "response_time", [16]))
+    changes, phases = ["Message_Factor.arrival_jitter=5ms"], amuros.Settings(phases={"Message_Factor": 0})
+    for settings, expected in ((None, True), (phases, False)):
+        found = compare(ADVANCED, measured, changes=changes, settings=settings, duration="100 ms")
+        assert ("CMP004" in [finding.rule for finding in found.findings]) is expected
 
 
 # Limits.

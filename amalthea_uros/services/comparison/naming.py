@@ -117,13 +117,14 @@ def _targets(measurement: Measurement, names: Names, system: System) -> Iterator
         parts = _measured(meaning.measured, measurement)
         used |= {(each.kind, each.name, each.quantity) for each in parts}
         yield _meant(meaning, parts, system)
-    baselines = _baselines(measurement)
+    reasons = dict.fromkeys((name for _, name, _ in used), "another quantity of it is what --as says")
+    reasons |= dict.fromkeys(_baselines(measurement), "it is a baseline, which was subtracted from others")
     for series in measurement.series:
         if (series.kind, series.name, series.quantity) in used:
             continue
         target = _named(series, names.renamed.get(series.name, series.name), system)
-        if target.is_unknown and series.name in baselines:
-            target = replace(target, reason="it is a baseline, which was subtracted from others", is_unknown=False)
+        if target.is_unknown and series.name in reasons:
+            target = replace(target, reason=reasons[series.name], is_unknown=False)
         yield target
 
 

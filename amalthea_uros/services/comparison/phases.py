@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.phases import phase_combinations, phase_count, unknown_phases, with_first_arrivals, with_phases
+from amalthea_uros.timing.phases import phase_combinations, phase_count, unstated_phases, with_first_arrivals, with_phases
 from amalthea_uros.timing.settings import Settings
 
 #: More phases are not evaluated one by one.
@@ -16,12 +16,12 @@ MOST_PHASES = 32
 
 def systems_in_phases(system: System, settings: Settings) -> Iterator[System] | None:
     """The system in each of its unknown phases, nothing if all phases are known; None if there are too many."""
-    known = with_first_arrivals(system, settings.phases)
-    unknown = unknown_phases(known)
+    unknown = unstated_phases(system, settings.phases)
     if not unknown:
         return iter(())
     if phase_count(unknown) > MOST_PHASES:
         return None
+    known = with_first_arrivals(system, settings.phases)
     return (with_phases(known, combination) for combination in phase_combinations(unknown))
 
 
