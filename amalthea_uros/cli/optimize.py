@@ -95,6 +95,13 @@ def _vary(text: str) -> tuple[Vary, ...]:
 )
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of random choices.")
 @click.option(
+    "--jobs",
+    "workers",
+    type=click.IntRange(min=1),
+    help="Number of designs judged at the same time; default: one for each core, if there are many designs.",
+)
+@click.option("--cluster", metavar="ADDRESS", help="Use the Dask cluster with this scheduler, e.g. tcp://host:8786.")
+@click.option(
     "--proposals", type=click.IntRange(min=1), default=MOST_PROPOSALS, show_default=True, help="Show at most so many proposals."
 )
 @click.option("--pareto", type=OUTPUT_FILE, metavar="FILE", help="Judge all designs, and draw what each goal costs, as SVG.")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -43,7 +43,11 @@ class DesignEvaluator:
 
     def __call__(self, candidates: Sequence[Candidate]) -> list[Evaluation]:
         """Judge designs."""
-        return [self.evaluate(candidate) for candidate in candidates]
+        return list(self.each(candidates))
+
+    def each(self, candidates: Iterable[Candidate]) -> Iterator[Evaluation]:
+        """Judge designs one after the other; only those that are asked for."""
+        return map(self.evaluate, candidates)
 
     def evaluate(self, candidate: Candidate) -> Evaluation:
         """Judge a design."""

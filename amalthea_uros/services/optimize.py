@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import monotonic
 
@@ -29,6 +29,7 @@ from amalthea_uros.optimize.search import search
 from amalthea_uros.optimize.space import Space
 from amalthea_uros.services.design_space import DEFAULT, Vary, Wishes, design_space
 from amalthea_uros.services.names import require_settings
+from amalthea_uros.services.parallel_evaluation import evaluator_on
 from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
 from amalthea_uros.timing.settings import Settings
 
@@ -192,6 +193,8 @@ def optimize(
     proposals: int = MOST_PROPOSALS,
     seed: int = 1,
     time_limit: float | None = None,
+    workers: int | None = 1,
+    cluster: str | None = None,
     progress: Callable[[int], None] = lambda _tried: None,
 ) -> Optimization:
     """Search for changes of a system with which all deadlines, requirements and limits are met, and then for the best ones.
@@ -213,12 +216,14 @@ def optimize(
     proposals : return at most so many
     seed : of searches that choose at random
     time_limit : in seconds, after which the search ends with what it has found
+    workers : designs judged at the same time on this computer; None: one for each core. The result does not depend on it
+    cluster : address of a Dask scheduler, on whose workers designs are judged instead
     progress : told how many designs have been judged
 
     Raises
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
-    InvalidArgumentError : something that is named does not exist, or a value is wrong.
+    InvalidArgumentError : something that is named does not exist, a value is wrong, or the cluster cannot be used.
     """
     wishes = Wishes(
         vary=tuple(map(_vary, vary)),
@@ -230,7 +235,9 @@ def optimize(
         subject, wishes, limits=limits, goals=goals, settings=settings, may_be_later=may_be_later, seed=seed
     )
     effort = Effort(designs=designs, is_complete=is_complete, ended=_clock(time_limit), progress=progress)
-    return found_by(plan, search(plan.problem, effort), proposals)
+    with evaluator_on(plan.evaluator, workers, cluster) as evaluate:
+        found = search(replace(plan.problem, evaluate=evaluate), effort)
+    return found_by(plan, found, proposals)
 
 
 def found_by(plan: Plan, found: SearchResult, proposals: int = MOST_PROPOSALS) -> Optimization:
