@@ -11,7 +11,7 @@ from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Effect, Impact, ImpactRow, impact
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.changes.apply import Difference, describe
+from amalthea_uros.changes.apply import Difference
 from amalthea_uros.changes.change import Change
 from amalthea_uros.changes.key import Configuration
 from amalthea_uros.changes.sweep import Sweep, parse_sweep
@@ -27,6 +27,7 @@ from amalthea_uros.optimize.quantities import FROM_ARRIVAL, Figures, Range, take
 from amalthea_uros.optimize.recorder import Effort
 from amalthea_uros.optimize.search import search
 from amalthea_uros.optimize.space import Space
+from amalthea_uros.perf.system import System
 from amalthea_uros.services.design_space import DEFAULT, Vary, Wishes, design_space
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.parallel_evaluation import evaluator_on
@@ -61,6 +62,8 @@ class DesignProposal(Shown):
     ----------
     differences : the changed values, before and after
     changes : all that is set, also what follows from the changed values, such as the jobs that take messages
+    value_changes : those of them that are values of a system
+    rebuilt : the system in which they are set, if only a changed description describes it; otherwise None
     analysis : of the changed system
     configuration : its system and settings
     impact : what the changes do to all results
@@ -70,6 +73,8 @@ class DesignProposal(Shown):
     evaluation: Evaluation
     differences: tuple[Difference, ...]
     changes: tuple[Change, ...]
+    value_changes: tuple[Change, ...]
+    rebuilt: System | None
     analysis: Analysis
     configuration: Configuration
     impact: Impact
@@ -85,8 +90,8 @@ class DesignProposal(Shown):
 
     @property
     def options(self) -> tuple[str, ...]:
-        """The options with which `amuros analyze` analyses it."""
-        return tuple(part for change in self.changes for part in ("--set", str(change)))
+        """The options with which `amuros analyze` analyses it; none for a design that only a description states."""
+        return () if self.rebuilt is not None else tuple(part for change in self.changes for part in ("--set", str(change)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -159,7 +164,7 @@ def plan_optimization(
     present = Configuration(opened.system, settings)
     before = analyze_system(*present)
     figures = Figures(takers(before))
-    space, designs = design_space(opened, present, wishes or Wishes())
+    space, designs = design_space(subject, opened, present, wishes or Wishes())
     stated = tuple(parse_limit(each) if isinstance(each, str) else each for each in limits)
     for limit in stated:
         check_limit(limit, opened.system)
@@ -206,7 +211,8 @@ def optimize(
     subject : as for `analyze`
     limits : beside those of the model
     goals : what to minimise: `latency`, `load`, `balance`, `jitter`, `changes` or OBJECT.QUANTITY; by default `changes`
-    vary : what may change: `periods` (on offer), `priorities`, `offsets`, `cores`
+    vary : what may change: `periods` (on offer), `priorities`, `offsets`, `cores`; `callbacks` (in the executor or in tasks of their
+        own), `order` (of those in the executor), `communication` (implicit or LET), `memory` (of labels)
     offers : values on offer, such as "Control_Function.offset=0ms..0.9ms/0.1ms"
     keep : objects, or their properties as OBJECT.KEY, that must not change
     is_rate_monotonic : let the priorities follow the periods
@@ -285,20 +291,25 @@ def _clock(time_limit: float | None) -> Callable[[], str]:
 
 def _proposal(evaluation: Evaluation, evaluator: DesignEvaluator, before: Analysis) -> DesignProposal:
     """A proposal, proved by a full analysis of its own."""
-    configuration = evaluator.designs.configure(evaluation.candidate)
+    designs = evaluator.designs
+    stated, values = designs.divided(evaluation.candidate)
+    built = designs.built(stated)
+    configuration = designs.configure(evaluation.candidate)
     analysis = analyze_system(*configuration)
     again = evaluator.judged(evaluation.candidate, analysis)
     assert again == evaluation, "a design was judged in two ways"
-    figures = evaluator.scale.figures
+    figures = evaluator.figures(evaluation.candidate, analysis)
     return DesignProposal(
         evaluation=evaluation,
-        differences=describe(*evaluator.designs.present, evaluation.candidate),
-        changes=evaluator.designs.changes(evaluation.candidate),
+        differences=designs.describe(evaluation.candidate),
+        changes=designs.changes(evaluation.candidate),
+        value_changes=built.value_changes(values),
+        rebuilt=built.present.system if stated else None,
         analysis=analysis,
         configuration=configuration,
         impact=impact(before, analysis),
         limits=tuple(
-            LimitRow(limit=limit, before=limit.range(before, figures), after=limit.range(analysis, figures))
+            LimitRow(limit=limit, before=limit.range(before, evaluator.scale.figures), after=limit.range(analysis, figures))
             for limit in evaluator.limits
         ),
     )

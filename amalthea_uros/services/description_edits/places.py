@@ -231,7 +231,7 @@ def _word(text: str) -> str:
 
 
 def _names(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",")]
+    return [name for name in map(str.strip, text.split(",")) if name]
 
 
 def _execution_time_ends(text: str) -> tuple[Time, Time]:
