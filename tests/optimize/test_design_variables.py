@@ -1,4 +1,4 @@
-"""What may change beside periods, priorities, offsets and cores: callbacks, their order, communication, the memory of labels, clocks."""
+"""What may change beside periods, priorities, offsets and cores: callbacks, communication, the memory of labels, clocks."""
 
 import pytest
 
@@ -26,7 +26,8 @@ amuros: 1
 name: inside
 hardware: single-core
 middleware:
-  executor: {name: Executor, period: 10 ms, callbacks: in-executor, order: [Control, Take], execution_time: {base: 20 us, per_message: 10 us}}
+  executor:
+    {name: Executor, period: 10 ms, callbacks: in-executor, order: [Control, Take], execution_time: {base: 20 us, per_message: 10 us}}
 application:
   nodes:
     - name: n
