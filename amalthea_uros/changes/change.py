@@ -19,7 +19,7 @@ class Change:
 
     Attributes
     ----------
-    object : name of a process, runnable, core, clock, scheduler, stimulus, mode label or message
+    object : name of a process, runnable, core, clock, scheduler, stimulus, mode label, message, label or channel
     key : what is changed, such as `period`
     value : with its unit, as the user wrote it
     """

@@ -75,12 +75,13 @@ class Place(NamedTuple):
 
     def with_fields(self, system: System, name: str, **fields: Any) -> System:
         """The system in which an object has other values."""
+        return self.with_each(system, lambda item: replace(item, **fields) if getattr(item, self.identifier) == name else item)
+
+    def with_each(self, system: System, change: Callable[[Any], Any]) -> System:
+        """The system in which each object is what a function makes of it."""
         model: Any = getattr(system, self.model)
-        items = (
-            replace(item, **fields) if getattr(item, self.identifier) == name else item
-            for item in getattr(model, self.collection)
-        )
-        parts: dict[str, Any] = {self.model: replace(model, **{self.collection: tuple(items)})}
+        items = tuple(map(change, getattr(model, self.collection)))
+        parts: dict[str, Any] = {self.model: replace(model, **{self.collection: items})}
         return replace(system, **parts)
 
     def with_item(self, system: System, item: Any) -> System:
@@ -99,6 +100,7 @@ CLOCKS = Place("hardware", "clocks")
 OPERATING_SYSTEMS = Place("os", "systems")
 TASK_ALLOCATIONS = Place("mapping", "tasks", "task")
 ISR_ALLOCATIONS = Place("mapping", "isrs", "isr")
+PLACEMENTS = Place("mapping", "placements", "element")
 
 
 def field_key(place: Place, field: str, parse: Callable[[str], V], text: Callable[[V], str] = str) -> Key[V]:

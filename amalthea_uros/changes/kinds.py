@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.changes import allocation, execution_time, message, scheduler, stimulus
+from amalthea_uros.changes import allocation, execution_time, label, message, scheduler, stimulus
 from amalthea_uros.changes.key import (
     CLOCKS,
     ISR_ALLOCATIONS,
@@ -40,16 +40,16 @@ def _set_core_frequency(configuration: Configuration, core: str, frequency: Freq
     return configuration._replace(settings=replace(settings, frequencies={**settings.frequencies, core: frequency}))
 
 
-def _set_mode(configuration: Configuration, label: str, value: str) -> Configuration:
+def _set_mode(configuration: Configuration, mode_label: str, value: str) -> Configuration:
     """Change the initial value of a mode label: one of the literals of its mode, or a number if there are none."""
     system = configuration.system
-    mode = MODE_LABELS.find(system, label).mode
+    mode = MODE_LABELS.find(system, mode_label).mode
     literals = next((each.literals for each in system.software.modes if each.name == mode), ())
     if literals and value not in literals:
         raise InvalidArgumentError(f"{value!r} is not a value of the mode {mode!r}; expected one of {', '.join(literals)}")
     if not literals and not _is_number(value):
         raise InvalidArgumentError(f"{value!r} is not a number, as values of the mode {mode!r} are")
-    return configuration._replace(system=MODE_LABELS.with_fields(system, label, initial=value))
+    return configuration._replace(system=MODE_LABELS.with_fields(system, mode_label, initial=value))
 
 
 def _is_number(text: str) -> bool:
@@ -90,8 +90,10 @@ KINDS = (
     ),
     Kind("scheduler", lambda system: system.schedulers, scheduler.SCHEDULER_KEYS),
     Kind("stimulus", lambda system: system.stimuli_by_name, stimulus.STIMULUS_KEYS),
-    Kind("mode label", lambda system: [label.name for label in system.software.mode_labels], {"mode": _MODE_KEY}),
+    Kind("mode label", lambda system: [each.name for each in system.software.mode_labels], {"mode": _MODE_KEY}),
     Kind("message", sources, message.MESSAGE_KEYS),
+    Kind("label", lambda system: system.labels, label.LABEL_KEYS),
+    Kind("channel", lambda system: system.channels, {"memory": label.MEMORY_KEY}),
 )
 
 #: Execution times are converted to ticks at the frequency of a core, so those that decide about it are changed before the others.

@@ -65,7 +65,8 @@ def _vary(text: str) -> tuple[Vary, ...]:
     type=Parsed(",".join(Vary), _vary),
     default=",".join(DEFAULT),
     show_default=True,
-    help="What may change: periods are those that the app.yaml offers, and only shorter ones.",
+    help="What may change: periods are those that the app.yaml offers, and only shorter ones; callbacks run in tasks "
+    "of their own or in the executor, there in any order; communication is implicit or LET; memory is that of labels.",
 )
 @click.option(
     "--offer",
@@ -98,10 +99,17 @@ def _vary(text: str) -> tuple[Vary, ...]:
 )
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of random choices.")
 @click.option(
+    "--jobs",
+    "workers",
+    type=click.IntRange(min=1),
+    help="Number of designs judged at the same time; default: one for each core, if there are many designs.",
+)
+@click.option("--cluster", metavar="ADDRESS", help="Use the Dask cluster with this scheduler, e.g. tcp://host:8786.")
+@click.option(
     "--proposals", type=click.IntRange(min=1), default=MOST_PROPOSALS, show_default=True, help="Show at most so many proposals."
 )
 @click.option("--pareto", type=OUTPUT_FILE, metavar="FILE", help="Judge all designs, and draw what each goal costs, as SVG.")
-@click.option("-o", "--out", "target", type=OUTPUT_FILE, metavar="FILE", help="Write a proposal as an AMALTHEA model (.amxmi).")
+@click.option("-o", "--out", "target", type=OUTPUT_FILE, metavar="FILE", help="Write a proposal, as app.yaml or .amxmi.")
 @click.option(
     "--proposal", "number", type=click.IntRange(min=1), default=1, show_default=True, help="With -o: the proposal to write."
 )

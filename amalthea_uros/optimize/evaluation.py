@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from amalthea_uros.analyze.results import Analysis, Claim, Quantity
@@ -16,7 +16,7 @@ from amalthea_uros.optimize.goals import Scale, constraints_of, value_of
 from amalthea_uros.optimize.limits import Limit
 from amalthea_uros.optimize.lower_bounds import SampledChain
 from amalthea_uros.optimize.problem import Evaluation, Feasibility, Goal
-from amalthea_uros.optimize.quantities import FROM_ARRIVAL, Figures, Range
+from amalthea_uros.optimize.quantities import FROM_ARRIVAL, Figures, Range, takers
 from amalthea_uros.perf.system import System
 
 #: No less than the reduced reaction time.
@@ -43,7 +43,11 @@ class DesignEvaluator:
 
     def __call__(self, candidates: Sequence[Candidate]) -> list[Evaluation]:
         """Judge designs."""
-        return [self.evaluate(candidate) for candidate in candidates]
+        return list(self.each(candidates))
+
+    def each(self, candidates: Iterable[Candidate]) -> Iterator[Evaluation]:
+        """Judge designs one after the other; only those that are asked for."""
+        return map(self.evaluate, candidates)
 
     def evaluate(self, candidate: Candidate) -> Evaluation:
         """Judge a design."""
@@ -51,9 +55,9 @@ class DesignEvaluator:
             configuration = self.designs.configure(candidate)
         except InvalidArgumentError as error:
             return Evaluation(candidate=candidate, feasible=Feasibility.NO, reason=str(error))
-        if rule := self.designs.broken_rule(configuration.system):
+        if rule := self.designs.broken_rule(candidate, configuration.system):
             return Evaluation(candidate=candidate, feasible=Feasibility.NO, broken_rule=rule)
-        if exceeded := dict(self._exceeded(configuration.system)):
+        if not self._is_rebuilt(candidate) and (exceeded := dict(self._exceeded(configuration.system))):
             return Evaluation(candidate=candidate, feasible=Feasibility.NO, violations=exceeded, is_excluded=True)
         try:
             analysis = analyze_system(*configuration)
@@ -72,14 +76,22 @@ class DesignEvaluator:
 
     def judged(self, candidate: Candidate, analysis: Analysis) -> Evaluation:
         """The evaluation of a design by its analysis."""
-        ranges = {limit: limit.range(analysis, self.scale.figures) for limit in self.limits}
+        scale = replace(self.scale, figures=self.figures(candidate, analysis))
+        ranges = {limit: limit.range(analysis, scale.figures) for limit in self.limits}
         return Evaluation(
             candidate=candidate,
             feasible=feasibility(analysis, ranges),
             violations=dict(_violations(analysis, ranges)),
-            values=tuple(value_of(goal, analysis, candidate, self.scale) for goal in self.goals),
-            is_exact=_is_exact(analysis, self.scale.figures) and all(found.is_exact for found in ranges.values()),
+            values=tuple(value_of(goal, analysis, candidate, scale) for goal in self.goals),
+            is_exact=_is_exact(analysis, scale.figures) and all(found.is_exact for found in ranges.values()),
         )
+
+    def figures(self, candidate: Candidate, analysis: Analysis) -> Figures:
+        """What finds the quantities of a design: in a system that is built otherwise, others take the messages."""
+        return Figures(takers(analysis)) if self._is_rebuilt(candidate) else self.scale.figures
+
+    def _is_rebuilt(self, candidate: Candidate) -> bool:
+        return bool(self.designs.divided(candidate)[0])
 
 
 def feasibility(analysis: Analysis, ranges: Mapping[Limit, Range]) -> Feasibility:

@@ -12,8 +12,8 @@ from amalthea_uros.optimize.enumeration import designs_with, most_changes
 from amalthea_uros.optimize.goals import CHANGES
 from amalthea_uros.optimize.problem import Evaluation, Feasibility, Problem, SearchResult
 
-#: Designs are judged in groups of this size, whatever judges them, so that a search ends after the same design everywhere.
-BATCH = 32
+#: So many designs are named at a time; enough for the workers of a cluster.
+BATCH = 512
 
 
 def try_all(problem: Problem, is_complete: bool = False, most: int | None = None) -> SearchResult:

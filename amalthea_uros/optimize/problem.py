@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
@@ -51,8 +51,9 @@ class Evaluation:
         return len(self.candidate)
 
 
-#: Judges designs, several at a time so that they can be judged in parallel; the results have the order of the candidates.
-Evaluator: TypeAlias = Callable[[Sequence[Candidate]], Sequence[Evaluation]]
+#: Judges designs, several at a time so that they can be judged in parallel; the results have the order of the candidates, and those of
+#: the first ones can be there before the last ones are judged.
+Evaluator: TypeAlias = Callable[[Sequence[Candidate]], Iterable[Evaluation]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

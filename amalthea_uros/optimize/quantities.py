@@ -73,8 +73,10 @@ class Figures:
             return _of_chain(analysis.chains[name], Quantity(quantity))
         if name in system.processes:
             return _of_process(analysis.processes[name], quantity)
-        core = analysis.processors[name]
-        return Range(core.at_least, core.worst)
+        if name in system.cores:
+            core = analysis.processors[name]
+            return Range(core.at_least, core.worst)
+        return Range(reason=f"there is no {name!r} in this design")
 
     def from_arrival(self, analysis: Analysis, chain: str) -> Range:
         """The maximum time from the arrival of the message, or from the input, to the first response.

@@ -23,7 +23,7 @@ class Effort:
     ----------
     designs : at most so many are judged
     is_complete : whether designs with more changes are judged although some with fewer changes meet all limits
-    ended : asked between groups of designs: why to end early, "" to go on
+    ended : asked after each design: why to end early, "" to go on
     progress : told how many designs have been judged
     """
 
@@ -49,11 +49,16 @@ class Recorder:
         EndedError : the search has to end before they are judged.
         """
         new = [candidate for candidate in dict.fromkeys(candidates) if candidate not in self.found]
-        if reason := self.effort.ended():
-            raise EndedError(reason)
         rest = self.effort.designs - len(self.found)
-        self.found |= dict(zip(new[:rest], self.evaluate(new[:rest]), strict=True))
-        self.effort.progress(len(self.found))
+        self._check_ended()
+        for evaluation in self.evaluate(new[:rest]):
+            self.found[evaluation.candidate] = evaluation
+            self.effort.progress(len(self.found))
+            self._check_ended()
         if len(new) > rest:
             raise EndedError(f"the limit of {self.effort.designs:,} designs was reached")
         return [self.found[candidate] for candidate in candidates]
+
+    def _check_ended(self) -> None:
+        if reason := self.effort.ended():
+            raise EndedError(reason)

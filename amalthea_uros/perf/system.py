@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TypeVar
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.perf.activities import Activity, walk
+from amalthea_uros.perf.activities import Activity, LabelAccess, walk
 from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Event, EventChain, Events
 from amalthea_uros.perf.hardware import Cache, Clock, Connection, Core, Hardware, Interconnect, Memory
@@ -108,6 +108,16 @@ class System:
     def labels(self) -> Mapping[str, Label]:
         """The labels."""
         return _by_name(self.software.labels)
+
+    @cached_property
+    def label_accesses(self) -> Mapping[str, tuple[LabelAccess, ...]]:
+        """The reads and writes of labels, in processes and runnables."""
+        found: dict[str, list[LabelAccess]] = {}
+        for body in self.software.bodies:
+            for activity in walk(body):
+                if isinstance(activity, LabelAccess):
+                    found.setdefault(activity.label, []).append(activity)
+        return {label: tuple(accesses) for label, accesses in found.items()}
 
     @cached_property
     def channels(self) -> Mapping[str, Channel]:

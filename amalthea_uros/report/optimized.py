@@ -66,7 +66,7 @@ def closing_line(result: Optimization) -> str:
     of = f"{search.tried:,} judged out of {count_text(result.space.size)}"
     match search.conclusion:
         case Conclusion.OPTIMAL if not search.best[0].candidate:
-            return f"Nothing needs to change: the present design meets all limits{_and_best(result)}"
+            return f"Nothing needs to change: the present design meets all {_demanded(result)}{_and_best(result)}"
         case Conclusion.OPTIMAL:
             proved = "" if search.best[0].is_exact and not search.undecided else " that is proved to meet all limits"
             return f"Optimal: no allowed design{proved} is better than proposal 1: {search.proof}"
@@ -82,6 +82,11 @@ def _why_open(result: Optimization) -> str:
     search = result.search
     unknown = f"it is unknown whether {counted(search.undecided, 'design')} meet all limits" if search.undecided else ""
     return "; ".join(filter(None, (search.ended, unknown))) or "not all designs were judged"
+
+
+def _demanded(result: Optimization) -> str:
+    is_limited = result.limits or any(each.limit is not None for each in result.before.requirements)
+    return "limits" if is_limited else "deadlines, and nothing else is demanded (add what must hold with --limit)"
 
 
 def _and_best(result: Optimization) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
+from typing import NamedTuple
 
 from amalthea_uros.changes.apply import apply, check_key, describe
 from amalthea_uros.changes.change import Change
@@ -12,18 +14,22 @@ from amalthea_uros.changes.key import UNSET, Configuration
 from amalthea_uros.changes.sweep import Sweep
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
-from amalthea_uros.optimize.designs import Designs, PeriodRule
+from amalthea_uros.optimize.designs import Designs, Structure
+from amalthea_uros.optimize.rules import CapacityRule
 from amalthea_uros.optimize.space import Choice, Kind, PriorityOrder, Space
-from amalthea_uros.perf.activities import Call, walk
-from amalthea_uros.perf.software import Process
+from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess
+from amalthea_uros.perf.hardware import MemoryKind
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.design_rules import rules
+from amalthea_uros.services.design_structures import DescribedCallbacks
 from amalthea_uros.services.inputs import SystemInput
-from amalthea_uros.timing.allocation import scheduler_cores
-from amalthea_uros.timing.arrivals import nominal_period
-from amalthea_uros.timing.phases import counters
+from amalthea_uros.services.subject import Subject
+from amalthea_uros.timing.allocation import allocated_cores, scheduler_cores
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.timing.scheduling import is_by_priority
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.timing.settings import Memory
+from amalthea_uros.timing.stretches import executed
+from amalthea_uros.units import time_text
 
 
 class Vary(StrEnum):
@@ -33,6 +39,10 @@ class Vary(StrEnum):
     PRIORITIES = "priorities"
     OFFSETS = "offsets"
     CORES = "cores"
+    CALLBACKS = "callbacks"
+    ORDER = "order"
+    COMMUNICATION = "communication"
+    MEMORY = "memory"
 
 
 #: Offsets of a process are tried in so many equal steps of its period.
@@ -47,6 +57,8 @@ _KINDS: Mapping[str, Kind] = {
     "core": Kind.CORE,
     "scheduler": Kind.CORE,
     "frequency": Kind.CLOCK,
+    "communication": Kind.COMMUNICATION,
+    "memory": Kind.MEMORY,
 }
 
 
@@ -67,33 +79,71 @@ class Wishes:
     is_rate_monotonic: bool = False
 
 
-def design_space(opened: SystemInput, present: Configuration, wishes: Wishes) -> tuple[Space, Designs]:
+def design_space(subject: Subject, opened: SystemInput, present: Configuration, wishes: Wishes) -> tuple[Space, Designs]:
     """The space of designs, and what makes their systems.
+
+    Parameters
+    ----------
+    subject : what was opened
 
     Raises
     ------
-    InvalidArgumentError : an offer or something to keep does not exist, or an offered value is wrong.
+    InvalidArgumentError : an offer or something to keep does not exist, an offered value is wrong, or something cannot be varied.
     """
-    _check_keep(wishes.keep, present.system)
     builder = _Builder(opened, present, wishes)
+    source = DescribedCallbacks.of(subject) if _needs_description(opened, wishes) else None
+    _check_keep(wishes.keep, present.system, source)
+    stated = () if source is None else tuple(builder.stated_choices(source))
     orders = tuple(builder.orders())
     follows = wishes.is_rate_monotonic
     varies_priorities = Vary.PRIORITIES in wishes.vary and not follows
-    space = Space(choices=tuple(builder.choices()), orders=orders if varies_priorities else ())
-    designs = Designs(present=present, rules=tuple(builder.rules()), rate_monotonic=orders if follows else ())
+    space = Space(choices=(*builder.choices(), *stated), orders=orders if varies_priorities else ())
+
+    def completed(changes: tuple[Change, ...], rebuilt: SystemInput) -> Structure:
+        other = _Builder(rebuilt, present._replace(system=rebuilt.system), wishes)
+        return Structure(
+            changes=changes,
+            system=rebuilt.system,
+            rules=tuple(rules(rebuilt.assembly, rebuilt.system)),
+            rate_monotonic=tuple(other.orders()) if follows else (),
+        )
+
+    designs = Designs(
+        present=present,
+        rules=tuple(rules(opened.assembly, present.system)),
+        rate_monotonic=orders if follows else (),
+        stated={choice.target: choice.options[0] for choice in stated},
+        structures={} if source is None else source.structures(stated, completed),
+    )
     return space, designs
 
 
-def _check_keep(keep: Iterable[str], system: System) -> None:
-    known = [*system.processes, *system.cores, *system.schedulers, *system.stimuli_by_name]
+def _needs_description(opened: SystemInput, wishes: Wishes) -> bool:
+    """Whether something can change that only a description states: also the semantics of its executor, if it is one."""
+    is_stated = {Vary.CALLBACKS, Vary.ORDER} & set(wishes.vary)
+    return bool(is_stated) or (Vary.COMMUNICATION in wishes.vary and opened.assembly is not None)
+
+
+def _check_keep(keep: Iterable[str], system: System, source: DescribedCallbacks | None) -> None:
+    """Refuse to keep what is not there; what only a description states is known if that can change."""
+    stated = frozenset[str]() if source is None else source.targets
+    callbacks = () if source is None else (callback.name for callback in source.callbacks)
+    known = [*system.processes, *system.cores, *system.schedulers, *system.stimuli_by_name, *system.labels, *callbacks]
     for each in keep:
-        if each not in known:
+        if each not in known and each not in stated:
             name, _, key = each.rpartition(".")
             require("object to keep", [name or each], known)
             check_key(system, name, key)
 
 
-@dataclass(slots=True)
+class _Use(NamedTuple):
+    """A process that reads or writes a label."""
+
+    process: str
+    is_write: bool
+
+
+@dataclass
 class _Builder:
     opened: SystemInput
     present: Configuration
@@ -134,6 +184,8 @@ class _Builder:
             (Vary.PERIODS, self._periods),
             (Vary.OFFSETS, self._offsets),
             (Vary.CORES, self._cores),
+            (Vary.COMMUNICATION, self._communications),
+            (Vary.MEMORY, self._memories),
         ):
             if kind in self.wishes.vary:
                 yield from choices()
@@ -171,6 +223,63 @@ class _Builder:
                 ]
                 yield _choice(allocation.task, "scheduler", Kind.CORE, [own.name, *others])
 
+    def _communications(self) -> Iterator[Choice]:
+        """Implicit or LET communication of each label that one process writes and another one reads."""
+        if self.present.settings.communication is not None:
+            raise InvalidArgumentError("the communication cannot vary if --communication sets it for all labels")
+        for label in self.system.labels:
+            uses = self._uses(label)
+            if any(use.process != other.process for use in uses for other in uses if use.is_write > other.is_write):
+                before = describe(*self.present, [Change(label, "communication", Communication.LET)])[0].before
+                yield _choice(label, "communication", Kind.COMMUNICATION, [before, Communication.IMPLICIT, Communication.LET])
+
+    def _memories(self) -> Iterator[Choice]:
+        """Other memories with known space, which all cores that need a label can access; no flash for what is written."""
+        if self.present.settings.memory is Memory.NONE:
+            raise InvalidArgumentError(
+                "the memory of a label has no effect without memory latencies; add --memory explicit or implicit"
+            )
+        cores, memories = allocated_cores(self.system), self.system.memories
+        limited = {rule.memory for rule in rules(None, self.system) if isinstance(rule, CapacityRule)}
+        for label in self.system.labels.values():
+            uses, now = self._uses(label.name), self.system.memory_of.get(label.name)
+            using = {core for use in uses for core in cores.get(use.process, ()) if core in self.system.cores}
+            if now is not None and using and label.size is not None:
+                reached = set.intersection(*({each.memory for each in self.system.cores[core].accesses} for core in using))
+                is_written = any(use.is_write for use in uses)
+                others = [
+                    name
+                    for name in memories
+                    if name in reached & limited and not (is_written and memories[name].kind is MemoryKind.FLASH)
+                ]
+                yield _choice(label.name, "memory", Kind.MEMORY, [now, *others])
+
+    def _uses(self, label: str) -> Sequence[_Use]:
+        return self._uses_of_labels.get(label, ())
+
+    @cached_property
+    def _uses_of_labels(self) -> Mapping[str, Sequence[_Use]]:
+        """Which processes read and write each label."""
+        found: dict[str, dict[_Use, None]] = {}
+        for name, process in self.system.processes.items():
+            for activity in executed(process.activities, self.system):
+                if isinstance(activity, LabelAccess):
+                    use = _Use(name, activity.kind is AccessKind.WRITE)
+                    found.setdefault(activity.label, {})[use] = None
+        return {label: tuple(uses) for label, uses in found.items()}
+
+    # What only a description states
+
+    def stated_choices(self, source: DescribedCallbacks) -> Iterator[Choice]:
+        """Where callbacks run, in which order, and when they take their messages."""
+        for kind, choices in (
+            (Vary.CALLBACKS, source.placements),
+            (Vary.ORDER, source.orders),
+            (Vary.COMMUNICATION, source.semantics),
+        ):
+            if kind in self.wishes.vary:
+                yield from (choice for choice in choices() if not self._is_kept(choice.object, choice.key))
+
     def _offered(self, offer: Sweep) -> Choice:
         target = f"{offer.object}.{offer.key}"
         if [(each.object, each.key) for each in self.wishes.offers].count((offer.object, offer.key)) > 1:
@@ -195,37 +304,6 @@ class _Builder:
 
     def _is_kept(self, name: str, key: str) -> bool:
         return name in self.wishes.keep or f"{name}.{key}" in self.wishes.keep
-
-    # Rules
-
-    def rules(self) -> Iterator[PeriodRule]:
-        """The rules of the middleware for periods, as far as the system is that of a description; see `uros.periods`."""
-        if self.opened.assembly is None or not self.opened.assembly.choices:
-            return
-        executor, *others = (choice.task for choice in self.opened.assembly.choices)
-        callbacks = tuple(name for name in others if name in self.system.processes)
-        if executor in self.system.processes and callbacks:
-            yield PeriodRule(process=executor, others=callbacks, text=f"{executor} runs less often than the fastest callback")
-        intervals = self._message_intervals()
-        for name in callbacks:
-            if (interval := intervals.get(name)) is not None:
-                text = f"{name} runs less often than messages arrive, every {time_text(interval)}"
-                yield PeriodRule(process=name, longest=interval, text=text)
-
-    def _message_intervals(self) -> Mapping[str, Time]:
-        """How often the messages arrive that processes handle."""
-        found: dict[str, Time] = {}
-        for taker, counter in counters(self.system):
-            interval = nominal_period(self.system.processes[taker], counter, self.system)
-            if counter.source and interval is not None:
-                for name, process in self.system.processes.items():
-                    if name == counter.source or counter.source in _runnables(process):
-                        found[name] = min(interval, found.get(name, interval))
-        return found
-
-
-def _runnables(process: Process) -> set[str]:
-    return {activity.runnable for activity in walk(process.activities) if isinstance(activity, Call)}
 
 
 def _choice(name: str, key: str, kind: Kind, options: Iterable[str]) -> Choice:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import monotonic
 
@@ -11,7 +11,7 @@ from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Effect, Impact, ImpactRow, impact
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.changes.apply import Difference, describe
+from amalthea_uros.changes.apply import Difference
 from amalthea_uros.changes.change import Change
 from amalthea_uros.changes.key import Configuration
 from amalthea_uros.changes.sweep import Sweep, parse_sweep
@@ -27,8 +27,10 @@ from amalthea_uros.optimize.quantities import FROM_ARRIVAL, Figures, Range, take
 from amalthea_uros.optimize.recorder import Effort
 from amalthea_uros.optimize.search import search
 from amalthea_uros.optimize.space import Space
+from amalthea_uros.perf.system import System
 from amalthea_uros.services.design_space import DEFAULT, Vary, Wishes, design_space
 from amalthea_uros.services.names import require_settings
+from amalthea_uros.services.parallel_evaluation import evaluator_on
 from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
 from amalthea_uros.timing.settings import Settings
 
@@ -60,6 +62,8 @@ class DesignProposal(Shown):
     ----------
     differences : the changed values, before and after
     changes : all that is set, also what follows from the changed values, such as the jobs that take messages
+    value_changes : those of them that are values of a system
+    rebuilt : the system in which they are set, if only a changed description describes it; otherwise None
     analysis : of the changed system
     configuration : its system and settings
     impact : what the changes do to all results
@@ -69,6 +73,8 @@ class DesignProposal(Shown):
     evaluation: Evaluation
     differences: tuple[Difference, ...]
     changes: tuple[Change, ...]
+    value_changes: tuple[Change, ...]
+    rebuilt: System | None
     analysis: Analysis
     configuration: Configuration
     impact: Impact
@@ -84,8 +90,8 @@ class DesignProposal(Shown):
 
     @property
     def options(self) -> tuple[str, ...]:
-        """The options with which `amuros analyze` analyses it."""
-        return tuple(part for change in self.changes for part in ("--set", str(change)))
+        """The options with which `amuros analyze` analyses it; none for a design that only a description states."""
+        return () if self.rebuilt is not None else tuple(part for change in self.changes for part in ("--set", str(change)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -158,7 +164,7 @@ def plan_optimization(
     present = Configuration(opened.system, settings)
     before = analyze_system(*present)
     figures = Figures(takers(before))
-    space, designs = design_space(opened, present, wishes or Wishes())
+    space, designs = design_space(subject, opened, present, wishes or Wishes())
     stated = tuple(parse_limit(each) if isinstance(each, str) else each for each in limits)
     for limit in stated:
         check_limit(limit, opened.system)
@@ -198,6 +204,8 @@ def optimize(
     proposals: int = MOST_PROPOSALS,
     seed: int = 1,
     time_limit: float | None = None,
+    workers: int | None = 1,
+    cluster: str | None = None,
     progress: Callable[[int], None] = lambda _tried: None,
 ) -> Optimization:
     """Search for changes of a system with which all deadlines, requirements and limits are met, and then for the best ones.
@@ -209,7 +217,8 @@ def optimize(
     subject : as for `analyze`
     limits : beside those of the model
     goals : what to minimise: `latency`, `load`, `balance`, `jitter`, `changes` or OBJECT.QUANTITY; by default `changes`
-    vary : what may change: `periods` (on offer), `priorities`, `offsets`, `cores`
+    vary : what may change: `periods` (on offer), `priorities`, `offsets`, `cores`; `callbacks` (in the executor or in tasks of their
+        own), `order` (of those in the executor), `communication` (implicit or LET), `memory` (of labels)
     offers : values on offer, such as "Control_Function.offset=0ms..0.9ms/0.1ms"
     keep : objects, or their properties as OBJECT.KEY, that must not change
     is_rate_monotonic : let the priorities follow the periods
@@ -219,12 +228,14 @@ def optimize(
     proposals : return at most so many
     seed : of searches that choose at random
     time_limit : in seconds, after which the search ends with what it has found
+    workers : designs judged at the same time on this computer; None: one for each core. The result does not depend on it
+    cluster : address of a Dask scheduler, on whose workers designs are judged instead
     progress : told how many designs have been judged
 
     Raises
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
-    InvalidArgumentError : something that is named does not exist, or a value is wrong.
+    InvalidArgumentError : something that is named does not exist, a value is wrong, or the cluster cannot be used.
     """
     wishes = Wishes(
         vary=tuple(map(_vary, vary)),
@@ -236,7 +247,9 @@ def optimize(
         subject, wishes, limits=limits, goals=goals, settings=settings, may_be_later=may_be_later, seed=seed
     )
     effort = Effort(designs=designs, is_complete=is_complete, ended=_clock(time_limit), progress=progress)
-    return found_by(plan, search(plan.problem, effort), proposals)
+    with evaluator_on(plan.evaluator, workers, cluster) as evaluate:
+        found = search(replace(plan.problem, evaluate=evaluate), effort)
+    return found_by(plan, found, proposals)
 
 
 def found_by(plan: Plan, found: SearchResult, proposals: int = MOST_PROPOSALS) -> Optimization:
@@ -284,20 +297,25 @@ def _clock(time_limit: float | None) -> Callable[[], str]:
 
 def _proposal(evaluation: Evaluation, evaluator: DesignEvaluator, before: Analysis) -> DesignProposal:
     """A proposal, proved by a full analysis of its own."""
-    configuration = evaluator.designs.configure(evaluation.candidate)
+    designs = evaluator.designs
+    stated, values = designs.divided(evaluation.candidate)
+    built = designs.built(stated)
+    configuration = designs.configure(evaluation.candidate)
     analysis = analyze_system(*configuration)
     again = evaluator.judged(evaluation.candidate, analysis)
     assert again == evaluation, "a design was judged in two ways"
-    figures = evaluator.scale.figures
+    figures = evaluator.figures(evaluation.candidate, analysis)
     return DesignProposal(
         evaluation=evaluation,
-        differences=describe(*evaluator.designs.present, evaluation.candidate),
-        changes=evaluator.designs.changes(evaluation.candidate),
+        differences=designs.describe(evaluation.candidate),
+        changes=designs.changes(evaluation.candidate),
+        value_changes=built.value_changes(values),
+        rebuilt=built.present.system if stated else None,
         analysis=analysis,
         configuration=configuration,
         impact=impact(before, analysis),
         limits=tuple(
-            LimitRow(limit=limit, before=limit.range(before, figures), after=limit.range(analysis, figures))
+            LimitRow(limit=limit, before=limit.range(before, evaluator.scale.figures), after=limit.range(analysis, figures))
             for limit in evaluator.limits
         ),
     )

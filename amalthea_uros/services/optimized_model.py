@@ -27,11 +27,13 @@ def write_proposal(result: Optimization, number: int, path: StrPath) -> None:
     if number > len(result.proposals):
         found = f"only {len(result.proposals)} were found" if result.proposals else "none was found"
         raise InvalidArgumentError(f"there is no proposal {number} to write to {path}: {found}")
-    changes = result.proposals[number - 1].changes
+    proposal = result.proposals[number - 1]
     if is_description(path):
-        _write_description(result.paths, changes, path)
+        _write_description(result.paths, proposal.changes, path)
+    elif proposal.rebuilt is not None:
+        write_changed(proposal.rebuilt, proposal.value_changes, result.settings, path)
     else:
-        write_changed(result.subject, changes, result.settings, path)
+        write_changed(result.subject, proposal.changes, result.settings, path)
 
 
 def _write_description(paths: Sequence[Path], changes: Sequence[Change], path: StrPath) -> None:

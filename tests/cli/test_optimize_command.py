@@ -35,6 +35,14 @@ def test_nothing_needs_to_change():
     assert "Nothing needs to change" in run.stdout.splitlines()[-1]
 
 
+def test_where_nothing_but_deadlines_is_demanded_the_option_for_more_is_named(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text("amuros: 1\nname: one\nhardware: single-core\ntasks:\n  - {name: A, period: 1 ms, execution_time: 1 us}\n")
+    run = amuros("optimize", path)
+    assert run.returncode == 0
+    assert "nothing else is demanded (add what must hold with --limit)" in run.stdout.splitlines()[-1]
+
+
 def test_a_search_that_is_cut_off_proves_nothing():
     run = amuros("optimize", SAMPLE, *LIMIT, "--keep", "Message_Factor.period", "--designs", "2")
     assert run.returncode == 1

@@ -75,7 +75,9 @@ def _proposal(result: Optimization, number: int, proposal: DesignProposal, termi
     ]
     terminal.table(_HEADINGS, rows, right=_RIGHT)
     _worse(proposal, terminal)
-    if proposal.changes:
+    if proposal.rebuilt is not None:
+        terminal.line(f"  to see all effects, write it: add -o FILE.yaml --proposal {number}, then amuros analyze FILE.yaml")
+    elif proposal.changes:
         files = " ".join(shlex.quote(str(path)) for path in result.paths) or "FILE"
         terminal.line(f"  to see all effects: amuros analyze {files} {shlex.join(proposal.options)}")
 

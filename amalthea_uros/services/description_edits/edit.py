@@ -75,17 +75,17 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
     ReadError : something in the text is wrong.
     InvalidArgumentError : a change cannot be stated in a description, or would have other effects than stated.
     """
+    structural = [change for change in changes if change.key in _STRUCTURAL]
+    if structural:
+        return _restructured(text, path, structural, [change for change in changes if change.key not in _STRUCTURAL])
     before = described(text, path)
-    comparable = [change for change in changes if change.key not in _STRUCTURAL]
-    expected = changed_system(before.assembly.system, comparable, Settings())
+    expected = changed_system(before.assembly.system, changes, Settings())
     places = Places(before.description, before.platform, before.core_types)
     assignments = [assignment for change in changes for assignment in places.assignments(change)]
     consequences: list[Assignment] = []
     while True:
         edited = apply_assignments(text, [*assignments, *consequences])
         found = _system(edited, path, changes)
-        if len(comparable) < len(changes):
-            break
         pinned = {assignment.target for assignment in (*assignments, *consequences)}
         different = differences(meaning(expected), meaning(found))
         if not different:
@@ -96,6 +96,18 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
         consequences += [assignment for change in more for assignment in places.assignments(change)]
     edits = [*value_edits(text, edited, assignments), *value_edits(text, edited, consequences, is_consequence=True)]
     return EditedDescription(path=path, before=text, text=edited, edits=tuple(edits))
+
+
+def _restructured(text: str, path: Path, structural: Sequence[Change], values: Sequence[Change]) -> EditedDescription:
+    """The text with changes for which there is no other way than a description, and then with other values of what it describes."""
+    before = described(text, path)
+    places = Places(before.description, before.platform, before.core_types)
+    assignments = [assignment for change in structural for assignment in places.assignments(change)]
+    rebuilt = apply_assignments(text, assignments)
+    _system(rebuilt, path, structural)
+    edited = edit_description(rebuilt, path, values)
+    edits = (*value_edits(text, edited.text, assignments), *edited.edits)
+    return EditedDescription(path=path, before=text, text=edited.text, edits=edits)
 
 
 def apply_assignments(text: str, assignments: Iterable[Assignment]) -> str:

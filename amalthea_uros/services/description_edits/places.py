@@ -18,7 +18,7 @@ from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.middleware import Executor, Interrupt
 from amalthea_uros.spec.processes import Process
-from amalthea_uros.units import SECOND, Time, parse_time, time_text
+from amalthea_uros.units import SECOND, Time, data_size_text, parse_time, time_text
 from amalthea_uros.uros import callbacks as uros
 from amalthea_uros.uros.executor import message_cost, timer_count
 from amalthea_uros.uros.notes import Notes
@@ -66,6 +66,8 @@ class Places:
         ------
         InvalidArgumentError : a description has no key for it.
         """
+        if change.key == "memory":
+            return list(self._memory(change))
         found = [owner for owner in self._owners(change.object) if change.key in _KEYS[owner.kind]]
         if not found:
             raise InvalidArgumentError(self._refusal(change))
@@ -94,7 +96,17 @@ class Places:
         everything = list(owners(self.description))
         return [owner for owner in everything if owner.name == name]
 
+    def _memory(self, change: Change) -> Iterable[Assignment]:
+        """The memory of a label; a buffer that is not listed keeps the size of its messages."""
+        path: Path = ("labels", change.object)
+        sizes = {each.buffer: each.incoming.size for each in self.callbacks if each.incoming is not None}
+        if change.object not in self.description.labels and change.object in sizes:
+            yield Assignment(change.target, (*path, "size"), data_size_text(sizes[change.object]))
+        yield Assignment(change.target, (*path, "memory"), change.value)
+
     def _refusal(self, change: Change) -> str:
+        if change.key == "communication":
+            return f"{change}: an app.yaml does not state how labels are communicated; write an AMALTHEA model (.amxmi) instead"
         if change.key == "frequency":
             return f"{change}: the execution times in an app.yaml are those at the present clock, so it is not written alone"
         kinds = dict.fromkeys(owner.kind for owner in self._owners(change.object))
@@ -231,7 +243,7 @@ def _word(text: str) -> str:
 
 
 def _names(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",")]
+    return [name for name in map(str.strip, text.split(",")) if name]
 
 
 def _execution_time_ends(text: str) -> tuple[Time, Time]:

@@ -149,7 +149,7 @@ class _Patcher:
             if isinstance(node, TextAlias):
                 raise _shared(node.name)
             if isinstance(node, TextScalar):
-                yield self._expanded(node, str(path[depth - 1]), _nested((key, *rest), value))
+                yield self._expanded(node, _shorthand(path[:depth]), _nested((key, *rest), value))
                 return
             if node.anchor is not None and self.document.is_shared(node, key):
                 raise _shared(node.anchor)
@@ -166,11 +166,11 @@ class _Patcher:
             node = inner.value if isinstance(inner, Entry) else inner
 
     def _expanded(self, node: TextScalar, key: str, more: Value) -> _Patch:
-        """A plain value as a mapping with more."""
+        """A plain value, which has a key in the mapping, as a mapping with more."""
         assert isinstance(more, Mapping)
-        if more.keys() == {_SHORTHANDS[key]}:
-            return _Patch(node.start, node.end, rendered(more[_SHORTHANDS[key]], node.quote))
-        plain = {_SHORTHANDS[key]: node.value} if node.value else {}
+        if more.keys() == {key}:
+            return _Patch(node.start, node.end, rendered(more[key], node.quote))
+        plain = {key: node.value} if node.value else {}
         return _Patch(node.start, node.end, rendered({**plain, **more}))
 
     def _added(self, mapping: TextMapping, key: str, value: Value, instead_of: str | None) -> _Patch:
@@ -227,6 +227,11 @@ class _Patcher:
             quote = node.quote if isinstance(node, TextScalar) else ""
             ending = newline_of(self.text) if quote == "|" else ""
             yield _Patch(node.start, node.end, anchor + rendered(value, quote) + ending)
+
+
+def _shorthand(path: Path) -> str:
+    """The key that a plain value has in the mapping; each label may be one."""
+    return "size" if path[0] == "labels" else _SHORTHANDS[str(path[-1])]
 
 
 def _is_same_form(node: TextMapping, value: Mapping[str, Value]) -> bool:

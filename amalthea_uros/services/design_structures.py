@@ -1,0 +1,154 @@
+"""What a description can say otherwise about its callbacks: designs whose systems are built anew from the changed text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from itertools import permutations, product
+from math import prod
+from pathlib import Path
+
+from amalthea_uros.changes.change import Change
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.optimize.candidate import Candidate
+from amalthea_uros.optimize.designs import Structure
+from amalthea_uros.optimize.space import Choice, Kind
+from amalthea_uros.perf.system import System
+from amalthea_uros.services.description_edits.described import Described, described
+from amalthea_uros.services.description_edits.edit import edit_description
+from amalthea_uros.services.inputs import SystemInput, described_input
+from amalthea_uros.services.paths import is_description
+from amalthea_uros.services.subject import Subject, paths_of
+from amalthea_uros.spec.middleware import Executor
+from amalthea_uros.uros.callbacks import Callback, callbacks_of, registration_order
+from amalthea_uros.uros.notes import Notes
+
+#: Each structure is built before the search begins.
+MOST_STRUCTURES = 500
+
+#: What makes the rules and orders of the structure of a system.
+Completed = Callable[[tuple[Change, ...], SystemInput], Structure]
+
+
+@dataclass(frozen=True, slots=True)
+class DescribedCallbacks:
+    """The callbacks of a description, and how they are executed."""
+
+    text: str
+    path: Path
+    whole: Described
+
+    @classmethod
+    def of(cls, subject: Subject) -> DescribedCallbacks:
+        """Those of what describes a system; InvalidArgumentError if it is no description."""
+        from amalthea_uros._internal.files import read_text
+        from amalthea_uros._internal.limits import DESCRIPTION_SIZE
+        from amalthea_uros.services.build import TEXT
+
+        paths = paths_of(subject)
+        if paths is not None and len(paths) == 1 and is_description(paths[0]):
+            text, path = read_text(paths[0], DESCRIPTION_SIZE), paths[0]
+        elif isinstance(subject, str) and paths is None:
+            text, path = subject, TEXT
+        else:
+            raise InvalidArgumentError(
+                "only an app.yaml says where callbacks run and in which order; give one, or leave out 'callbacks'"
+            )
+        return cls(text, path, described(text, path))
+
+    @property
+    def executor(self) -> Executor:
+        """The executor."""
+        return self.whole.description.middleware.executor
+
+    @property
+    def callbacks(self) -> tuple[Callback, ...]:
+        """All callbacks, in the order of the file."""
+        return callbacks_of(self.whole.description.application, self.executor, Notes())
+
+    @property
+    def inside(self) -> list[str]:
+        """The callbacks that run in the executor, in their order."""
+        inside = (callback for callback in self.callbacks if callback.in_executor)
+        return [callback.name for callback in registration_order(inside, self.executor, Notes())]
+
+    def placements(self) -> Iterator[Choice]:
+        """For each callback, a task of its own or the executor."""
+        for callback in self.callbacks:
+            words = ("executor", "own-task") if callback.in_executor else ("own-task", "executor")
+            yield Choice(object=callback.name, key="runs_in", kind=Kind.PLACEMENT, options=words)
+
+    @property
+    def targets(self) -> frozenset[str]:
+        """What only a description states, as OBJECT.KEY."""
+        of_executor = (f"{self.executor.name}.{key}" for key in ("order", "semantics"))
+        return frozenset((*of_executor, *(f"{callback.name}.runs_in" for callback in self.callbacks)))
+
+    def orders(self) -> Iterator[Choice]:
+        """The orders of the callbacks that run in the executor now."""
+        inside = self.inside
+        if len(inside) > 1:
+            options = tuple(",".join(order) for order in permutations(inside))
+            yield Choice(object=self.executor.name, key="order", kind=Kind.ORDER, options=options)
+
+    def semantics(self) -> Iterator[Choice]:
+        """When callbacks in the executor take their messages."""
+        if self.inside:
+            options = tuple(dict.fromkeys((self.executor.semantics, "ROS", "LET")))
+            yield Choice(object=self.executor.name, key="semantics", kind=Kind.COMMUNICATION, options=options)
+
+    def structures(self, choices: Sequence[Choice], complete: Completed) -> Mapping[Candidate, Structure | str]:
+        """What is built for each combination of options, apart from the present one.
+
+        Raises
+        ------
+        InvalidArgumentError : there are too many.
+        """
+        count = prod(len(choice.options) for choice in choices)
+        if count > MOST_STRUCTURES:
+            names = ", ".join(choice.target for choice in choices)
+            raise InvalidArgumentError(
+                f"{names} have {count:,} combinations; at most {MOST_STRUCTURES:,} are possible, leave some out with --keep"
+            )
+        return {own: self._built(own, complete) for own in _combinations(choices)}
+
+    def _built(self, own: Candidate, complete: Completed) -> Structure | str:
+        """A structure, or why it is impossible."""
+        inside = {callback.name: callback.in_executor for callback in self.callbacks}
+        moved = {change.object: change.value == "executor" for change in own if change.key == "runs_in"}
+        for callback in self.callbacks:
+            if moved.get(callback.name) and getattr(callback.section, "deadline", None) is not None:
+                return f"the deadline of {callback.name!r} has no effect in the executor"
+        changes = self._with_order(own, {**inside, **moved})
+        try:
+            text = edit_description(self.text, self.path, changes).text
+        except InvalidArgumentError as error:
+            return str(error)
+        opened = described_input(described(text, self.path).assembly)
+        if _demands(opened.system) != _demands(self.whole.assembly.system):
+            return "a requirement of the model has no object there"
+        return complete(changes, opened)
+
+    def _with_order(self, own: Candidate, inside: Mapping[str, bool]) -> tuple[Change, ...]:
+        """The changes, with an order that has only callbacks that run in the executor."""
+        chosen = next((change.value.split(",") for change in own if change.key == "order"), list(self.executor.order))
+        order = [name for name in chosen if inside[name]]
+        others = tuple(change for change in own if change.key != "order")
+        return others if order == self.executor.order else (*others, Change(self.executor.name, "order", ",".join(order)))
+
+
+def _combinations(choices: Sequence[Choice]) -> Iterator[Candidate]:
+    for values in product(*(choice.options for choice in choices)):
+        own = [
+            Change(choice.object, choice.key, value)
+            for choice, value in zip(choices, values, strict=True)
+            if value != choice.options[0]
+        ]
+        if own:
+            yield tuple(sorted(own, key=lambda change: change.target))
+
+
+def _demands(system: System) -> list[object]:
+    """What is demanded, by names."""
+    parts: Iterable[Iterable[object]] = (getattr(system.constraints, field.name) for field in fields(system.constraints))
+    return [(type(each).__name__, getattr(each, "name", "")) for part in parts for each in part]
