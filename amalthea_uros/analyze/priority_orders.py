@@ -106,10 +106,10 @@ class PriorityOrders:
 
     def overload(self) -> str:
         """That the core is overloaded with any priorities; "" if it is not, or not for certain."""
-        load = self.analysis.processors[self.core].worst
-        if load is None or load <= 1 or self._is_any_triggered():
+        core = self.analysis.processors[self.core]
+        if core.worst is None or not core.is_overloaded or self._is_any_triggered():
             return ""
-        return f"with any priorities, the tasks need {100 * float(load):.1f} % of the core"
+        return f"with any priorities, the tasks need {100 * float(core.at_least):.1f} % of the core"
 
     def dead_end(self, order: Order, unfitting: Iterable[str]) -> str:
         """Why no order exists if no task fits directly above some, where `is_independent`; "" if bounds leave it open."""

@@ -16,7 +16,7 @@ from amalthea_uros.analyze.phases import Phases, merged, merged_chain
 from amalthea_uros.analyze.process_verdicts import judged
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.requirements import evaluate_requirements
-from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessorResult, ProcessResult, Results
+from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessorResult, ProcessResult, Response, Results
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.summary import summarize
 from amalthea_uros.perf.events import EventChain
@@ -36,6 +36,7 @@ from amalthea_uros.timing.phases import (
 )
 from amalthea_uros.timing.preemption import preemption
 from amalthea_uros.timing.releases import response_time_limits
+from amalthea_uros.timing.scheduling import ScheduledProcess
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time
 
@@ -139,7 +140,7 @@ def _processes(solution: Solution, schedules: CoreSchedules) -> Iterator[Process
 
 def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> ProcessResult:
     """The result of a process; execution times are in picoseconds."""
-    context, response = solution.context, solution.responses.get(name)
+    context, response = solution.context, _without_doubtful_overload(name, solution)
     process, demand = context.system.processes[name], context.stated_demand(name)
     placement = context.placement(name)
     time_base = context.demand_model.time_base(placement.core) if placement.core else 1
@@ -177,6 +178,20 @@ def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> Proce
     return replace(judged(found, process, events, context.can_borrow(name)), response=bound.response)
 
 
+def _without_doubtful_overload(name: str, solution: Solution) -> Response | None:
+    """The response time of a process; without bound, but not overloaded for certain, if modes may exclude what overloads it."""
+    found, context = solution.responses.get(name), solution.context
+    if found is None or not found.is_overload or name not in context.scheduled:
+        return found
+    item = context.scheduled[name]
+    here = [other for other in context.on_core(item.core) if solution.is_known(other.name)]
+    if all(context.demands[other.name].mean_occurring == context.demands[other.name].mean_worst for other in here):
+        return found
+    if _certain_load((other for other in here if other.rank >= item.rank), solution) > 1:
+        return found
+    return replace(found, is_overload=False, reason=f"{found.reason}, unless modes exclude a part of it")
+
+
 def _processors(solution: Solution) -> Iterator[ProcessorResult]:
     """The load of each core; unknown if the demand or activation of a process that can run on it is unknown."""
     context = solution.context
@@ -197,7 +212,7 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
             best=best,
             mean=mean,
             worst=worst,
-            at_least=_sum(shares.get(core, {}).values()) if worst is None else worst,
+            at_least=_sum(shares.get(core, {}).values()) if worst is None else _certain_load(context.on_core(core), solution),
         )
 
 
@@ -220,6 +235,17 @@ def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction, Fraction]
         _sum(demand.mean_best * rate for demand, rate in rates),
         _sum(demand.mean * rate for demand, rate in rates),
         _sum(demand.mean_worst * rate for demand, rate in rates),
+    )
+
+
+def _certain_load(items: Iterable[ScheduledProcess], solution: Solution) -> Fraction:
+    """The worst load of processes of a core, without what modes may exclude for ever."""
+    context = solution.context
+    return _sum(
+        context.demands[item.name].mean_occurring
+        * solution.event_models[item.name].rate
+        / context.demand_model.time_base(item.core)
+        for item in items
     )
 
 

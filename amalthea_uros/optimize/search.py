@@ -23,8 +23,9 @@ EXACT: tuple[Callable[[Problem], SearchResult | None], ...] = (solve_priorities,
 def search(problem: Problem, effort: Effort) -> SearchResult:
     """The best designs, with as much proof as there is.
 
-    A space with at most as many designs as may be judged is tried completely. In a larger one, the designs with few changes are tried
-    if their number counts most; then an exact solver for the kind of problem; in the end a part of all designs is chosen at random.
+    A space with at most as many designs as may be judged is tried completely; if nothing is proved then, an exact solver may. In a
+    larger one, the designs with few changes are tried if their number counts most; then an exact solver for the kind of problem; in the
+    end a part of all designs is chosen at random.
     """
     recorder = Recorder(problem.evaluate, effort)
     recorded = replace(problem, evaluate=recorder)
@@ -39,17 +40,25 @@ def search(problem: Problem, effort: Effort) -> SearchResult:
 def _search(problem: Problem, recorder: Recorder) -> SearchResult:
     effort, size = recorder.effort, problem.space.size
     if size <= effort.designs:
-        return try_all(problem, effort.is_complete)
+        tried = try_all(problem, effort.is_complete)
+        return tried if tried.conclusion is not Conclusion.NOT_FOUND else _proved(problem) or tried
     if problem.goals[0].name == CHANGES and not effort.is_complete:
         found = _with_few_changes(problem, effort.designs // 2)
         if found is not None and found.best:
             return found
+    if (proved := _proved(problem)) is not None:
+        return proved
+    solve_by_annealing(problem, effort.designs - len(recorder.found))
+    return concluded(recorder.found.values(), proof="", ended=f"{len(recorder.found):,} designs were chosen")
+
+
+def _proved(problem: Problem) -> SearchResult | None:
+    """What an exact solver proves; it knows more than the analysis of each design does, such as certain misses behind bounds."""
     for solve in EXACT:
         solved = solve(problem)
         if solved is not None and solved.conclusion in (Conclusion.OPTIMAL, Conclusion.NONE):
             return solved
-    solve_by_annealing(problem, effort.designs - len(recorder.found))
-    return concluded(recorder.found.values(), proof="", ended=f"{len(recorder.found):,} designs were chosen")
+    return None
 
 
 def _with_few_changes(problem: Problem, designs: int) -> SearchResult | None:

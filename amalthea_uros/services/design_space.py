@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -50,6 +51,7 @@ OFFSET_STEPS = 10
 #: What may change unless something else is asked for.
 DEFAULT = (Vary.PERIODS, Vary.PRIORITIES)
 
+_QUANTITY = re.compile(r"[\d.]+ [^\W\d]+")
 _KINDS: Mapping[str, Kind] = {
     "period": Kind.PERIOD,
     "offset": Kind.OFFSET,
@@ -208,20 +210,29 @@ class _Builder:
                 yield _choice(name, "offset", Kind.OFFSET, map(time_text, [releases.offset, *others]))
 
     def _cores(self) -> Iterator[Choice]:
-        """Other schedulers of the same policy."""
+        """Other schedulers of the same policy: by the names of their cores if each of them has one of its own."""
         schedulers = self.system.schedulers
         for allocation in self.system.mapping.tasks:
             own = schedulers.get(allocation.scheduler)
-            if own is not None:
-                others = [
-                    name
-                    for name, each in schedulers.items()
-                    if each.policy == own.policy
-                    and each.parent is None
-                    and scheduler_cores(name, self.system)
-                    and name != own.name
-                ]
-                yield _choice(allocation.task, "scheduler", Kind.CORE, [own.name, *others])
+            if own is None:
+                continue
+            others = [
+                name
+                for name, each in schedulers.items()
+                if each.policy == own.policy and each.parent is None and scheduler_cores(name, self.system) and name != own.name
+            ]
+            names = [own.name, *others]
+            cores = [core for name in names if (core := self._own_core(name)) is not None]
+            is_by_core = own.parent is None and len(cores) == len(names)
+            yield _choice(allocation.task, "core" if is_by_core else "scheduler", Kind.CORE, cores if is_by_core else names)
+
+    def _own_core(self, scheduler: str) -> str | None:
+        """The only core of a scheduler, if no other one is responsible for it."""
+        cores = scheduler_cores(scheduler, self.system)
+        if len(cores) != 1:
+            return None
+        shared = [name for name in self.system.schedulers if cores[0] in scheduler_cores(name, self.system)]
+        return cores[0] if shared == [scheduler] else None
 
     def _communications(self) -> Iterator[Choice]:
         """Implicit or LET communication of each label that one process writes and another one reads."""
@@ -307,5 +318,9 @@ class _Builder:
 
 
 def _choice(name: str, key: str, kind: Kind, options: Iterable[str]) -> Choice:
-    texts: Sequence[str] = [text.replace(" ", "") for text in options]
-    return Choice(object=name, key=key, kind=kind, options=tuple(dict.fromkeys(texts)))
+    return Choice(object=name, key=key, kind=kind, options=tuple(dict.fromkeys(map(_compact, options))))
+
+
+def _compact(text: str) -> str:
+    """A quantity without the blank before its unit, so that equal ones have equal texts; names stay as they are."""
+    return text.replace(" ", "") if _QUANTITY.fullmatch(text) else text

@@ -57,7 +57,7 @@ from amalthea_uros.timing.notes import Notes, UnknownDemandError
 from amalthea_uros.timing.overheads import Overheads
 from amalthea_uros.timing.server_calls import obstacle, servers, with_direct_calls
 from amalthea_uros.timing.settings import Memory, Settings
-from amalthea_uros.units import Frequency, time_of_ticks
+from amalthea_uros.units import Frequency, Time, time_of_ticks
 
 #: With a finer time base, times could exceed 64-bit integers.
 MAX_TIME_BASE = 1000
@@ -211,11 +211,12 @@ class DemandModel:
             case ProbabilitySwitch(branches=branches):
                 weights = [branch.weight for branch in branches]
                 each_occurs = not any(weights) or all(weights)
-                return _one_of([self._frames(branch.activities, core, above) for branch in branches], weights, each_occurs)
+                alternatives = [self._frames(branch.activities, core, above) for branch in branches]
+                return _one_of(alternatives, weights, each_occurs, is_chance=True)
             case Switch():
                 alternatives = [self._frames(inner, core, above) for inner in self.possible_branches(activity)]
                 # The modes can exclude branches, or combinations of them.
-                return _one_of(alternatives, [1.0] * len(alternatives), each_occurs=len(alternatives) == 1)
+                return _one_of(alternatives, [1.0] * len(alternatives), each_occurs=len(alternatives) == 1, is_chance=False)
             case Loop(condition=condition):
                 if holds(condition, self.settings.modes) is False:
                     return []
@@ -272,7 +273,7 @@ class DemandModel:
             case False:
                 return []
             case None if runnable.condition is not None:
-                frames = [replace(_any_time(frame), best=0, is_certain=not frame.worst) for frame in frames]
+                frames = [replace(_any_time(frame), best=0, is_certain=not frame.worst, least=0) for frame in frames]
         if call.times is not None:
             self._require_maximum(call.times)
             frames = [_repeated(frame, call.times) for frame in frames]
@@ -298,13 +299,13 @@ class DemandModel:
     def _counted(self, frame: Frame, call: Call) -> Frame | None:
         """A frame of a called runnable in the executions of the caller; None if it is never executed."""
         if frame.is_always and call.counter is None:
-            return Frame(worst=frame.worst, best=frame.best, average=frame.average, offset=1)
+            return Frame(worst=frame.worst, best=frame.best, average=frame.average, offset=1, least=frame.least)
         inner = Counter(prescaler=frame.prescaler, offset=frame.offset, is_phase_known=frame.is_certain)
         try:
             counter = self.sites.lifted(call, inner)
         except UncountableError:
             prescaler = frame.prescaler * (call.counter.prescaler if call.counter else 1)
-            return Frame(worst=frame.worst, best=0, average=frame.average / prescaler, is_certain=False)
+            return Frame(worst=frame.worst, best=0, average=frame.average / prescaler, is_certain=False, least=frame.least)
         if counter is None:
             return None
         is_certain = frame.is_certain and counter.is_phase_known
@@ -405,7 +406,13 @@ def _sum(same: Sequence[Frame]) -> Frame:
         worst=sum(frame.worst for frame in same),
         best=sum(frame.best for frame in same),
         average=exact_sum(frame.average for frame in same),
+        least=_least(sum(frame.occurring for frame in same), same),
     )
+
+
+def _least(occurring: Time, frames: Iterable[Frame]) -> Time | None:
+    """The field of a frame that is made of others; None if all of them certainly occur."""
+    return None if all(frame.least is None for frame in frames) else occurring
 
 
 def _scaled(frames: tuple[Frame, ...], growth: Fraction) -> tuple[Frame, ...]:
@@ -418,6 +425,7 @@ def _scaled(frames: tuple[Frame, ...], growth: Fraction) -> tuple[Frame, ...]:
             worst=ceil(frame.worst * growth),
             best=floor(frame.best * min(growth, Fraction(1))),
             average=frame.average * growth,
+            least=None if frame.least is None else ceil(frame.least * growth),
         )
         for frame in frames
     )
@@ -432,17 +440,31 @@ def _any_time(frame: Frame) -> Frame:
     """A frame on unknown jobs: any job may execute it, and any job may not."""
     if frame.is_always or (frame.prescaler == 1 and not frame.is_certain):
         return frame
-    return Frame(worst=frame.worst, best=0, average=frame.average / frame.prescaler, is_certain=False)
+    return Frame(worst=frame.worst, best=0, average=frame.average / frame.prescaler, is_certain=False, least=frame.least)
 
 
 def _repeated(frame: Frame, times: Count | float) -> Frame:
     """A frame that is executed several times."""
     minimum, average, maximum = count_of(times)
-    return replace(frame, worst=frame.worst * maximum, best=frame.best * minimum, average=frame.average * average)
+    return replace(
+        frame,
+        worst=frame.worst * maximum,
+        best=frame.best * minimum,
+        average=frame.average * average,
+        least=None if frame.least is None else frame.least * maximum,
+    )
 
 
-def _one_of(alternatives: Sequence[Sequence[Frame]], weights: Sequence[float], each_occurs: bool) -> Sequence[Frame]:
-    """One frame that bounds all alternatives; `each_occurs`: whether each job can take any of them."""
+def _one_of(
+    alternatives: Sequence[Sequence[Frame]], weights: Sequence[float], each_occurs: bool, *, is_chance: bool
+) -> Sequence[Frame]:
+    """One frame that bounds all alternatives.
+
+    Parameters
+    ----------
+    each_occurs : whether each job can take any of them
+    is_chance : whether they are chosen at random, so that each one occurs some time; otherwise modes choose
+    """
     plain = [[_any_time(frame) for frame in frames] for frames in alternatives]
     worst = [sum(frame.worst for frame in frames) for frames in plain]
     best = [sum(frame.best for frame in frames) for frames in plain]
@@ -455,6 +477,16 @@ def _one_of(alternatives: Sequence[Sequence[Frame]], weights: Sequence[float], e
     weighted = sum((value * Fraction(weight) for value, weight in zip(average, weights, strict=True)), Fraction(0))
     is_certain = all(frame.is_certain for frames in plain for frame in frames)
     is_same = max(worst) == min(best)
+    occurring = [sum(frame.occurring for frame in frames) for frames in plain]
+    # Of alternatives that modes choose, some may never occur; one of them does.
+    likely = [value for value, weight in zip(occurring, weights, strict=True) if weight]
+    least = max(likely) if is_chance else min(occurring)
     return [
-        Frame(worst=max(worst), best=min(best), average=weighted / total, is_certain=is_certain and (each_occurs or is_same))
+        Frame(
+            worst=max(worst),
+            best=min(best),
+            average=weighted / total,
+            is_certain=is_certain and (each_occurs or is_same),
+            least=None if least == max(worst) else least,
+        )
     ]

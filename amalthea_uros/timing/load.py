@@ -25,9 +25,9 @@ def activation_rates(system: System, activations: Activations) -> Mapping[str, F
 def loads(
     cores: Mapping[str, frozenset[str]], rates: Mapping[str, Fraction], demand_model: DemandModel
 ) -> Mapping[str, Mapping[str, Fraction]]:
-    """The worst-case utilisation of its core by each process with a single core.
+    """The worst-case utilisation of its core by each process with a single core, as far as it is certain.
 
-    Processes with unknown demand or activation rate are left out, so that the load is at least the sum.
+    Processes with unknown demand or activation rate are left out, and what modes may exclude, so that the load is at least the sum.
 
     Parameters
     ----------
@@ -44,5 +44,5 @@ def loads(
             demand = demand_model.of_process(process, core)
         except UnknownDemandError:
             continue
-        found.setdefault(core, {})[name] = demand.mean_worst * rates[name] / demand_model.time_base(core)
+        found.setdefault(core, {})[name] = demand.mean_occurring * rates[name] / demand_model.time_base(core)
     return found

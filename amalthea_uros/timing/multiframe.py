@@ -22,6 +22,7 @@ class Frame:
     offset : number of the first such job, counted from 1; below 1 only its remainder modulo the prescaler counts
     is_certain : whether exactly these jobs have the demand; otherwise any job may have it or not, but at most every n-th one
     jitter : number of jobs by which the demand can be late, if it is not certain which jobs have it
+    least : as far as it is certain that some job can have it, if modes may exclude the rest for ever; None: all of it
     """
 
     worst: Time
@@ -31,6 +32,12 @@ class Frame:
     offset: int = 0
     is_certain: bool = True
     jitter: int = 0
+    least: Time | None = None
+
+    @property
+    def occurring(self) -> Time:
+        """The demand that some job certainly can have."""
+        return self.worst if self.least is None else self.least
 
     @property
     def is_always(self) -> bool:
@@ -74,8 +81,8 @@ class MultiframeDemand:
     @property
     def least_worst(self) -> Time:
         """A demand that some job certainly can have: counters can keep frames of different jobs apart for ever."""
-        always = sum(frame.worst for frame in self.frames if frame.prescaler == 1)
-        return always + max((frame.worst for frame in self.frames if frame.prescaler > 1), default=0)
+        always = sum(frame.occurring for frame in self.frames if frame.prescaler == 1)
+        return always + max((frame.occurring for frame in self.frames if frame.prescaler > 1), default=0)
 
     @property
     def best(self) -> Time:
@@ -94,6 +101,11 @@ class MultiframeDemand:
     def mean_worst(self) -> Fraction:
         """The worst-case execution time per job in the long run."""
         return sum((Fraction(frame.worst, frame.prescaler) for frame in self.frames), Fraction(0))
+
+    @property
+    def mean_occurring(self) -> Fraction:
+        """The worst-case execution time per job in the long run, without what modes may exclude for ever."""
+        return sum((Fraction(frame.occurring, frame.prescaler) for frame in self.frames), Fraction(0))
 
     @property
     def mean_best(self) -> Fraction:

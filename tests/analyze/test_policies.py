@@ -11,6 +11,7 @@ from system_strategies import systems
 
 from amalthea_uros.analyze.assignment import propose_priorities
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.perf import conditions, hardware, mapping, os
 from amalthea_uros.perf.activities import (
     AccessKind,
@@ -432,6 +433,32 @@ class TestModes:
         built = system([root()], tasks, runnables=[runnable])
         (process,) = analyze_system(built, Settings(modes={"mode": level} if level else {})).processes
         assert (process.bcet // US, process.wcet // US) == expected
+
+    def alternatives(self, value, long, short):
+        return Switch(
+            cases=(Case(activities=(ticks(long),), condition=self.condition(conditions.Relation.EQUAL, value)),),
+            default=(ticks(short),),
+        )
+
+    def test_branches_that_exclude_each_other_are_no_certain_overload(self):
+        # 8 of 10 in one mode, 16 of 20 in the other: never both.
+        tasks = [
+            ("A", 10, [self.alternatives("on", 8, 1)], {"scheduler": "root", "priority": 2}),
+            ("B", 20, [self.alternatives("off", 16, 1)], {"scheduler": "root", "priority": 1}),
+        ]
+        found = analyze_system(system([root()], tasks))
+        assert [process.verdict for process in found.processes] == [Verdict.MET, Verdict.UNKNOWN]
+        core = found.processors["core"]
+        assert (core.worst, core.at_least, core.is_overloaded) == (Fraction(16, 10), Fraction(15, 100), False)
+        assert found.summary.schedulable == "unknown"
+
+    def test_a_branch_that_may_never_be_taken_misses_no_deadline_for_certain(self):
+        tasks = [("A", 20, [self.alternatives("off", 16, 2)], {"scheduler": "root", "priority": 1, "deadline": 10 * US})]
+        verdicts = {
+            mode: analyze_system(system([root()], tasks), Settings(modes={"mode": mode} if mode else {})).processes["A"].verdict
+            for mode in (None, "on", "off")
+        }
+        assert verdicts == {None: Verdict.UNKNOWN, "on": Verdict.MET, "off": Verdict.MISSED}
 
 
 class TestEventsThatActivate:

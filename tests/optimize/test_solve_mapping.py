@@ -8,6 +8,7 @@ import pytest
 from design_search import cores_of, mapping_problem
 from design_systems import DESIGN
 
+from amalthea_uros import optimize
 from amalthea_uros.optimize.problem import Conclusion, Feasibility, Problem
 from amalthea_uros.optimize.solvers import mapping
 from amalthea_uros.optimize.solvers.integer_program import solve_program
@@ -43,6 +44,19 @@ def test_the_integer_program_agrees(case, monkeypatch):
     found = solve_mapping(mapping_problem(case["tasks"], cores_of(case)))
     check_result(found, case)
     assert "CP-SAT of OR-tools" in found.proof
+
+
+@pytest.mark.parametrize(
+    "case", [case for case in CASES if case["id"] in ("mapping-07", "mapping-11")], ids=lambda case: case["id"]
+)
+def test_the_command_varies_the_cores_of_tasks(case):
+    # 2,187 mappings are more than are tried one by one; of the 128 others, some only miss a bound of the analysis.
+    system = mapping_problem(case["tasks"], cores_of(case)).present.system
+    found = optimize(system, vary=["cores"], goals=["load"])
+    assert found.search.conclusion is (Conclusion.OPTIMAL if case["feasible"] else Conclusion.NONE)
+    if case["feasible"]:
+        assert found[0].evaluation.values[0] == Fraction(case["min_max_load"])
+        assert {change.key for change in found[0].changes} == {"core"}
 
 
 TASKS = [
