@@ -399,6 +399,14 @@ def is_directory(path: Path) -> bool:
         return False
 
 
+def is_fifo(path: Path) -> bool:
+    """Whether there is such a named pipe; False for an impossible path."""
+    try:
+        return path.is_fifo()
+    except (OSError, ValueError):
+        return False
+
+
 def is_file(path: Path) -> bool:
     """Whether there is such a file; False for an impossible path."""
     try:

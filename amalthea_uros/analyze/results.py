@@ -92,7 +92,7 @@ class ProcessorResult(Shown):
 
     Attributes
     ----------
-    at_least : the part of the worst-case load that is known; equal to it if everything is known
+    at_least : the part of the worst-case load that is certain: what is unknown and what modes may exclude are no part of it
     """
 
     name: str

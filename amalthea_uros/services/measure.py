@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from hashlib import file_digest, sha256
 from pathlib import Path
 
+from amalthea_uros._internal.files import is_directory, is_file
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import Baselines, names_of
@@ -193,10 +194,10 @@ def _is_other_trace(path: Path) -> bool:
 
 
 def _digest(path: Path) -> str:
-    if path.is_dir():
+    if is_directory(path):
         digests = (f"{_digest(file)}  {file.relative_to(path).as_posix()}\n" for file in trace_files(path))
         return sha256("".join(digests).encode()).hexdigest()
-    if not path.is_file():  # a stream that has been read
+    if not is_file(path):  # a stream that has been read
         return ""
     with path.open("rb") as stream:
         return file_digest(stream, "sha256").hexdigest()

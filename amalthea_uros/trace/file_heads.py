@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from amalthea_uros._internal.files import is_file
 from amalthea_uros.trace.packed_files import DAMAGED, opened
 
 
 def first_bytes(path: Path, number: int) -> bytes:
     """The unpacked begin of a file, nothing of one that cannot be read; pipes are left alone, since they can be read only once."""
-    if not path.is_file():
+    if not is_file(path):
         return b""
     try:
         with opened(path) as stream:

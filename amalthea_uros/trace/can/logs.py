@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import cast
 
-from amalthea_uros._internal.files import STANDARD_INPUT
+from amalthea_uros._internal.files import STANDARD_INPUT, is_fifo
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.candump_lines import is_frame
 from amalthea_uros.trace.can.frames import CanLog
@@ -62,7 +62,7 @@ def open_can_log(path: Path, *, channel: str | None = None) -> CanLog:
 
 
 def _suffix(path: Path) -> str | None:
-    if path == STANDARD_INPUT or path.is_fifo():
+    if path == STANDARD_INPUT or is_fifo(path):
         return _PIPED
     return _recognised(first_bytes(path, _HEAD)) or _named(path)
 
