@@ -94,6 +94,10 @@ class SweepResult(Shown):
         return known[quantity.removesuffix("_ps")]
 
 
+#: So many variants are analysed by this process, unless somebody says by how many: others would take longer to start.
+FEW = 16
+
+
 def sweep(
     subject: Subject,
     sweeps: Sweeps,
@@ -192,7 +196,8 @@ def sweep_opened(
     differences = described(present, changes)
     _check_values(present, changes, plan.sweeps)
     job = AnalysisJob(*present, tuple(changes), with_growth)
-    executor = executor_for(len(plan.runs), workers, cluster)
+    few = workers is None and len(plan.runs) <= FEW
+    executor = executor_for(len(plan.runs), 1 if few else workers, cluster)
     return SweepResult(
         plan=plan,
         outcomes=finished_runs(job, plan.runs, executor, on_outcome),
