@@ -1,6 +1,7 @@
 """The rules of the timing profile beyond their examples."""
 
 import pytest
+from effort import every
 from support import corpus, hand_written
 from test_rules import model
 
@@ -945,7 +946,7 @@ def test_interrupts_write_too(tmp_path):
     ]
 
 
-@pytest.mark.parametrize("path", [*corpus(), *hand_written()])
+@pytest.mark.parametrize("path", [*every(3, corpus()), *hand_written()])
 def test_real_models_without_semaphores(path):
     """What the system that was extracted from a model writes, and where."""
     try:
