@@ -26,6 +26,7 @@ from amalthea_uros.cli.output import (
 )
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import settings_options
+from amalthea_uros.cli.workers_options import workers_options
 from amalthea_uros.optimize import limits as limiting
 from amalthea_uros.optimize.goals import GOALS
 from amalthea_uros.optimize.recorder import INTERRUPTED as ENDED_BY_USER
@@ -98,13 +99,7 @@ def _vary(text: str) -> tuple[Vary, ...]:
     help="End with the best design so far after this time; what is found then depends on the computer.",
 )
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of random choices.")
-@click.option(
-    "--jobs",
-    "workers",
-    type=click.IntRange(min=1),
-    help="Number of designs judged at the same time; default: one for each core, if there are many designs.",
-)
-@click.option("--cluster", metavar="ADDRESS", help="Use the Dask cluster with this scheduler, e.g. tcp://host:8786.")
+@workers_options("designs", "one for each core, if there are many")
 @click.option(
     "--proposals", type=click.IntRange(min=1), default=MOST_PROPOSALS, show_default=True, help="Show at most so many proposals."
 )

@@ -29,6 +29,7 @@ from amalthea_uros.cli.output import (
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.pictures import Pictures
 from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
+from amalthea_uros.cli.workers_options import workers_options
 from amalthea_uros.services.campaign.run import Outcome, count_runs
 from amalthea_uros.services.campaign.tables import table_format, write_table
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult, plan_simulation, simulate_campaign, simulate_plan
@@ -131,10 +132,7 @@ def _labels(text: str) -> tuple[str, ...]:
     show_default=True,
     help="Number of runs of each variant, with the seeds from --seed on.",
 )
-@click.option("--jobs", type=click.IntRange(min=1), help="Number of runs at the same time; default: one for each core.")
-@click.option(
-    "--cluster", metavar="ADDRESS", help="Execute the runs on the Dask cluster with this scheduler, e.g. tcp://host:8786."
-)
+@workers_options("runs")
 @click.option("--table", type=OUTPUT_FILE, metavar="FILE", help="Write a row for each run to a .csv, .json or .parquet file.")
 @output_option(CampaignResult)
 def command(
@@ -157,7 +155,7 @@ def command(
     window: tuple[Time, Time] | None,
     sweeps: tuple[sweeping.Sweep, ...],
     runs: int,
-    jobs: int | None,
+    workers: int | None,
     cluster: str | None,
     table: Path | None,
     outputs: tuple[Output, ...],
@@ -185,7 +183,7 @@ def command(
     traced = (trace_window or (0, duration)) if traces else None
     options = Options(duration=duration, seed=seed, mode=Mode(mode), settings=settings, traced=traced, labels=labels)
     if is_campaign:
-        campaign = _campaign(paths, options, changes, sweeps, runs, with_bus, jobs, cluster)
+        campaign = _campaign(paths, options, changes, sweeps, runs, with_bus, workers, cluster)
         _show_campaign(campaign, table, outputs)
         sys.exit(_campaign_code(campaign))
     if trace_window is not None and trace_window[0] >= duration:
@@ -235,7 +233,7 @@ def _campaign(
     sweeps: Sequence[sweeping.Sweep],
     runs: int,
     with_bus: bool,
-    jobs: int | None,
+    workers: int | None,
     cluster: str | None,
 ) -> CampaignResult:
     """Execute a campaign, with a progress bar on a terminal."""
@@ -252,7 +250,7 @@ def _campaign(
             sweeps=sweeps,
             repetitions=runs,
             with_bus=with_bus,
-            workers=jobs,
+            workers=workers,
             cluster=cluster,
             on_outcome=advance,
         )

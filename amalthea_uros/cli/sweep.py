@@ -28,6 +28,7 @@ from amalthea_uros.cli.output import (
 )
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import Assignment, analysis_options, set_option
+from amalthea_uros.cli.workers_options import workers_options
 from amalthea_uros.services.campaign.run import Outcome
 from amalthea_uros.services.campaign.tables import table_format, write_table
 from amalthea_uros.services.sweep import SweepResult, sweep_files
@@ -70,8 +71,7 @@ from amalthea_uros.timing.settings import Settings
     type=Assignment("OBJECT.QUANTITY=FILE", output_path),
     help="Draw a result over one or two swept values, as SVG; may be repeated.",
 )
-@click.option("--jobs", type=click.IntRange(min=1), help="Number of analyses at the same time; default: one for each core.")
-@click.option("--cluster", metavar="ADDRESS", help="Use the Dask cluster with this scheduler, e.g. tcp://host:8786.")
+@workers_options("analyses")
 @fail_on_option
 @output_option(SweepResult)
 def command(
@@ -86,7 +86,7 @@ def command(
     with_growth: bool,
     table: Path | None,
     pictures: tuple[tuple[str, Path], ...],
-    jobs: int | None,
+    workers: int | None,
     cluster: str | None,
     fail_on: str,
     outputs: tuple[Output, ...],
@@ -117,7 +117,7 @@ def command(
             changes,
             with_growth=with_growth,
             with_bus=with_bus,
-            workers=jobs,
+            workers=workers,
             cluster=cluster,
             on_outcome=advance,
         )

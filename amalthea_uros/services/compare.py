@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -12,28 +11,25 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.changes.apply import apply
 from amalthea_uros.changes.change import Change
 from amalthea_uros.changes.key import Configuration
-from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
-from amalthea_uros.measure.distances import Distance, distance
 from amalthea_uros.measure.event_chains import BEGINS
-from amalthea_uros.measure.series import Kind, Measurement, Series
-from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.measure.series import Kind, Measurement
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.comparison.agreement import LEAST, Rule, compared
+from amalthea_uros.services.comparison.distributions import distributions
+from amalthea_uros.services.comparison.findings import assumptions_of, findings_of, open_phases
 from amalthea_uros.services.comparison.limits import judge_limits
 from amalthea_uros.services.comparison.naming import Names, Target, targets
 from amalthea_uros.services.comparison.phases import analyses_in_phases
-from amalthea_uros.services.comparison.predictions import Missing, Predictor, overhead_of
+from amalthea_uros.services.comparison.predictions import Missing, Predictor
 from amalthea_uros.services.comparison.results import (
     Agreement,
     Comparison,
     ComparisonRow,
-    DistributionRow,
     MeasuredLimit,
     Source,
-    Statistic,
 )
 from amalthea_uros.services.comparison.simulated import Run, simulate_measured
 from amalthea_uros.services.measure import MeasureOptions, measure_file
@@ -46,14 +42,12 @@ from amalthea_uros.services.timing_changes import described
 from amalthea_uros.services.what_if import Changes, as_changes
 from amalthea_uros.simulate.results import ObservedVerdict
 from amalthea_uros.timing.overheads import processes_with_overhead
-from amalthea_uros.timing.phases import unstated_phases
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.trace.table import EventKind
-from amalthea_uros.units import SECOND, Time, time_text
+from amalthea_uros.units import SECOND, Time
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    pass
 
 #: What was measured, or the trace to measure.
 Measured: TypeAlias = "Measurement | StrPath | Iterable[StrPath]"
@@ -240,14 +234,14 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
         uncertainty=uncertainty,
         rows=rows,
         limits=tuple(_with_doubt(limit, rule) for limit in judge_limits(system, settings, measurement, found)),
-        distributions=tuple(_distributions(found, rows, runs, rule, options.overheads)),
+        distributions=tuple(distributions(found, rows, runs, rule, options.overheads)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,
-        assumptions=_assumptions(measurement, found, options, analysis, simulation),
+        assumptions=assumptions_of(measurement, found, options.overheads, analysis, simulation),
     )
     of_predictions = (each.findings for each in (analysis, simulation) if each is not None)
     reported = (*measurement.findings, *(finding for each in of_predictions for finding in each))
-    own = _findings(comparison, found, _phases(system, settings))
+    own = findings_of(comparison, found, open_phases(system, settings))
     return replace(comparison, findings=tuple(dict.fromkeys((*reported, *own))))
 
 
@@ -344,136 +338,3 @@ def _not_measured(system: System, found: Sequence[Target]) -> Iterator[Compariso
                     verdict=Agreement.NOT_MEASURED,
                     reason=_WITHIN_A_JOB if starts.get(name, ...) is None else _NOT_IN_TRACE[kind],
                 )
-
-
-def _distributions(
-    found: Sequence[Target], rows: Sequence[ComparisonRow], runs: Sequence[Run], rule: Rule, overheads: Mapping[str, Time]
-) -> Iterator[DistributionRow]:
-    """The distances of all quantities of which both have the values; of several phases, the nearest one or all together."""
-    simulated = _simulated_values(runs)
-    agreeing = {
-        (row.object, row.quantity) for row in rows if row.statistic is Statistic.MEAN and row.verdict is Agreement.WITHIN
-    }
-    for target in found:
-        values = target.series.values
-        others = simulated.get((target.kind, target.name, target.quantity), ())
-        if target.reason or target.series.is_least or values is None or not len(values) or not others:
-            continue
-        added = overhead_of(target.name, target.quantity, overheads)
-        between = min((distance(values, other + added) for other in others), key=_farness)
-        is_hidden = (target.name, target.quantity) in agreeing and _differs(between, rule, target.series)
-        yield DistributionRow(
-            object=target.name, kind=target.kind, quantity=target.quantity, distance=between, is_hidden=is_hidden
-        )
-
-
-def _simulated_values(runs: Sequence[Run]) -> Mapping[tuple[Kind, str, str], list[NDArray[np.int64]]]:
-    """The values of each quantity in all runs where they differ, and those of all runs together."""
-    import numpy as np
-
-    found: dict[tuple[Kind, str, str], dict[object, NDArray[np.int64]]] = {}
-    for run in runs:
-        for each in run.values.series:
-            if each.values is not None and each.statistics is not None:
-                found.setdefault((each.kind, each.name, each.quantity), {}).setdefault(_key(each.statistics), each.values)
-    samples = {key: list(different.values()) for key, different in found.items()}
-    return {key: [*each, np.concatenate(each)] if len(each) > 1 else each for key, each in samples.items()}
-
-
-def _key(statistics: Statistics) -> tuple[object, ...]:
-    """Samples that differ in none of these are taken as equal."""
-    return statistics.min, statistics.mean, statistics.max, statistics.variance
-
-
-def _farness(between: Distance) -> tuple[Fraction, int]:
-    """Which of several distributions is nearer; those without a common value differ by their quantiles."""
-    return between.value, sum(abs(measured - simulated) for measured, simulated in between.quantiles.values())
-
-
-def _differs(between: Distance, rule: Rule, series: Series) -> bool:
-    """Whether distributions differ by more than chance, and at some quantile by more than tolerance and uncertainty."""
-    baseline = series.baseline
-    uncertainty = Fraction(rule.uncertainty) + (0 if baseline is None else baseline.max - baseline.min)
-
-    def is_far(measured: Time, simulated: Time) -> bool:
-        difference = abs(measured - simulated)
-        return difference > rule.tolerance * abs(measured) and difference > uncertainty
-
-    return between.is_significant and any(is_far(*both) for both in between.quantiles.values())
-
-
-def _phases(system: System, settings: Settings) -> tuple[str, ...]:
-    """What comes from outside with an unknown phase."""
-    return tuple(dict.fromkeys(occurrence.source for occurrence in unstated_phases(system, settings.phases)))
-
-
-def _assumptions(
-    measurement: Measurement, found: Sequence[Target], options: CompareOptions, *predictions: object
-) -> tuple[str, ...]:
-    stated = [sentence for each in predictions for sentence in getattr(each, "assumptions", ())]
-    net = list(dict.fromkeys(series.name for series in measurement.series if series.baseline is not None))
-    again = list(dict.fromkeys(target.series.name for target in found if target.is_with_baseline))
-    if subtracted := [name for name in net if name not in again]:
-        stated.append(f"the mean of a baseline was subtracted from what was measured of {', '.join(subtracted)}")
-    if again:
-        stated.append(f"the baseline of {', '.join(again)} was added again, because the predicted times include an overhead")
-    if not net and not options.overheads:
-        stated.append("no baseline was subtracted from the measured times, and no overhead was added to the predicted ones")
-    for name, overhead in options.overheads.items():
-        whose = name or "every process"
-        stated.append(f"{time_text(overhead)} of overhead were added to the predicted execution and response times of {whose}")
-    return tuple(dict.fromkeys(stated))
-
-
-# Findings.
-
-
-def _findings(comparison: Comparison, found: Sequence[Target], phases: Sequence[str]) -> Iterator[Finding]:
-    yield from _refutations(comparison)
-    yield from _unknown_names(found)
-    for row in comparison.distributions:
-        if row.is_hidden:
-            what = f"{row.quantity.replace('_', ' ')} of {row.object!r}"
-            share = f"{float(row.distance.value):.2g}"
-            message = f"the mean {what} agrees, but not its distribution (Kolmogorov-Smirnov distance {share})"
-            yield Finding("CMP003", Severity.WARNING, message, help="Compare the histograms.", object=row.object)
-    if phases:
-        yield _unknown_phases(comparison, phases)
-    if not comparison.compared:
-        message = "nothing was compared: no measured quantity is predicted"
-        yield Finding("CMP005", Severity.ERROR, message, help="Say with --map or --as what the measured objects are.")
-
-
-def _unknown_phases(comparison: Comparison, phases: Sequence[str]) -> Finding:
-    names = ", ".join(map(repr, phases))
-    is_range = comparison.seed is not None or any(row.predicted_range for row in comparison.rows)
-    what = "are ranges over several phases" if is_range else "are bounds, and no means, because there are too many phases"
-    message = f"the phase of {names} is unknown: predictions that depend on it {what}"
-    return Finding("CMP004", Severity.WARNING, message, help="State it with --phase NAME=TIME to compare more strictly.")
-
-
-def _refutations(comparison: Comparison) -> Iterator[Finding]:
-    """A finding for each quantity that was measured beyond its bounds."""
-    refuted: dict[tuple[str, str], list[str]] = {}
-    for row in comparison.rows:
-        if row.verdict is Agreement.REFUTED:
-            bound = f"{row.reason} of {time_text(row.predicted or 0)}"
-            refuted.setdefault((row.object, row.quantity), []).append(
-                f"{row.statistic} {time_text(row.measured or 0)}, {bound}"
-            )
-    for (name, quantity), found in refuted.items():
-        message = f"the model is wrong: the {quantity.replace('_', ' ')} of {name!r} was measured beyond its bounds: {'; '.join(found)}"
-        yield Finding("CMP001", Severity.ERROR, message, help=_REFUTED, object=name)
-
-
-_REFUTED = (
-    "Correct execution times, periods or overheads of the model. If the clock of the trace is less exact than its steps, say so with "
-    "--uncertainty TIME."
-)
-
-
-def _unknown_names(found: Sequence[Target]) -> Iterator[Finding]:
-    counts = Counter(target.series.name for target in found if target.is_unknown)
-    reasons = {target.series.name: target.reason for target in found if target.is_unknown}
-    for name in counts:
-        yield Finding("CMP002", Severity.WARNING, reasons[name], object=name)

@@ -204,7 +204,7 @@ def _digest(path: Path) -> str:
 
 
 def _net(found: Measurement, empty: Measurement, baselines: Mapping[str, str]) -> Measurement:
-    """A measurement with the times of the empty objects subtracted from those of others; a missing one is told."""
+    """A measurement with the times of the empty objects subtracted from those of others; a missing one is reported."""
     subtracted = Baselines(baselines, empty.series)
     series = tuple(map(subtracted.net, found.series))
     place = Location(Path(empty.source))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.problems import Place, Problems
 
-#: Bits of the class; a controller problem is told more exactly in the second byte.
+#: Bits of the class; the second byte says which problem a controller has.
 _CLASSES = {
     0x001: "timeout of a transmission",
     0x002: "lost arbitration",
