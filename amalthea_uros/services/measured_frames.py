@@ -36,12 +36,14 @@ def measured_frames(path: Path, objects: Sequence[Measurable], window: Window, c
     ReadError : the file cannot be read.
     InvalidArgumentError : there are no objects, or a package is missing.
     """
+    from amalthea_uros.trace.can.logs import open_can_log
+
     if not objects:
+        next(iter(open_can_log(path)), None)  # that a file cannot be read is said first
         raise InvalidArgumentError(_ADVICE)
     from amalthea_uros.measure.can_series import markers_of
     from amalthea_uros.measure.occurrences import Collector
     from amalthea_uros.measure.resolution import resolution_of
-    from amalthea_uros.trace.can.logs import open_can_log
 
     log = open_can_log(path, channel=channel)
     markers = list(dict.fromkeys(marker for item in objects for marker in markers_of(item)))

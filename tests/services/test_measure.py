@@ -448,3 +448,8 @@ def test_the_exit_code_says_that_nothing_was_measured():
     run = command("measure", LOG, "--start", "7FF", "--end", "7FE")
     assert run.returncode == 1
     assert "Nothing was measured" in run.stdout
+
+
+def test_a_log_that_is_missing_is_said_to_be_missing_also_without_markers(tmp_path):
+    with pytest.raises(ReadError, match="TRC001"):
+        amuros.measure(tmp_path / "missing.log")
