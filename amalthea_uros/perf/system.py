@@ -1,4 +1,4 @@
-"""A system: all six models together, and its objects by name."""
+"""A system: all models together, and its objects by name."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.perf.activities import Activity, LabelAccess, walk
 from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Event, EventChain, Events
+from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.hardware import Cache, Clock, Connection, Core, Hardware, Interconnect, Memory
 from amalthea_uros.perf.mapping import Mapping as SystemMapping
 from amalthea_uros.perf.named import Named
+from amalthea_uros.perf.network import Network, Transmission
 from amalthea_uros.perf.os import InterruptController, Os, Scheduler
 from amalthea_uros.perf.software import Channel, Label, Process, Runnable, Software
 from amalthea_uros.perf.stimuli import Stimuli, Stimulus
@@ -25,7 +27,9 @@ N = TypeVar("N", bound=Named)
 class System:
     """The generic performance model of a system.
 
-    The mappings find objects by name; where a name occurs twice, the last one counts (an extracted model has unique names).
+    Besides the models that AMALTHEA has, too, it has the executors that spin in loops, and the network: tasks and cores of the other
+    models stand for them. The mappings find objects by name; where a name occurs twice, the last one counts (an extracted model has
+    unique names).
     """
 
     hardware: Hardware = field(default_factory=Hardware)
@@ -35,6 +39,8 @@ class System:
     mapping: SystemMapping = field(default_factory=SystemMapping)
     events: Events = field(default_factory=Events)
     constraints: Constraints = field(default_factory=Constraints)
+    executors: tuple[Executor, ...] = ()
+    network: Network = field(default_factory=Network)
 
     def __repr__(self) -> str:
         parts = (
@@ -133,6 +139,16 @@ class System:
     def chains(self) -> Mapping[str, EventChain]:
         """The event chains."""
         return _by_name(self.events.chains)
+
+    @cached_property
+    def executor_of_task(self) -> Mapping[str, Executor]:
+        """The executors that spin in loops, by the tasks that execute their rounds."""
+        return {executor.task: executor for executor in self.executors}
+
+    @cached_property
+    def transmissions(self) -> Mapping[str, Transmission]:
+        """The messages on wires, by the tasks that stand for them."""
+        return _by_name(self.network.transmissions)
 
 
 def _by_name(objects: Iterable[N]) -> dict[str, N]:

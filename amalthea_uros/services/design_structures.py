@@ -19,7 +19,7 @@ from amalthea_uros.services.description_edits.edit import edit_description
 from amalthea_uros.services.inputs import SystemInput, described_input
 from amalthea_uros.services.paths import is_description
 from amalthea_uros.services.subject import Subject, paths_of
-from amalthea_uros.spec.middleware import Executor
+from amalthea_uros.spec.executors import Executor
 from amalthea_uros.uros.callbacks import Callback, callbacks_of, registration_order
 from amalthea_uros.uros.notes import Notes
 

@@ -9,7 +9,7 @@ from pydantic import Field
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.os import Overhead
 from amalthea_uros.spec.section import Section
-from amalthea_uros.spec.values import Duration, Name, Offset, Priority, Rate, Size, described
+from amalthea_uros.spec.values import Count, Duration, Name, Offset, Priority, Rate, Size, described
 
 Reliability = Annotated[
     Literal["reliable", "best-effort"],
@@ -20,7 +20,14 @@ Reliability = Annotated[
 ]
 
 
-_PLACES = described(own_task="In a separate task.", executor="In the task of the executor.")
+_INVOCATIONS = described(
+    on_new_data="When a message has arrived.",
+    always="In every round whose trigger condition is true, with or without a message.",
+)
+_HISTORIES = described(
+    keep_last="Of more messages than `depth`, the oldest one is overwritten.",
+    keep_all="Of more messages than `depth`, the new one is dropped.",
+)
 _CONDITIONS = described(
     activated="In every activation of its task.",
     due="Only in the activations of its task in which it is due.",
@@ -42,8 +49,9 @@ class Callback(Section):
     """Topics of its node that it publishes to."""
     requests: list[Name] = Field(default_factory=list)
     """Clients of its node that it sends requests with."""
-    runs_in: Annotated[Literal["own-task", "executor"], _PLACES] | None = None
-    """Where it runs; default: `callbacks` of the executor."""
+    runs_in: Annotated[Name, Field(examples=["own-task", "executor"])] | None = None
+    """Where it runs: `own-task`, a separate task; `executor`, the first executor; or the name of an executor; default: that of its
+    node, else `callbacks` of the executor."""
     task_period: Duration | None = None
     """Period of its task; default: the longest available period that the rules allow."""
     runs_when: Annotated[Literal["activated", "due"], _CONDITIONS] | None = None
@@ -73,6 +81,10 @@ class MessageCallback(Callback):
     """Minimum time between two messages; the reciprocal of `rate`."""
     buffer: Name | None = None
     """Label in which the executor passes the message on; default: the name followed by `_message`."""
+    depth: Count | None = None
+    """Depth of the history of its quality of service; default: 10 if reliable, 5 if best effort."""
+    history: Annotated[Literal["keep-last", "keep-all"], _HISTORIES] = "keep-last"
+    """What happens to messages beyond `depth`."""
 
 
 class Subscription(MessageCallback):
@@ -84,8 +96,19 @@ class Subscription(MessageCallback):
     """Size of a message, without headers."""
     jitter: Duration | None = None
     """Maximum delay of a message against its nominal time, shorter than `interval`; default: messages arrive regularly."""
+    invocation: Annotated[Literal["on-new-data", "always"], _INVOCATIONS] = "on-new-data"
+    """When its callback is called."""
     reliability: Reliability = "reliable"
     """Quality of service."""
+
+
+class GuardCondition(Callback):
+    """A guard condition that the application triggers, with its callback."""
+
+    interval: Duration | None = None
+    """Minimum time between two triggers."""
+    rate: Rate | None = None
+    """Maximum rate of triggers; the reciprocal of `interval`."""
 
 
 class Timer(Callback):
@@ -128,6 +151,62 @@ class Client(MessageCallback):
     """Size of a response, without headers."""
 
 
+class ActionServer(MessageCallback):
+    """An action server: three services and a timer of the middleware behind one handle."""
+
+    goal_size: Size
+    """Size of a goal, without headers."""
+    result_size: Size
+    """Size of a result, without headers."""
+    feedback_size: Size
+    """Size of a feedback message, without headers."""
+
+
+class ActionClient(MessageCallback):
+    """An action client: three clients and two subscriptions of the middleware behind one handle."""
+
+    action: Name
+    """Action that it sends goals to."""
+    goal_size: Size
+    """Size of a goal, without headers."""
+    result_size: Size
+    """Size of a result, without headers."""
+    feedback_size: Size
+    """Size of a feedback message, without headers."""
+
+
+class ParameterServer(Section):
+    """The parameter server of a node: six services, and a publisher for changes."""
+
+    execution_time: ExecutionTime
+    """Execution time of answering a request."""
+    rate: Rate | None = None
+    """Maximum rate of requests."""
+    interval: Duration | None = None
+    """Minimum time between two requests; the reciprocal of `rate`."""
+    events: bool = True
+    """Whether it publishes changes of parameters."""
+    low_memory: bool = False
+    """Whether it is built for little memory."""
+    runs_in: Name | None = None
+    """The executor that serves it; default: that of its node."""
+
+
+class Lifecycle(Section):
+    """The services of a lifecycle node."""
+
+    services: Annotated[int, Field(strict=True, ge=1, le=3)] = 3
+    """Number of services that are added to the executor."""
+    execution_time: ExecutionTime
+    """Execution time of answering a request."""
+    rate: Rate | None = None
+    """Maximum rate of requests."""
+    interval: Duration | None = None
+    """Minimum time between two requests; the reciprocal of `rate`."""
+    runs_in: Name | None = None
+    """The executor that serves them; default: that of its node."""
+
+
 class Node(Section):
     """A node."""
 
@@ -135,6 +214,8 @@ class Node(Section):
     """Name of the node."""
     core: Name | None = None
     """Core of its callbacks; default: the first core."""
+    runs_in: Annotated[Name, Field(examples=["own-task", "executor"])] | None = None
+    """Where its callbacks run, unless they say otherwise: `own-task`, `executor`, or the name of an executor."""
     subscriptions: list[Subscription] = Field(default_factory=list)
     """Its subscriptions."""
     publishers: list[Publisher] = Field(default_factory=list)
@@ -145,6 +226,16 @@ class Node(Section):
     """Its service servers."""
     clients: list[Client] = Field(default_factory=list)
     """Its service clients."""
+    guard_conditions: list[GuardCondition] = Field(default_factory=list)
+    """Its guard conditions."""
+    action_servers: list[ActionServer] = Field(default_factory=list)
+    """Its action servers."""
+    action_clients: list[ActionClient] = Field(default_factory=list)
+    """Its action clients."""
+    parameter_server: ParameterServer | None = None
+    """Its parameter server."""
+    lifecycle: Lifecycle | None = None
+    """Its lifecycle services."""
 
 
 class Application(Section):

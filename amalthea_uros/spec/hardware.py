@@ -6,6 +6,8 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import BeforeValidator, Field
 
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.spec.os import Os
 from amalthea_uros.spec.section import Section, Shorthand
 from amalthea_uros.spec.values import WHOLE_NUMBER, CountOrNone, Name, Rate, Size, described, unexpected
 
@@ -52,6 +54,17 @@ _MEMORY_KINDS = described(
 )
 
 
+class Latencies(Section):
+    """Core cycles of accesses to a memory from certain cores."""
+
+    cores: list[Name] = Field(min_length=1)
+    """Cores that it holds for."""
+    read_cycles: CountOrNone
+    """Core cycles per read access."""
+    write_cycles: CountOrNone
+    """Core cycles per write access."""
+
+
 class Memory(Section):
     """A memory."""
 
@@ -65,6 +78,8 @@ class Memory(Section):
     """Core cycles per read access."""
     write_cycles: CountOrNone | None = None
     """Core cycles per write access."""
+    accesses: list[Latencies] = Field(default_factory=list)
+    """Core cycles per access where they depend on the core: a memory of one core is slower for the others."""
 
 
 class Hardware(Shorthand):
@@ -103,5 +118,11 @@ class Platform(Section):
     """Name by which execution times refer to it."""
     hardware: Hardware
     """The hardware itself."""
+    os: Os = Field(default_factory=Os)
+    """The operating system that is usual on it; keys of the application override it."""
+    middleware: Middleware = Field(default_factory=Middleware)
+    """The generic micro-ROS model as ported to it; keys of the application override it, key by key."""
+    ram_budget: Size | None = None
+    """Memory that is left for micro-ROS: its pools, heap and stacks."""
     source: str | None = None
     """Source of the figures."""

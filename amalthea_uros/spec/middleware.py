@@ -1,4 +1,4 @@
-"""The generic micro-ROS model: executor, transport and limits of the middleware, as ported to a platform."""
+"""The generic micro-ROS model: executors, transport and limits of the middleware, as ported to a platform."""
 
 from __future__ import annotations
 
@@ -6,152 +6,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from amalthea_uros.spec.execution_time import ExecutionTime
-from amalthea_uros.spec.os import Overhead
+from amalthea_uros.spec.executors import Executor, MessageCost
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import (
-    BitRate,
-    CanIdentifier,
-    Count,
-    CountOrNone,
-    Duration,
-    Name,
-    Offset,
-    Priority,
-    Size,
-    SizeOrNothing,
-    described,
-)
-
-
-class MessageCost(Shorthand):
-    """Execution time per message: a time, or a fixed part and a part per byte."""
-
-    shorthand = ("fixed",)
-    plain_value = "The same execution time for every message."
-    nested = ExecutionTime
-
-    fixed: ExecutionTime | None = None
-    """Execution time per message, independent of its size."""
-    per_byte: Offset = 0
-    """Additional execution time per byte of the message."""
-
-
-class ExecutorCost(Shorthand):
-    """Execution time of an activation of the executor: a time, or parts that depend on the callbacks and messages to serve."""
-
-    shorthand = ("base",)
-    plain_value = "The same execution time in every activation of the executor."
-    nested = ExecutionTime
-
-    base: ExecutionTime | None = None
-    """Execution time of every activation."""
-    per_ready_callback: ExecutionTime | None = None
-    """Additional execution time per ready callback."""
-    per_message: MessageCost = Field(default_factory=MessageCost)
-    """Additional execution time per message taken."""
-    per_timer: ExecutionTime | None = None
-    """Additional execution time per timer, in every activation."""
-
-
-_TRIGGERS = described(any="As soon as any callback is ready.", all="When all callbacks are ready.")
-
-
-class Trigger(Shorthand):
-    """When the executor runs its callbacks: `any`, `all`, or `{one: NAME}`."""
-
-    shorthand = ("when",)
-    plain_value = "`any`: as soon as any callback is ready; `all`: when all callbacks are ready."
-
-    when: Annotated[Literal["any", "all"], _TRIGGERS] = "any"
-    """`any`: as soon as any callback is ready; `all`: when all callbacks are ready."""
-    one: Name | None = None
-    """As soon as this callback is ready."""
-
-
-_PLACES = described(
-    own_task="Each callback in a separate task.",
-    in_executor="One after the other in the task of the executor.",
-)
-_SEMANTICS = described(
-    ROS="Each message is taken just before its callback runs.",
-    LET="All messages are taken before the first callback runs (logical execution time).",
-)
-
-
-class Executor(Section):
-    """The task that serves the middleware and notifies or runs callbacks."""
-
-    name: Name = "Executor_Task"
-    """Name of the task."""
-    period: Duration | None = None
-    """Period of its activation; default: the longest available period that is not longer than the interval of any callback."""
-    offset: Offset = 0
-    """Time of the first activation."""
-    priority: Priority | None = None
-    """Priority of its task; default: rate monotonic, above all other tasks with the same period."""
-    core: Name | None = None
-    """Core of its task; default: the first core."""
-    deadline: Duration | None = None
-    """Deadline relative to the activation."""
-    overhead: Overhead | None = None
-    """Overhead of the operating system per job; default: that of `os`."""
-    execution_time: ExecutorCost = Field(default_factory=ExecutorCost)
-    """Execution time of an activation."""
-    callbacks: Annotated[Literal["own-task", "in-executor"], _PLACES] = "own-task"
-    """Where callbacks without `runs_in` run: each in a separate task, or one after the other in the executor."""
-    order: list[Name] = Field(default_factory=list)
-    """Order in which callbacks were added to the executor; callbacks not listed follow in the order of the file."""
-    semantics: Annotated[Literal["ROS", "LET"], _SEMANTICS] = "ROS"
-    """`ROS`: each message is taken just before its callback runs; `LET`: all messages are taken before the first callback runs."""
-    trigger: Trigger = Field(default_factory=Trigger)
-    """Condition under which callbacks in the executor run."""
-
-
-class Interrupt(Shorthand):
-    """The interrupt service routine that receives a frame: its execution time, or a mapping with more."""
-
-    name: Name = "CAN_Receive"
-    """Name of the interrupt service routine."""
-    execution_time: ExecutionTime
-    """Execution time per frame."""
-    priority: Priority = 1
-    """Priority among interrupt service routines."""
-    core: Name | None = None
-    """Core that it runs on; default: the core of the executor."""
-    overhead: Overhead | None = None
-    """Overhead of the operating system per job; default: that of `os`."""
-
-    shorthand = ("execution_time",)
-    plain_value = "Execution time per frame."
-    nested = ExecutionTime
-
-
-_FRAME_FORMATS = described(standard="Identifiers of 11 bits.", extended="Identifiers of 29 bits.")
-
-
-class Can(Section):
-    """XRCE-DDS over CAN: frames of a header byte and up to 7 bytes of data."""
-
-    bitrate: BitRate
-    """Bit rate of the bus."""
-    identifier: Annotated[Literal["standard", "extended"], _FRAME_FORMATS] = "standard"
-    """`standard`: identifiers of 11 bits; `extended`: 29 bits."""
-    identifiers: dict[Name, CanIdentifier] = Field(default_factory=dict)
-    """Identifiers of messages, e.g. `{odometry_topic: 0x120, lift_request: 0x80}`; all others have one that loses against these."""
-    interrupt: Interrupt | None = None
-    """The interrupt for each received frame; if omitted, its cost is part of other execution times."""
-
-
-class Transport(Section):
-    """The transport between the controller and the agent."""
-
-    can: Can | None = None
-    """The CAN bus, if messages are sent over CAN."""
-    overhead: SizeOrNothing = 12 * 8
-    """Overhead of XRCE-DDS per message: message header, submessage header and object ids; default: 12 B."""
-    acknowledgement: Duration | None = None
-    """Maximum time until a reliable message is acknowledged."""
+from amalthea_uros.spec.transports import Agent, Transport
+from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, Priority, Size, described
 
 
 class ResponseTime(Shorthand):
@@ -205,19 +63,55 @@ _POLICIES = described(
 )
 
 
+class Reliable(Section):
+    """How reliable messages are sent."""
+
+    waits: bool = True
+    """Whether a publishing callback waits until the agent has acknowledged its message; `false` for ports that do not."""
+    timeout: Duration | None = None
+    """Time after which it gives up; default: that of the middleware, `RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT` for XRCE-DDS."""
+
+
+class MiddlewareTask(Section):
+    """A task or thread of the middleware, beside the executors."""
+
+    name: Name
+    """Name of the task, as the middleware calls it: see `amuros explain` of its profile."""
+    priority: Priority | None = None
+    """Its priority; default: that of the profile."""
+    core: Name | None = None
+    """Its core; default: that of the first executor."""
+    execution_time: MessageCost | None = None
+    """Execution time per message."""
+    stack: Size | None = None
+    """Its stack."""
+
+
 class Middleware(Section):
     """The generic micro-ROS model of a platform."""
 
+    profile: Name = "xrce-dds"
+    """The middleware: `xrce-dds`, `zenoh-pico`, or a file that describes another one."""
     policy: Annotated[Literal["FixedPriorityPreemptive", "OSEK"], _POLICIES] = "FixedPriorityPreemptive"
     """Scheduling policy of the operating system."""
     task_periods: list[Duration] = Field(default_factory=list)
     """Available task periods; if omitted, any period is available."""
     executor: Executor = Field(default_factory=Executor)
-    """The executor."""
+    """The executor, if there is only one."""
+    executors: list[Executor] = Field(default_factory=list)
+    """The executors, if there are several; the first one serves callbacks that name no other."""
+    multithread: bool = False
+    """Whether the middleware is built for several threads: then they share its session, one at a time."""
     publish: MessageCost = Field(default_factory=MessageCost)
     """Execution time of publishing a message, added to that of the callback."""
+    reliable: Reliable = Field(default_factory=Reliable)
+    """How reliable messages are sent."""
+    tasks: list[MiddlewareTask] = Field(default_factory=list)
+    """Tasks or threads of the middleware."""
     transport: Transport = Field(default_factory=Transport)
     """The transport to the agent."""
+    agent: Agent = Field(default_factory=Agent)
+    """The agent, or the router of the middleware."""
     initialisation: Initialisation = Field(default_factory=Initialisation)
     """Creation of the entities."""
     limits: PoolSizes = Field(default_factory=PoolSizes)

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import OffsetOrNumberZero, described
+from amalthea_uros.spec.values import Duration, Name, OffsetOrNumberZero, described
 
 
 class OverheadTime(ExecutionTime):
@@ -61,8 +61,23 @@ class OsOverhead(Section):
     """Time per execution of an interrupt service routine."""
 
 
+_STACKS = described(per_task="Each task has its own.", shared="All tasks of a core share one.")
+_DIRECTIONS = described(
+    higher_is_more_urgent="The highest number is the most urgent priority: FreeRTOS, NuttX, OSEK, POSIX.",
+    lower_is_more_urgent="The lowest number is the most urgent priority: Zephyr.",
+)
+
+
 class Os(Section):
     """The operating system."""
 
+    rtos: Annotated[Name, Field(examples=["freertos", "zephyr", "nuttx", "bare-metal", "osek", "posix"])] | None = None
+    """The operating system by name, or a file that describes it; default: that of the platform."""
+    tick: Duration | None = None
+    """Its tick, in which delays and timeouts are counted; default: that of the operating system."""
+    stack: Annotated[Literal["per-task", "shared"], _STACKS] | None = None
+    """Whether tasks have stacks of their own; default: that of the operating system."""
+    priorities: Annotated[Literal["higher-is-more-urgent", "lower-is-more-urgent"], _DIRECTIONS] | None = None
+    """What priorities in this file mean; default: that of the operating system, else `higher-is-more-urgent`."""
     overhead: OsOverhead = Field(default_factory=OsOverhead)
     """What it costs to activate and end tasks and interrupt service routines; default: nothing."""

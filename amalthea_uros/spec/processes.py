@@ -17,6 +17,7 @@ from amalthea_uros.spec.values import (
     Name,
     Offset,
     Priority,
+    Size,
     SizeOrNothing,
     described,
 )
@@ -111,6 +112,8 @@ class Process(Steps):
     """Overhead of the operating system per job; default: that of `os`."""
     runnables: list[Runnable] = Field(default_factory=list)
     """Its functions, in order; unnecessary for a process with one function."""
+    stack: Size | None = None
+    """Its stack; for tasks that share one stack: the most that it uses itself."""
 
 
 _PREEMPTIONS = described(

@@ -104,10 +104,11 @@ def attach_locations(value: Any, node: Node, source: Source) -> None:
     """Attach their locations to a section and everything in it."""
     if isinstance(value, Section) and isinstance(node, Mapping):
         value._where = node, source
+        # A section that is not given, or given as a shorthand, has the location of the outer one; in a shorthand also its keys.
+        outer = node if isinstance(value, Shorthand) else Mapping(node.place, {}, {})
         for name, field in type(value).model_fields.items():
-            # A section that is not given, or given as a shorthand, has the location of the outer one.
-            inner = node.items.get(field.alias or name, node)
-            if inner is not node or isinstance(getattr(value, name), Section):
+            inner = node.items.get(field.alias or name, outer)
+            if inner is not outer or isinstance(getattr(value, name), Section):
                 attach_locations(getattr(value, name), inner, source)
     elif isinstance(value, Section):
         attach_locations(value, Mapping(node.place, {}, {}), source)

@@ -161,6 +161,8 @@ Size: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_positive), _text_sc
 SizeOrNothing: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_not_negative), _text_schema(units.DATA_SIZE, zero=True)]
 #: A bit rate above zero, in bits per second.
 BitRate: TypeAlias = Annotated[int, _BIT_RATE, AfterValidator(_positive), _text_schema(units.BIT_RATE)]
+#: Symbols per second of a serial line, as everybody writes it: without a unit.
+BaudRate: TypeAlias = Annotated[int, Field(strict=True, ge=300, le=100_000_000)]
 #: Name of an object.
 Name: TypeAlias = Annotated[
     str,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.software import Runnable
-from amalthea_uros.spec.middleware import Interrupt
+from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.units import Time
 from amalthea_uros.uros.activities import activity_sequence
 from amalthea_uros.uros.bus_messages import BusMessage, bus_of, receive_stimulus

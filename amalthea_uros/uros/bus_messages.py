@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros.perf.stimuli import Burst, Periodic, Stimulus
-from amalthea_uros.spec.middleware import Can, Transport
+from amalthea_uros.spec.transports import Can, Transport
 from amalthea_uros.units import SECOND, DataSize, Time
 from amalthea_uros.uros.callbacks import Callback, Message
 from amalthea_uros.uros.can import FRAME_BYTES, CanBus, Identifier, frames, max_message_bits, transmission_time

@@ -10,7 +10,7 @@ from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.software import Channel
 from amalthea_uros.spec.application import Application, Client, MessageCallback, Node, Service, Subscription, Timer
 from amalthea_uros.spec.application import Callback as Section
-from amalthea_uros.spec.middleware import Executor
+from amalthea_uros.spec.executors import Executor
 from amalthea_uros.units import SECOND, DataSize, Frequency, Time
 from amalthea_uros.uros.notes import Notes
 

@@ -18,7 +18,8 @@ from amalthea_uros.perf.activities import AccessKind, Activity, Call, LabelAcces
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.spec.execution_time import ExecutionTime
-from amalthea_uros.spec.middleware import Executor, MessageCost, Middleware
+from amalthea_uros.spec.executors import Executor, MessageCost
+from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import DataSize, Time
 from amalthea_uros.uros.callbacks import Callback, CallbackKind
 from amalthea_uros.uros.demand import DemandConverter

@@ -11,7 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.spec.middleware import Executor, Middleware
+from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.callbacks import Callback, CallbackKind
 from amalthea_uros.uros.demand import DemandConverter

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from amalthea_uros.perf.stimuli import Arrivals, Counter
-from amalthea_uros.spec.middleware import Executor
+from amalthea_uros.spec.executors import Executor
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.notes import Notes

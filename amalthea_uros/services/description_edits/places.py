@@ -16,8 +16,9 @@ from amalthea_uros.services.description_edits.yaml_values import Value
 from amalthea_uros.spec.application import Callback, MessageCallback, Timer
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.execution_time import ExecutionTime
-from amalthea_uros.spec.middleware import Executor, Interrupt
+from amalthea_uros.spec.executors import Executor
 from amalthea_uros.spec.processes import Process
+from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.units import SECOND, Time, data_size_text, parse_time, time_text
 from amalthea_uros.uros import callbacks as uros
 from amalthea_uros.uros.executor import message_cost, timer_count

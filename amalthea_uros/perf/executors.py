@@ -1,0 +1,178 @@
+"""Executors: threads that wait for messages and timers in a loop, and call what is ready, one callback after the other.
+
+An executor stands for itself here, as its rounds cannot be told by a stimulus: when the next one begins depends on the one before, on
+what has arrived, and on what the thread waits for. In `software`, its task executes one round per job.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from amalthea_uros.perf.named import Brief, Named
+from amalthea_uros.units import Time
+
+
+class LoopKind(StrEnum):
+    """What a thread calls in its endless loop."""
+
+    SPIN_SOME = "spin_some"
+    SPIN_PERIOD = "spin_period"
+    SPIN = "spin"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loop(Brief):
+    """The loop of a thread.
+
+    Attributes
+    ----------
+    timeout : of each wait
+    sleep : after each round, for `spin_some`; 0 for a bare loop
+    period : of `spin_period`; None for the others
+    """
+
+    kind: LoopKind
+    timeout: Time
+    sleep: Time = 0
+    period: Time | None = None
+
+
+class HandleKind(StrEnum):
+    """What a handle of an executor is."""
+
+    SUBSCRIPTION = "subscription"
+    TIMER = "timer"
+    SERVICE = "service"
+    CLIENT = "client"
+    GUARD_CONDITION = "guard condition"
+    ACTION_SERVER = "action server"
+    ACTION_CLIENT = "action client"
+    PARAMETER_SERVICE = "parameter service"
+    LIFECYCLE_SERVICE = "lifecycle service"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Publication(Brief):
+    """A message that a callback sends.
+
+    Attributes
+    ----------
+    transmission : what it is on the wire; None if no wire is described
+    acknowledgement : the transmission that acknowledges it; None if nothing does
+    waits : whether the callback waits for the acknowledgement
+    timeout : after which it gives up; None if it does not wait
+    """
+
+    topic: str
+    transmission: str | None = None
+    reliable: bool = False
+    acknowledgement: str | None = None
+    waits: bool = False
+    timeout: Time | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Handle(Named):
+    """A handle of an executor: what makes a callback ready, and the callback.
+
+    Attributes
+    ----------
+    runnable : the callback
+    take : the runnable that takes its message; None if that costs nothing
+    interval : minimum time between two messages or requests, before `jitter`; the period of a timer; None if it is not known
+    jitter : maximum delay of a message against its nominal time when it reaches the controller, besides that of the wire
+    is_periodic : whether messages come regularly, every `interval`; timers always are
+    phase : time of the first message or expiration; None if it is not known
+    transmission : what brings its messages; None if no wire is described
+    always : whether it is called in every round in which the trigger is true
+    depth : most messages that are kept for it; None for timers and guard conditions
+    overwrites : whether a message beyond `depth` overwrites the oldest one, or is dropped itself
+    reliable : whether its messages are sent again until they are acknowledged
+    sources : entities of the middleware behind it, which are added to the wait set: 1, or several for actions
+    """
+
+    kind: HandleKind
+    runnable: str
+    take: str | None = None
+    interval: Time | None = None
+    jitter: Time = 0
+    is_periodic: bool = True
+    phase: Time | None = None
+    transmission: str | None = None
+    always: bool = False
+    depth: int | None = None
+    overwrites: bool = True
+    reliable: bool = False
+    sources: int = 1
+    publications: tuple[Publication, ...] = ()
+
+
+class TriggerKind(StrEnum):
+    """When the callbacks of a round are called."""
+
+    ANY = "any"
+    ALL = "all"
+    ONE = "one"
+    ALWAYS = "always"
+    CUSTOM = "custom"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TriggerCondition(Brief):
+    """The trigger condition of an executor.
+
+    Attributes
+    ----------
+    sets : for `one` and `custom`: it is true when all handles of one of these sets are ready; names of handles
+    """
+
+    kind: TriggerKind = TriggerKind.ANY
+    sets: tuple[frozenset[str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Waiting(Brief):
+    """How the middleware waits for an executor.
+
+    Attributes
+    ----------
+    messages_per_wait : most messages that a wait takes from the wire; None for all that are there
+    resolution : the timeout is cut to whole multiples of it, so that a wait can end earlier than a timer is due; 0 for none
+    stored_data_ends_wait : whether data that are stored already end the wait at once
+    guard_conditions_end_wait : whether a guard condition ends the wait
+    polls_without_messages : whether the wait of an executor that only has timers and guard conditions returns at once
+    slots : messages that can be stored for all handles together; None for no limit
+    default_timeout : of executors for which nobody set one
+    """
+
+    messages_per_wait: int | None = 1
+    resolution: Time = 10**9
+    stored_data_ends_wait: bool = False
+    guard_conditions_end_wait: bool = False
+    polls_without_messages: bool = True
+    slots: int | None = 8
+    default_timeout: Time = 10**12
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Executor(Named):
+    """An executor that spins in a loop.
+
+    Attributes
+    ----------
+    task : that executes its rounds, one per job
+    spin : the runnable that every round begins with
+    handles : in the order in which they were added, which is that in which callbacks are called
+    takes_first : whether all messages of a round are taken before the first callback (LET semantics)
+    session : executors with the same one, of a middleware for several threads, exclude each other while they wait or send
+    """
+
+    task: str
+    spin: str
+    loop: Loop
+    handles: tuple[Handle, ...] = ()
+    trigger: TriggerCondition = field(default_factory=TriggerCondition)
+    takes_first: bool = False
+    waiting: Waiting = field(default_factory=Waiting)
+    session: str | None = None

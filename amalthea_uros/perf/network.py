@@ -1,0 +1,103 @@
+"""The network: wires between the controller and others, what is sent on them, and what lies behind them.
+
+In `hardware`, a wire is a core whose clock is its bit rate, and in `software` each message on it is a task of that core, so that both
+have response times and loads as others have. This model says what these cores and tasks are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from amalthea_uros.perf.named import Brief, Named
+from amalthea_uros.units import Time
+
+
+class WireKind(StrEnum):
+    """What a wire is."""
+
+    CAN = "CAN"
+    CAN_FD = "CAN FD"
+    SERIAL = "serial"
+    UDP = "UDP"
+    TCP = "TCP"
+    USB_CDC = "USB CDC"
+    CUSTOM = "custom"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Span(Brief):
+    """The least and the greatest of a time; None for a maximum that is not known."""
+
+    least: Time = 0
+    most: Time | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wire(Named):
+    """A wire.
+
+    Attributes
+    ----------
+    cores : that stand for it: one per direction if both can send at the same time, else one
+    """
+
+    kind: WireKind
+    cores: tuple[str, ...]
+
+
+class Direction(StrEnum):
+    """Where a message goes."""
+
+    TO_CONTROLLER = "to the controller"
+    TO_AGENT = "to the agent"
+
+
+class Purpose(StrEnum):
+    """What a message on a wire is for."""
+
+    DATA = "data"
+    ACKNOWLEDGEMENT = "acknowledgement"
+    HEARTBEAT = "heartbeat"
+    FOREIGN = "foreign"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Transmission(Named):
+    """A message on a wire; its name is that of the task that stands for it.
+
+    Attributes
+    ----------
+    topic : or service; None for acknowledgements, heartbeats and foreign frames
+    callback : that receives or sends it
+    length : in bytes, of the message of the middleware with its headers
+    link : time besides that on the core of the wire: in switches, access points, and until a host polls
+    driver : time in the driver of the controller, when sending or receiving it, that is not execution time, such as waiting for ticks
+    processes : that a message passes before the executor sees it: interrupt service routines, then tasks of the middleware
+    agent : time in the agent: from the host to the wire, from the wire to the host, or from a message to its acknowledgement
+    """
+
+    wire: str
+    direction: Direction
+    purpose: Purpose = Purpose.DATA
+    topic: str | None = None
+    callback: str | None = None
+    length: int = 0
+    link: Span = field(default_factory=lambda: Span(most=0))
+    driver: Span = field(default_factory=lambda: Span(most=0))
+    processes: tuple[str, ...] = ()
+    agent: Span = field(default_factory=Span)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Network(Brief):
+    """The network of a system.
+
+    Attributes
+    ----------
+    agent : name of what is behind the wires
+    """
+
+    wires: tuple[Wire, ...] = ()
+    transmissions: tuple[Transmission, ...] = ()
+    agent: str = "Agent"

@@ -1,0 +1,138 @@
+"""Executors: the tasks or threads that serve the middleware, and how they wait for messages and timers."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from amalthea_uros.spec.execution_time import ExecutionTime
+from amalthea_uros.spec.os import Overhead
+from amalthea_uros.spec.section import Section, Shorthand
+from amalthea_uros.spec.values import Count, Duration, Name, Offset, Priority, Size, described, problem
+
+
+class MessageCost(Shorthand):
+    """Execution time per message: a time, or a fixed part and a part per byte."""
+
+    shorthand = ("fixed",)
+    plain_value = "The same execution time for every message."
+    nested = ExecutionTime
+
+    fixed: ExecutionTime | None = None
+    """Execution time per message, independent of its size."""
+    per_byte: Offset = 0
+    """Additional execution time per byte of the message."""
+
+
+class ExecutorCost(Shorthand):
+    """Execution time of an activation of the executor: a time, or parts that depend on the callbacks and messages to serve."""
+
+    shorthand = ("base",)
+    plain_value = "The same execution time in every activation of the executor."
+    nested = ExecutionTime
+
+    base: ExecutionTime | None = None
+    """Execution time of every activation."""
+    per_ready_callback: ExecutionTime | None = None
+    """Additional execution time per ready callback."""
+    per_message: MessageCost = Field(default_factory=MessageCost)
+    """Additional execution time per message taken."""
+    per_timer: ExecutionTime | None = None
+    """Additional execution time per timer, in every activation."""
+    per_handle: ExecutionTime | None = None
+    """Additional execution time per handle, in every activation: the wait set is filled anew each time."""
+
+
+_TRIGGERS = described(
+    any="As soon as any callback is ready.",
+    all="When all callbacks are ready.",
+    always="In every round, ready or not.",
+)
+
+
+class Trigger(Shorthand):
+    """When the executor runs its callbacks: `any`, `all`, `always`, `{one: NAME}`, or `{custom: [[NAME, ...], ...]}`."""
+
+    shorthand = ("when",)
+    plain_value = "`any`: as soon as any callback is ready; `all`: when all callbacks are ready; `always`: in every round."
+
+    when: Annotated[Literal["any", "all", "always"], _TRIGGERS] = "any"
+    """`any`: as soon as any callback is ready; `all`: when all callbacks are ready; `always`: in every round."""
+    one: Name | None = None
+    """As soon as this callback is ready."""
+    custom: Annotated[list[Annotated[list[Name], Field(min_length=1)]], Field(min_length=1)] | None = None
+    """As soon as all callbacks of one of these sets are ready: what a trigger function of the application returns."""
+
+
+class Loop(Section):
+    """How the thread of an executor spins: exactly one of `spin_some`, `spin_period` and `spin`."""
+
+    spin_some: Offset | None = None
+    """Timeout of `rclc_executor_spin_some` in an endless loop; `sleep` follows each call."""
+    sleep: Offset = 0
+    """Time that the thread sleeps after each `spin_some`; default: none, a bare loop."""
+    spin_period: Duration | None = None
+    """Period of `rclc_executor_spin_period`, which waits for `timeout`, not for the period."""
+    spin: Duration | None = None
+    """Timeout of `rclc_executor_spin`, an endless `spin_some`; that of rclc is `1 s`."""
+    timeout: Duration | None = None
+    """Timeout of the executor, with `spin_period`; default: that of the middleware, 1 s for rclc."""
+
+    @model_validator(mode="after")
+    def _is_one_of_three(self) -> Self:
+        stated = [key for key in ("spin_some", "spin_period", "spin") if getattr(self, key) is not None]
+        if len(stated) != 1:
+            raise problem(
+                f"expected one of 'spin_some', 'spin_period' and 'spin', found {' and '.join(map(repr, stated)) or 'none'}"
+            )
+        for key, needed in (("sleep", "spin_some"), ("timeout", "spin_period")):
+            if key in self.model_fields_set and needed not in stated:
+                raise problem(f"{key!r} has no effect without {needed!r}")
+        return self
+
+
+_PLACES = described(
+    own_task="Each callback in a separate task.",
+    in_executor="One after the other in the task of the executor.",
+)
+_SEMANTICS = described(
+    ROS="Each message is taken just before its callback runs.",
+    LET="All messages are taken before the first callback runs (logical execution time).",
+)
+
+
+class Executor(Section):
+    """The task or thread that serves the middleware and notifies or runs callbacks."""
+
+    name: Name = "Executor_Task"
+    """Name of the task."""
+    period: Duration | None = None
+    """Period of its activation; default: the longest available period that is not longer than the interval of any callback."""
+    offset: Offset = 0
+    """Time of the first activation."""
+    priority: Priority | None = None
+    """Priority of its task; default: rate monotonic, above all other tasks with the same period."""
+    core: Name | None = None
+    """Core of its task; default: the first core."""
+    deadline: Duration | None = None
+    """Deadline relative to the activation."""
+    overhead: Overhead | None = None
+    """Overhead of the operating system per job; default: that of `os`."""
+    loop: Loop | None = None
+    """How its thread spins; without it, its task is activated with `period`."""
+    max_handles: Count | None = None
+    """Number of handles that `rclc_executor_init` gets; default: as many as it has."""
+    stack: Size | None = None
+    """Stack of its thread or task."""
+    execution_time: ExecutorCost = Field(default_factory=ExecutorCost)
+    """Execution time of an activation."""
+    callbacks: Annotated[Literal["own-task", "in-executor"], _PLACES] = "own-task"
+    """Where callbacks without `runs_in` run: each in a separate task, or one after the other in the executor; default: `in-executor`
+    for an executor with a `loop`, else what the platform says, `own-task` if it says nothing."""
+    order: list[Name] = Field(default_factory=list)
+    """Order in which callbacks were added to the executor; callbacks not listed follow in the order of the file."""
+    semantics: Annotated[Literal["ROS", "LET"], _SEMANTICS] = "ROS"
+    """`ROS`: each message is taken just before its callback runs; `LET`: all messages are taken before the first callback runs."""
+    trigger: Trigger = Field(default_factory=Trigger)
+    """Condition under which callbacks in the executor run."""

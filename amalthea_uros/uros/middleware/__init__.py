@@ -1,0 +1,1 @@
+"""The middlewares: what is known of each one lies in its profile."""

@@ -1,0 +1,166 @@
+"""What the model, the checks and the pools ask of a middleware.
+
+A profile answers for one middleware. What is a number or a choice stands in its `profile.yaml`, with its source; what is a rule is
+code beside it. A user's profile is a file that names the profile that it changes (`base`), and the values that differ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Protocol
+
+from amalthea_uros.perf.executors import Waiting
+from amalthea_uros.perf.named import Brief
+from amalthea_uros.spec.application import Application
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.units import Time
+
+
+class MessageKind(StrEnum):
+    """What a message of the middleware carries."""
+
+    PUBLICATION = "publication"
+    DELIVERY = "delivery"
+    REQUEST_OUT = "request to a service elsewhere"
+    REQUEST_IN = "request to a service here"
+    RESPONSE_OUT = "response of a service here"
+    RESPONSE_IN = "response of a service elsewhere"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part(Brief):
+    """A message of the middleware on the wire: a whole one, or a fragment of one that is too long.
+
+    Attributes
+    ----------
+    length : in bytes with the headers of the middleware, without the framing of the transport
+    acknowledgement : length of what the receiver answers to it; None for nothing
+    """
+
+    length: int
+    acknowledgement: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Option(Brief):
+    """A build option of the middleware.
+
+    Attributes
+    ----------
+    package : the package whose build takes it, for `colcon.meta`
+    needed : smallest value with which the application works; None if it has no use for it
+    available : the value that the description states, or else the default
+    is_stated : whether the description states it
+    unit : such as "B" or "ms"; "" for a number of things
+    counts : what it counts, for a comment
+    when_exhausted : what happens when the application needs more
+    """
+
+    name: str
+    package: str
+    needed: int | None
+    available: int
+    is_stated: bool
+    unit: str = ""
+    counts: str = ""
+    when_exhausted: str = ""
+
+    @property
+    def is_exceeded(self) -> bool:
+        """Whether the application needs more than there is."""
+        return self.needed is not None and self.needed > self.available
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MemoryUse(Brief):
+    """Bytes of memory that something of the middleware occupies.
+
+    Attributes
+    ----------
+    formula : how it is computed, with the values
+    """
+
+    name: str
+    size: int
+    formula: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MiddlewareThread(Brief):
+    """A thread of the middleware.
+
+    Attributes
+    ----------
+    priority : None if it is that of the executor that it serves
+    period : None if messages activate it
+    calls_subscribers : whether callbacks of messages run in it, instead of in an executor
+    """
+
+    name: str
+    priority: int | None
+    period: Time | None
+    stack: int | None
+    calls_subscribers: bool
+    does: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sending(Brief):
+    """How the middleware sends.
+
+    Attributes
+    ----------
+    waits : whether a reliable message keeps its sender until it is acknowledged
+    timeout : after which the sender gives up
+    resends_after : time without an acknowledgement after which the receiver is asked for it; None if the transport cares for losses
+    holds_session_while_waiting : whether a thread that waits for messages keeps others from sending, with several threads
+    drops_when_busy : whether a message is dropped when another thread is sending
+    """
+
+    waits: bool
+    timeout: Time
+    resends_after: Time | None
+    holds_session_while_waiting: bool
+    drops_when_busy: bool
+
+
+class Profile(Protocol):
+    """A middleware; sizes are in bytes, and `content` is the serialised message without headers."""
+
+    name: str
+    title: str
+    source: str
+
+    def waiting(self, middleware: Middleware) -> Waiting:
+        """How an executor waits."""
+        ...
+
+    def sending(self, middleware: Middleware) -> Sending:
+        """How messages are sent."""
+        ...
+
+    def threads(self, middleware: Middleware) -> Sequence[MiddlewareThread]:
+        """Its threads beside the executors."""
+        ...
+
+    def parts(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Sequence[Part]:
+        """What is sent for a message: one part, or fragments."""
+        ...
+
+    def heartbeat(self, middleware: Middleware) -> tuple[int, Time] | None:
+        """Length and least interval of messages that are sent while something is not acknowledged, or to keep alive; None for none."""
+        ...
+
+    def largest_content(self, kind: MessageKind, *, reliable: bool, middleware: Middleware) -> int | None:
+        """The longest content that can be sent or received; None for no limit."""
+        ...
+
+    def options(self, application: Application, middleware: Middleware) -> Sequence[Option]:
+        """Its build options, with what the application needs."""
+        ...
+
+    def memory(self, application: Application, middleware: Middleware) -> Sequence[MemoryUse]:
+        """What it occupies with the options of the description."""
+        ...
