@@ -66,30 +66,49 @@ def sensitivity(analysis: Analysis) -> Sensitivity:
 def max_growth(analysis: Analysis) -> Fraction | None:
     """The maximum factor on all worst-case execution times."""
     settings = analysis.solution.context.settings
-    return _max_factor(lambda factor: _holds(analysis, factor, replace(settings, growth=settings.growth * factor)))
+    return _max_factor(analysis, lambda factor: replace(settings, growth=settings.growth * factor))
 
 
 def _max_factor_of(name: str, analysis: Analysis) -> Fraction | None:
     settings = analysis.solution.context.settings
 
-    def holds(factor: Fraction) -> bool:
-        factors = {**settings.factors, name: settings.factors.get(name, 1) * factor}
-        return _holds(analysis, factor, replace(settings, factors=factors))
+    def changed(factor: Fraction) -> Settings:
+        return replace(settings, factors={**settings.factors, name: settings.factors.get(name, 1) * factor})
 
-    return _max_factor(holds)
-
-
-def _holds(analysis: Analysis, factor: Fraction, settings: Settings) -> bool:
-    """Whether everything is met with changed settings, apart from what is unknown anyway; a factor of 1 changes nothing."""
-    changed = analysis if factor == 1 else analyze_system(_judged(analysis.solution.context.system), settings)
-    return not changed.summary.overloaded and _bounded(analysis) <= _met(changed)
+    return _max_factor(analysis, changed)
 
 
-def _judged(system: System) -> System:
-    """The system without its chains if nothing is demanded of them: their exact latencies would take most of the time."""
-    if any(isinstance(each, LatencyConstraint | ChainSynchronization) for each in system.constraints.constraints):
-        return system
-    return replace(system, events=replace(system.events, chains=()))
+def _max_factor(analysis: Analysis, changed: Callable[[Fraction], Settings]) -> Fraction | None:
+    """The maximum factor with which everything is met.
+
+    Chains take most of the time of an analysis, and seldom decide: if everything is also met with the maximum factor of the system
+    without them, that is the one.
+    """
+    system = analysis.solution.context.system
+    without = _without_chains(system)
+    demanded = _bounded(analysis)
+    of_processes = demanded & _bounded(analyze_system(without, changed(Fraction(1))))
+
+    def holds(system: System, keys: set[Key], factor: Fraction) -> bool:
+        found = analysis if factor == 1 else analyze_system(system, changed(factor))
+        return not found.summary.overloaded and keys <= _met(found)
+
+    greatest = _greatest(lambda factor: holds(without, of_processes, factor))
+    if greatest is None or demanded == of_processes or holds(system, demanded, greatest):
+        return greatest
+    return _greatest(lambda factor: holds(system, demanded, factor))
+
+
+def _without_chains(system: System) -> System:
+    """The system without its chains, and what is demanded of them."""
+    demanded = (
+        each for each in system.constraints.constraints if not isinstance(each, LatencyConstraint | ChainSynchronization)
+    )
+    return replace(
+        system,
+        events=replace(system.events, chains=()),
+        constraints=replace(system.constraints, constraints=tuple(demanded)),
+    )
 
 
 def _bounded(analysis: Analysis) -> set[Key]:
@@ -112,7 +131,7 @@ def _key(limit: RequirementResult) -> Key:
     return limit.name, limit.object, limit.quantity, limit.is_upper
 
 
-def _max_factor(holds: Callable[[Fraction], bool]) -> Fraction | None:
+def _greatest(holds: Callable[[Fraction], bool]) -> Fraction | None:
     low, high = (1000, 2000) if holds(Fraction(1)) else (0, 1000)
     while low and high * RESOLUTION < MAX_FACTOR and holds(high * RESOLUTION):
         low, high = high, high * 2
