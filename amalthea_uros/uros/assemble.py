@@ -113,9 +113,7 @@ def _assembly(context: AssemblyContext, database: Sequence[ForeignFrame]) -> Ass
     check_streams(callbacks, middleware, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
-    network = planned_network(
-        context, callbacks, XrceMessages(), tick=context.description.os.tick, wakes=(), database=database
-    )
+    network = planned_network(context, callbacks, XrceMessages(), tick=context.description.os.tick, wakes=(), database=database)
     if network is None:
         check_bus_load(messages, middleware.transport, context.notes)
         add_interrupt(context, messages)
