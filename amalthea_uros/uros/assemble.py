@@ -30,6 +30,7 @@ from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
+from amalthea_uros.uros.middleware.check import check_middleware
 from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
@@ -38,7 +39,6 @@ from amalthea_uros.uros.periods import PeriodChoice
 from amalthea_uros.uros.pools import Pool, check_pools, pools_of
 from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
-from amalthea_uros.uros.streams import check_streams
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
 
@@ -99,8 +99,8 @@ def _assembly(context: AssemblyContext) -> Assembly:
     check_bus_load(messages, middleware.transport, context.notes)
     check_identifiers(messages, middleware.transport, context.notes)
     pools = pools_of(application, middleware)
-    check_pools(pools, callbacks, middleware, context.notes)
-    check_streams(callbacks, middleware, context.notes)
+    check_pools(pools, middleware, context.notes)
+    check_middleware(callbacks, middleware, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
     add_interrupt(context, messages)
