@@ -38,6 +38,7 @@ from amalthea_uros.uros.periods import PeriodChoice
 from amalthea_uros.uros.pools import Pool, check_pools, pools_of
 from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
+from amalthea_uros.uros.rtos import check_sleeps
 from amalthea_uros.uros.streams import check_streams
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
@@ -106,6 +107,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
     add_interrupt(context, messages)
     add_background_tasks(context)
     add_overheads(context)
+    check_sleeps(context.description, context.notes)
     if not context.tasks and not context.isrs and not context.notes.has_errors:
         advice = "Define callbacks under 'application', or tasks under 'tasks'."
         message = "no callback, task or interrupt service routine is defined"
@@ -148,7 +150,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
             placements=tuple(placements(labels, description, context.controller, notes)),
         ),
     )
-    check_shared_priorities(system, context.tasks, notes)
+    check_shared_priorities(system, context.tasks, notes, context.priority_scale)
     chains = Chains(elements, Dataflow(system), notes)
     limits = chains.add_all(description.chains)
     return replace(
