@@ -91,7 +91,9 @@ class Hardware(Shorthand):
     shorthand = ("platform",)
     plain_value = "A known platform, or a file."
 
-    platform: Name | None = Field(None, examples=["esp32", "nucleo-f446re", "bodas-rc18-12-40", "generic", "./my-controller.yaml"])
+    platform: Name | None = Field(
+        None, examples=["esp32", "nucleo-f446re", "bodas-rc18-12-40", "generic", "./my-controller.yaml"]
+    )
     """A known platform (`bodas-rc18-12-40`, `esp32`, `esp32-s3`, `generic`, `host`, `nucleo-f446re`, `nucleo-f746zg`,
     `nucleo-f767zi`, `nucleo-h743zi`, `olimex-stm32-e407`, `rp2040`, `single-core`, `tc389` or `teensy41`), or a file, e.g.
     `./my-controller.yaml`."""

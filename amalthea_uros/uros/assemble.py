@@ -38,7 +38,7 @@ from amalthea_uros.uros.periods import PeriodChoice
 from amalthea_uros.uros.pools import Pool, check_pools, pools_of
 from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
-from amalthea_uros.uros.rtos import check_sleeps
+from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
 from amalthea_uros.uros.streams import check_streams
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
@@ -54,6 +54,7 @@ class Assembly(Brief):
     pools : static pools of the middleware
     findings : of severity warning and info
     task_periods : those that the middleware offers to tasks; empty if it offers any
+    priority_scale : what priorities of tasks mean in the description
     """
 
     system: System
@@ -64,6 +65,7 @@ class Assembly(Brief):
     pools: tuple[Pool, ...]
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
+    priority_scale: PriorityScale
 
     def system_with_bus(self) -> System | None:
         """The system with the CAN bus as a further core, whose tasks are the messages; None if there is no bus."""
@@ -123,6 +125,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
         pools=pools,
         findings=tuple(context.notes.findings),
         task_periods=tuple(middleware.task_periods),
+        priority_scale=context.priority_scale,
     )
 
 
