@@ -39,6 +39,7 @@ from amalthea_uros.uros.periods import PeriodChoice
 from amalthea_uros.uros.pools import Pool, check_pools, pools_of
 from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
+from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
 
@@ -53,6 +54,7 @@ class Assembly(Brief):
     pools : static pools of the middleware
     findings : of severity warning and info
     task_periods : those that the middleware offers to tasks; empty if it offers any
+    priority_scale : what priorities of tasks mean in the description
     """
 
     system: System
@@ -63,6 +65,7 @@ class Assembly(Brief):
     pools: tuple[Pool, ...]
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
+    priority_scale: PriorityScale
 
     def system_with_bus(self) -> System | None:
         """The system with the CAN bus as a further core, whose tasks are the messages; None if there is no bus."""
@@ -106,6 +109,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
     add_interrupt(context, messages)
     add_background_tasks(context)
     add_overheads(context)
+    check_sleeps(context.description, context.notes)
     if not context.tasks and not context.isrs and not context.notes.has_errors:
         advice = "Define callbacks under 'application', or tasks under 'tasks'."
         message = "no callback, task or interrupt service routine is defined"
@@ -121,6 +125,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
         pools=pools,
         findings=tuple(context.notes.findings),
         task_periods=tuple(middleware.task_periods),
+        priority_scale=context.priority_scale,
     )
 
 
@@ -148,7 +153,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
             placements=tuple(placements(labels, description, context.controller, notes)),
         ),
     )
-    check_shared_priorities(system, context.tasks, notes)
+    check_shared_priorities(system, context.tasks, notes, context.priority_scale)
     chains = Chains(elements, Dataflow(system), notes)
     limits = chains.add_all(description.chains)
     return replace(
