@@ -32,6 +32,8 @@ from amalthea_uros.uros.executors.deadlines import deadlines
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
+from amalthea_uros.uros.middleware.check import check_middleware
+from amalthea_uros.uros.middleware.load import profile_of
 from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
@@ -40,11 +42,10 @@ from amalthea_uros.uros.periods import PeriodChoice
 from amalthea_uros.uros.pools import Pool, check_pools, pools_of
 from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
-from amalthea_uros.uros.streams import check_streams
+from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 from amalthea_uros.uros.transports.foreign import ForeignFrame
 from amalthea_uros.uros.transports.network import PlannedNetwork, planned_network, with_network
-from amalthea_uros.uros.transports.stand_in import XrceMessages
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,6 +59,7 @@ class Assembly(Brief):
     pools : static pools of the middleware
     findings : of severity warning and info
     task_periods : those that the middleware offers to tasks; empty if it offers any
+    priority_scale : what priorities of tasks mean in the description
     """
 
     system: System
@@ -68,6 +70,7 @@ class Assembly(Brief):
     pools: tuple[Pool, ...]
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
+    priority_scale: PriorityScale
 
     def system_with_bus(self) -> System | None:
         """The system with its wire as further cores, whose tasks are the messages; None if there is no wire.
@@ -111,14 +114,14 @@ def _assembly(context: AssemblyContext, database: Sequence[ForeignFrame]) -> Ass
     messages = bus_messages(callbacks, middleware.transport)
     check_identifiers(messages, middleware.transport, context.notes)
     pools = pools_of(application, middleware)
-    check_pools(pools, callbacks, middleware, context.notes)
-    check_streams(callbacks, middleware, context.notes)
+    check_pools(pools, middleware, context.notes)
+    check_middleware(callbacks, middleware, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
     network = planned_network(
         context,
         callbacks,
-        XrceMessages(),
+        profile_of(middleware),
         tick=context.description.os.tick,
         wakes=[round_trigger_name(each.name) for each in context.executors if is_triggered(each)],
         database=database,
@@ -128,6 +131,7 @@ def _assembly(context: AssemblyContext, database: Sequence[ForeignFrame]) -> Ass
         add_interrupt(context, messages)
     add_background_tasks(context)
     add_overheads(context)
+    check_sleeps(context.description, context.notes)
     if not context.tasks and not context.isrs and not context.notes.has_errors:
         advice = "Define callbacks under 'application', or tasks under 'tasks'."
         message = "no callback, task or interrupt service routine is defined"
@@ -144,6 +148,7 @@ def _assembly(context: AssemblyContext, database: Sequence[ForeignFrame]) -> Ass
         pools=pools,
         findings=tuple(context.notes.findings),
         task_periods=tuple(middleware.task_periods),
+        priority_scale=context.priority_scale,
     )
 
 
@@ -155,7 +160,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback], network: Pl
     check_unique_data(labels, context.channels.values(), notes)
     elements = chain_elements(context, callbacks)
     system = triggered_rounds(with_network(_without_demands(context, labels), network, context))
-    check_shared_priorities(system, context.tasks, notes)
+    check_shared_priorities(system, context.tasks, notes, context.priority_scale)
     chains = Chains(elements, Dataflow(system), notes)
     limits = chains.add_all(description.chains)
     demanded = (*requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))
@@ -168,7 +173,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback], network: Pl
 
 def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> System:
     """The system without event chains and requirements."""
-    system = System(
+    return System(
         hardware=context.controller.hardware,
         os=os_of(context),
         stimuli=Stimuli(stimuli=context.stimuli.stimuli),
@@ -186,7 +191,6 @@ def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> Syste
         ),
         executors=tuple(context.executors),
     )
-    return system
 
 
 def _task(planned: PlannedTask) -> Task:
