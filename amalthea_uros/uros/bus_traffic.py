@@ -17,7 +17,7 @@ from amalthea_uros.units import Time
 from amalthea_uros.uros.application import body_name
 from amalthea_uros.uros.bus_messages import BusMessage
 from amalthea_uros.uros.bus_system import Transmission, with_bus
-from amalthea_uros.uros.can import BLOCK_BYTES, FRAME_BYTES, CanBus
+from amalthea_uros.uros.can import CanBus, block_bytes
 
 #: Greater than all identifiers.
 _OF_CLIENT = 2**29
@@ -49,12 +49,6 @@ def with_traffic(system: System, bus: CanBus, messages: Iterable[BusMessage]) ->
 def transmission_name(message: BusMessage) -> str:
     """The name of the task of a message, such as `factor_topic_to_Message_Factor`."""
     return f"{message.message.channel}_{'to' if message.incoming else 'from'}_{message.message.callback}"
-
-
-def block_bytes(length: int) -> list[tuple[int, int]]:
-    """Minimum and maximum data bytes of the frames of a message: a transport may pad the last block."""
-    full, rest = divmod(max(1, length) - 1, BLOCK_BYTES)
-    return [*[(FRAME_BYTES, FRAME_BYTES)] * full, (rest + 2, FRAME_BYTES)]
 
 
 def _end_of_callback(message: BusMessage, name: str) -> RunnableEvent:

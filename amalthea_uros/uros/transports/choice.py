@@ -56,6 +56,11 @@ def is_bus(line: Line) -> bool:
     return line.kind in (WireKind.CAN, WireKind.CAN_FD)
 
 
+def keeps_sender(line: Line) -> bool:
+    """Whether a thread that sends waits until its message is on the wire: drivers of streams do; stacks and controllers have buffers."""
+    return line.kind in (WireKind.SERIAL, WireKind.USB_CDC, WireKind.CUSTOM)
+
+
 def is_in_system(description: Description) -> bool:
     """Whether the wire is a part of the system.
 

@@ -58,6 +58,11 @@ def wire_messages(callbacks: Iterable[Callback], middleware: Middleware, profile
             yield _message(message, callback, Direction.TO_AGENT, middleware, profile)
 
 
+def opposite(direction: Direction) -> Direction:
+    """The direction of acknowledgements."""
+    return Direction.TO_AGENT if direction is Direction.TO_CONTROLLER else Direction.TO_CONTROLLER
+
+
 def acknowledgement_name(transmission: str) -> str:
     """The name of the task of the acknowledgements of a message."""
     return f"{transmission}_acknowledgement"

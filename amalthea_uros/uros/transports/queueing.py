@@ -23,9 +23,10 @@ from amalthea_uros.uros.application import body_name
 from amalthea_uros.uros.bus_traffic import runs_per_message
 from amalthea_uros.uros.executor import notification_name
 from amalthea_uros.uros.transports.arrivals import arrivals
+from amalthea_uros.uros.transports.choice import keeps_sender
 from amalthea_uros.uros.transports.foreign import ForeignFrame
-from amalthea_uros.uros.transports.line import Line, span_of
-from amalthea_uros.uros.transports.messages import Messaging, WireMessage, acknowledgement_name
+from amalthea_uros.uros.transports.line import Line, span_of, time_on
+from amalthea_uros.uros.transports.messages import Messaging, WireMessage, acknowledgement_name, opposite
 
 _AT_ONCE = Span(most=0)
 
@@ -130,7 +131,9 @@ class Queueing:
         body = body_name(callback.name)
         answer = acknowledgement_name(message.name) if _is_acknowledged(message) else None
         if body in self._looping_timers:
-            stimulus = arrivals(message.name, message.interval, 2 * message.interval, message.message.origin)
+            own = [frame for part in message.parts for frame in self.line.frames(part.length, Direction.TO_AGENT)]
+            distance = time_on(self.line, own)[0] if keeps_sender(self.line) else 0
+            stimulus = arrivals(message.name, message.interval, 2 * message.interval, message.message.origin, distance)
             yield self._data(message, stimulus, agent, answer=answer)
         else:
             runs = runs_per_message(callback.name, message.interval, self.system)
@@ -172,7 +175,7 @@ class Queueing:
         length = max(part.acknowledgement or 0 for part in message.parts)
         return Queued(
             transmission=self._transmission(
-                name, _opposite(message.direction), Purpose.ACKNOWLEDGEMENT, (length,), agent, message
+                name, opposite(message.direction), Purpose.ACKNOWLEDGEMENT, (length,), agent, message
             ),
             parts=(length,),
             stimulus=InterProcess(name=name, origin=message.message.origin),
@@ -202,7 +205,7 @@ class Queueing:
         yield Queued(
             transmission=self._transmission(
                 answer,
-                _opposite(direction),
+                opposite(direction),
                 Purpose.ACKNOWLEDGEMENT,
                 (length,),
                 self._answer_time if from_client else _AT_ONCE,
@@ -235,6 +238,7 @@ class Queueing:
             link=self.line.link,
             driver=_sum(self.line.reading(part) for part in parts) if is_received else _AT_ONCE,
             processes=self.receivers if is_received else (),
+            keeps_sender=not is_received and keeps_sender(self.line),
             agent=agent,
         )
 
@@ -253,10 +257,6 @@ class Queueing:
 
 def _is_acknowledged(message: WireMessage) -> bool:
     return any(part.acknowledgement is not None for part in message.parts)
-
-
-def _opposite(direction: Direction) -> Direction:
-    return Direction.TO_AGENT if direction is Direction.TO_CONTROLLER else Direction.TO_CONTROLLER
 
 
 def _sum(spans: Iterable[Span]) -> Span:

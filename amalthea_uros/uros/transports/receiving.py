@@ -1,8 +1,8 @@
 """What each received message passes in the controller before an executor sees it: the interrupt, and tasks of the middleware.
 
 The interrupt is triggered by each frame on the wire, each task of the middleware by the process before it, and the last one triggers
-the rounds of executors that wait. Acknowledgements and heartbeats end no wait; the interrupt for them is a process of its own in the
-model, as it triggers nothing. If nothing is described, nothing is passed.
+the rounds of executors that wait. Only the last frame of a message ends a wait; the interrupt for other frames and for acknowledgements
+and heartbeats is a process of its own in the model, as it triggers nothing. If nothing is described, nothing is passed.
 """
 
 from __future__ import annotations
@@ -45,13 +45,11 @@ class Receivers:
     Attributes
     ----------
     processes : that each message passes, in order
-    frame_triggers : stimuli that each frame of a message triggers
-    message_triggers : stimuli that the end of a message triggers
-    other_triggers : stimuli that acknowledgements and heartbeats trigger
+    message_triggers : stimuli that the last frame of a message triggers
+    other_triggers : stimuli that other frames trigger
     """
 
     processes: tuple[str, ...] = ()
-    frame_triggers: tuple[str, ...] = ()
     message_triggers: tuple[str, ...] = ()
     other_triggers: tuple[str, ...] = ()
 
@@ -75,12 +73,11 @@ def add_receivers(
     names = tuple(thread.name for thread in threads)
     if interrupt is None:
         return Receivers(processes=names, message_triggers=tuple(triggers))
-    is_answered = any(part.acknowledgement is not None for message in messages for part in message.parts)
-    others = (_add_isr(context, interrupt, f"{interrupt.name}_Acknowledgement", ()),) if is_answered else ()
+    others = (_add_isr(context, interrupt, f"{interrupt.name}_Other", ()),)
     if not incoming:
         return Receivers(other_triggers=others)
-    frames = (_add_isr(context, interrupt, interrupt.name, triggers),)
-    return Receivers(processes=(interrupt.name, *names), frame_triggers=frames, other_triggers=others)
+    last = (_add_isr(context, interrupt, interrupt.name, triggers),)
+    return Receivers(processes=(interrupt.name, *names), message_triggers=last, other_triggers=others)
 
 
 def _add_isr(context: AssemblyContext, interrupt: Interrupt, name: str, triggers: Sequence[str]) -> str:

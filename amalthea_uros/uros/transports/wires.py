@@ -117,28 +117,27 @@ def _task(queued: Queued, plan: WirePlan) -> Task:
 
 def _activities(queued: Queued, plan: WirePlan) -> Iterator[Activity]:
     """The frames one after the other, each with what its end triggers."""
-    after_frame, after_message = _received(queued, plan.receivers)
-    is_first = True
-    for part in plan.frames[queued.transmission.name]:
+    parts = plan.frames[queued.transmission.name]
+    count = sum(map(len, parts))
+    number = 0
+    for part in parts:
         for frame in part:
-            if plan.is_bus and not is_first:
+            if plan.is_bus and number:
                 yield SchedulePoint()
-            is_first = False
+            number += 1
             yield _execution(frame)
-            yield from map(_trigger, after_frame)
+            yield from map(_trigger, _received(queued, plan.receivers, is_last=number == count))
         if queued.answer is not None:
             yield _trigger(queued.answer)
-    yield from map(_trigger, after_message)
 
 
-def _received(queued: Queued, receivers: Receivers) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The stimuli that each frame triggers, and those that the end of the message does."""
+def _received(queued: Queued, receivers: Receivers, *, is_last: bool) -> tuple[str, ...]:
+    """The stimuli that the end of a frame triggers in the controller."""
     transmission = queued.transmission
     if transmission.direction is Direction.TO_AGENT or transmission.purpose is Purpose.FOREIGN:
-        return (), ()
-    if transmission.purpose is Purpose.DATA:
-        return receivers.frame_triggers, receivers.message_triggers
-    return receivers.other_triggers, ()
+        return ()
+    is_message = is_last and transmission.purpose is Purpose.DATA
+    return receivers.message_triggers if is_message else receivers.other_triggers
 
 
 def _execution(frame: Frame) -> Execute:
