@@ -57,7 +57,10 @@ def is_bus(line: Line) -> bool:
 
 
 def keeps_sender(line: Line) -> bool:
-    """Whether a thread that sends waits until its message is on the wire: drivers of streams do; stacks and controllers have buffers."""
+    """Whether a thread that sends waits until its message is on the wire.
+
+    Drivers of streams of bytes do; network stacks and CAN controllers have buffers.
+    """
     return line.kind in (WireKind.SERIAL, WireKind.USB_CDC, WireKind.CUSTOM)
 
 

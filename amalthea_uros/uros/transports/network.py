@@ -98,6 +98,9 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
         system=system,
         receivers=planned.receivers.processes,
     )
+    for frame in planned.foreign:
+        if frame.name in system.processes:
+            context.notes.duplicate("process or frame", frame.name, frame.origin, system.processes[frame.name].origin)
     queued = [*queueing.of(planned.messages), *map(queueing.foreign, planned.foreign)]
     plan = WirePlan(
         line=line,

@@ -114,8 +114,8 @@ def test_frames_of_can_fd_have_the_next_size_of_a_length_code(length, size):
 
 @pytest.mark.parametrize("data", [0, 1, 8, 12, 16, 20, 24, 32, 48, 64])
 def test_bits_of_can_fd_by_hand(data):
-    """ISO 11898-1:2015: 17 bits before the switch with a standard identifier, 36 with an extended one; ESI and length code; stuff count of
-    4 bits, CRC of 17 or 21 with 6 or 7 fixed stuff bits; 13 bits after them."""
+    """ISO 11898-1:2015: 17 bits before the switch with a standard identifier, 36 with an extended one; ESI and length code; a stuff
+    count of 4 bits, a CRC of 17 or 21 bits with 6 or 7 fixed stuff bits; 13 bits after them."""
     crc = 4 + 17 + 6 if data <= 16 else 4 + 21 + 7
     for extended, head in ((False, 17), (True, 36)):
         least, most = bits(data, extended=extended)
