@@ -27,12 +27,14 @@ from amalthea_uros.uros.can import CanBus
 from amalthea_uros.uros.chain_elements import chain_elements
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
-from amalthea_uros.uros.executors.activation import triggered_rounds
+from amalthea_uros.uros.executors.activation import is_triggered, round_trigger_name, triggered_rounds
 from amalthea_uros.uros.executors.deadlines import deadlines
 from amalthea_uros.uros.executors.serving import placement
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
+from amalthea_uros.uros.middleware.check import check_middleware
+from amalthea_uros.uros.middleware.load import profile_of
 from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
@@ -41,8 +43,10 @@ from amalthea_uros.uros.periods import PeriodChoice
 from amalthea_uros.uros.pools import Pool, check_pools, pools_of
 from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
-from amalthea_uros.uros.streams import check_streams
+from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.transports.foreign import ForeignFrame
+from amalthea_uros.uros.transports.network import PlannedNetwork, planned_network, with_network
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,10 +57,11 @@ class Assembly(Brief):
     ----------
     choices : the periods of executors without a loop and of the callbacks' tasks, with reasons
     placement : where callbacks run that do not say so, and who decided it; "" without callbacks
-    bus, messages : the CAN bus, None if there is none, and what is sent on it
+    bus, messages : the classic CAN bus, None if there is none, and what is sent on it
     pools : static pools of the middleware
     findings : of severity warning and info
     task_periods : those that the middleware offers to tasks; empty if it offers any
+    priority_scale : what priorities of tasks mean in the description
     """
 
     system: System
@@ -68,19 +73,28 @@ class Assembly(Brief):
     pools: tuple[Pool, ...]
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
+    priority_scale: PriorityScale
 
     def system_with_bus(self) -> System | None:
-        """The system with the CAN bus as a further core, whose tasks are the messages; None if there is no bus."""
+        """The system with its wire as further cores, whose tasks are the messages; None if there is no wire.
+
+        A classic CAN bus is left out of the system if nothing in the description depends on it, and added here.
+        """
+        if self.system.network.wires:
+            return self.system
         return None if self.bus is None else with_traffic(self.system, self.bus, self.messages)
 
 
-def assemble(description: Description, hardware: Hardware, platform: str | None) -> Assembly:
+def assemble(
+    description: Description, hardware: Hardware, platform: str | None, database: Sequence[ForeignFrame] = ()
+) -> Assembly:
     """The system that a description describes.
 
     Parameters
     ----------
     hardware : of the description, completed by its platform
     platform : the name that execution times use for the hardware; None if it has none
+    database : frames of others on the CAN bus, from the DBC file that the description names
 
     Raises
     ------
@@ -91,31 +105,41 @@ def assemble(description: Description, hardware: Hardware, platform: str | None)
     target = controller_of(description.name, hardware, platform, notes)
     if target is None:
         raise ReadError(notes.findings)
-    assembly = _assembly(AssemblyContext(description=description, controller=target, notes=notes))
+    assembly = _assembly(AssemblyContext(description=description, controller=target, notes=notes), database)
     if notes.has_errors:
         raise ReadError(notes.findings)
     return assembly
 
 
-def _assembly(context: AssemblyContext) -> Assembly:
+def _assembly(context: AssemblyContext, database: Sequence[ForeignFrame]) -> Assembly:
     application, middleware = context.description.application, context.description.middleware
     callbacks = callbacks_of(application, middleware, context.notes)
     messages = bus_messages(callbacks, middleware.transport)
-    check_bus_load(messages, middleware.transport, context.notes)
     check_identifiers(messages, middleware.transport, context.notes)
     pools = pools_of(application, middleware)
-    check_pools(pools, callbacks, middleware, context.notes)
-    check_streams(callbacks, middleware, context.notes)
+    check_pools(pools, middleware, context.notes)
+    check_middleware(callbacks, middleware, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
-    add_interrupt(context, messages)
+    network = planned_network(
+        context,
+        callbacks,
+        profile_of(middleware),
+        tick=context.description.os.tick,
+        wakes=[round_trigger_name(each.name) for each in context.executors if is_triggered(each)],
+        database=database,
+    )
+    if network is None:
+        check_bus_load(messages, middleware.transport, context.notes)
+        add_interrupt(context, messages)
     add_background_tasks(context)
     add_overheads(context)
+    check_sleeps(context.description, context.notes)
     if not context.tasks and not context.isrs and not context.notes.has_errors:
         advice = "Define callbacks under 'application', or tasks under 'tasks'."
         message = "no callback, task or interrupt service routine is defined"
         context.notes.error("APP009", message, context.description.location(), advice)
-    system = _system(context, callbacks)
+    system = _system(context, callbacks, network)
     response_time = middleware.initialisation.response_time
     first = next((choice for choice in choices if choice.task == choice.executor), None)
     return Assembly(
@@ -128,18 +152,19 @@ def _assembly(context: AssemblyContext) -> Assembly:
         pools=pools,
         findings=tuple(context.notes.findings),
         task_periods=tuple(middleware.task_periods),
+        priority_scale=context.priority_scale,
     )
 
 
-def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
+def _system(context: AssemblyContext, callbacks: Sequence[Callback], network: PlannedNetwork | None) -> System:
     """The system of all that has been added to the context."""
     description, notes = context.description, context.notes
     check_misspelled_labels(description, context.runnables, notes)
     labels = labels_of(description, callbacks, context.runnables)
     check_unique_data(labels, context.channels.values(), notes)
     elements = chain_elements(context, callbacks)
-    system = _without_demands(context, labels)
-    check_shared_priorities(system, context.tasks, notes)
+    system = triggered_rounds(with_network(_without_demands(context, labels), network, context))
+    check_shared_priorities(system, context.tasks, notes, context.priority_scale)
     chains = Chains(elements, Dataflow(system), notes)
     limits = chains.add_all(description.chains)
     demanded = (*requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))
@@ -152,7 +177,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
 
 def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> System:
     """The system without event chains and requirements."""
-    system = System(
+    return System(
         hardware=context.controller.hardware,
         os=os_of(context),
         stimuli=Stimuli(stimuli=context.stimuli.stimuli),
@@ -170,7 +195,6 @@ def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> Syste
         ),
         executors=tuple(context.executors),
     )
-    return triggered_rounds(system)
 
 
 def _task(planned: PlannedTask) -> Task:

@@ -12,6 +12,7 @@ from amalthea_uros.spec.description import Description
 from amalthea_uros.uros.demand import DemandConverter
 from amalthea_uros.uros.hardware import Controller
 from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.rtos import PriorityScale, priority_scale
 from amalthea_uros.uros.stimuli import StimulusRegistry
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
@@ -41,6 +42,11 @@ class AssemblyContext:
     def converter(self) -> DemandConverter:
         """Converts execution times to demands on the controller."""
         return DemandConverter(self.controller, self.notes)
+
+    @property
+    def priority_scale(self) -> PriorityScale:
+        """What the priorities of the tasks mean."""
+        return priority_scale(self.description.os, self.tasks)
 
     def core(self, name: str | None, location: Location | None) -> str:
         """The core of a name; the first core if there is no name, or no core has it."""
