@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from amalthea_uros.spec.section import Section
 from amalthea_uros.spec.values import WHOLE_NUMBER, Count, CountOrNone, Duration, Name, Offset, Priority, Size, SizeOrNothing
-
-S = TypeVar("S", bound=Section)
 
 
 class WaitingData(Section):
@@ -94,17 +92,3 @@ class ProfileData(Section):
     """Sizes of headers and other parts of its messages."""
     options: dict[Name, CountOrNone] = Field(default_factory=dict)
     """Default values of build options that sizes of messages depend on; lengths are in bytes, times in milliseconds."""
-
-
-def completed(own: S, base: S) -> S:
-    """A section with what it does not state from another one, key by key."""
-    added = {}
-    for key in base.model_fields_set:
-        ours, theirs = getattr(own, key), getattr(base, key)
-        if key not in own.model_fields_set:
-            added[key] = theirs
-        elif isinstance(ours, Section):
-            added[key] = completed(ours, theirs)
-        elif isinstance(ours, dict):
-            added[key] = theirs | ours
-    return own.model_copy(update=added)

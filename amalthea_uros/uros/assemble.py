@@ -16,6 +16,7 @@ from amalthea_uros.perf.stimuli import Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import Hardware
+from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application import add_callbacks, add_interrupt
@@ -33,6 +34,8 @@ from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
 from amalthea_uros.uros.middleware.check import check_middleware
+from amalthea_uros.uros.middleware.load import profile_of
+from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
@@ -89,12 +92,22 @@ def assemble(description: Description, hardware: Hardware, platform: str | None)
     notes = Notes()
     check_unique_names(description, notes)
     target = controller_of(description.name, hardware, platform, notes)
-    if target is None:
+    profile = _profile(description.middleware, notes)
+    if target is None or profile is None:
         raise ReadError(notes.findings)
-    assembly = _assembly(AssemblyContext(description=description, controller=target, notes=notes))
+    assembly = _assembly(AssemblyContext(description=description, controller=target, notes=notes, profile=profile))
     if notes.has_errors:
         raise ReadError(notes.findings)
     return assembly
+
+
+def _profile(middleware: Middleware, notes: Notes) -> Profile | None:
+    """The profile of the middleware; None if it is not known."""
+    try:
+        return profile_of(middleware)
+    except ReadError as error:
+        notes.findings.extend(error.findings)
+        return None
 
 
 def _assembly(context: AssemblyContext) -> Assembly:
@@ -105,7 +118,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
     check_identifiers(messages, middleware.transport, context.notes)
     pools = pools_of(application, middleware)
     check_pools(pools, middleware, context.notes)
-    check_middleware(callbacks, middleware, context.notes)
+    check_middleware(callbacks, middleware, context.profile, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
     add_interrupt(context, messages)

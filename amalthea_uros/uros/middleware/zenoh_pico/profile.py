@@ -84,8 +84,8 @@ class ZenohPico:
 
     def options(self, application: Application, middleware: Middleware) -> Sequence[Option]:
         """Its build options."""
-        return pools.options(application, middleware, self.data)
+        return pools.options(application, middleware, self.data.options)
 
     def memory(self, application: Application, middleware: Middleware) -> Sequence[MemoryUse]:
         """What it occupies."""
-        return memory.memory(application, middleware, self.data)
+        return memory.memory(application, middleware, self.data.options)
