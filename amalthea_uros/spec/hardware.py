@@ -107,6 +107,8 @@ class Hardware(Shorthand):
     """The memories."""
     label_memory: Name | None = None
     """Memory of all labels without a `memory`; default: the first SRAM."""
+    ram_budget: Size | None = None
+    """Memory that is left for micro-ROS: its pools, heap and stacks."""
 
 
 class Platform(Section):

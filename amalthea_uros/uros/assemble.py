@@ -30,15 +30,17 @@ from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
+from amalthea_uros.uros.memory.ram import Memory, check_memory, memory_of
+from amalthea_uros.uros.middleware.profile import Option
 from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
 from amalthea_uros.uros.overheads import add_overheads
 from amalthea_uros.uros.periods import PeriodChoice
-from amalthea_uros.uros.pools import Pool, check_pools, pools_of
+from amalthea_uros.uros.pools import check_options, options_of, pools_of, static_memory_of
 from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
-from amalthea_uros.uros.streams import check_streams
+from amalthea_uros.uros.streams import check_message_sizes, check_streams
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
 
@@ -48,21 +50,30 @@ class Assembly(Brief):
 
     Attributes
     ----------
+    description : what was assembled
     choices : the periods of the executor and of the callbacks' tasks, with reasons
     bus, messages : the CAN bus, None if there is none, and what is sent on it
-    pools : static pools of the middleware
+    options : build options of the middleware
+    memory : what micro-ROS takes of it
     findings : of severity warning and info
     task_periods : those that the middleware offers to tasks; empty if it offers any
     """
 
+    description: Description
     system: System
     choices: tuple[PeriodChoice, ...]
     messages: tuple[BusMessage, ...]
     bus: CanBus | None
     initialisation: Initialisation | None
-    pools: tuple[Pool, ...]
+    options: tuple[Option, ...]
+    memory: Memory
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
+
+    @property
+    def pools(self) -> tuple[Option, ...]:
+        """The options that count entities and waiting messages."""
+        return pools_of(self.options)
 
     def system_with_bus(self) -> System | None:
         """The system with the CAN bus as a further core, whose tasks are the messages; None if there is no bus."""
@@ -86,20 +97,21 @@ def assemble(description: Description, hardware: Hardware, platform: str | None)
     target = controller_of(description.name, hardware, platform, notes)
     if target is None:
         raise ReadError(notes.findings)
-    assembly = _assembly(AssemblyContext(description=description, controller=target, notes=notes))
+    assembly = _assembly(AssemblyContext(description=description, controller=target, notes=notes), hardware)
     if notes.has_errors:
         raise ReadError(notes.findings)
     return assembly
 
 
-def _assembly(context: AssemblyContext) -> Assembly:
+def _assembly(context: AssemblyContext, hardware: Hardware) -> Assembly:
     application, middleware = context.description.application, context.description.middleware
     callbacks = callbacks_of(application, middleware.executor, context.notes)
     messages = bus_messages(callbacks, middleware.transport)
     check_bus_load(messages, middleware.transport, context.notes)
     check_identifiers(messages, middleware.transport, context.notes)
-    pools = pools_of(application, middleware)
-    check_pools(pools, callbacks, middleware, context.notes)
+    options = options_of(application, middleware)
+    check_options(options, middleware, context.notes)
+    check_message_sizes(callbacks, middleware, context.notes)
     check_streams(callbacks, middleware, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
@@ -111,14 +123,18 @@ def _assembly(context: AssemblyContext) -> Assembly:
         message = "no callback, task or interrupt service routine is defined"
         context.notes.error("APP009", message, context.description.location(), advice)
     system = _system(context, callbacks)
+    memory = memory_of(context.description, hardware, system, static_memory_of(application, middleware))
+    check_memory(memory, hardware, context.notes)
     response_time = middleware.initialisation.response_time
     return Assembly(
+        description=context.description,
         system=system,
         choices=choices,
         messages=messages,
         bus=bus_of(middleware.transport.can) if middleware.transport.can is not None else None,
         initialisation=initialisation(application, choices[0].period, response_time) if choices else None,
-        pools=pools,
+        options=tuple(options),
+        memory=memory,
         findings=tuple(context.notes.findings),
         task_periods=tuple(middleware.task_periods),
     )

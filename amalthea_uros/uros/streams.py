@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Time, data_size_text, time_text
 from amalthea_uros.uros.callbacks import Callback, Message
 from amalthea_uros.uros.notes import Notes
 
@@ -40,3 +40,37 @@ def _buffers(message: Message, middleware: Middleware) -> int:
     """The number of buffers that a message occupies; one if the MTU is unknown."""
     mtu = middleware.limits.RMW_UXRCE_MTU
     return 1 if mtu is None else -(-(message.size + middleware.transport.overhead) // mtu)
+
+
+def check_message_sizes(callbacks: Iterable[Callback], middleware: Middleware, notes: Notes) -> None:
+    """Report messages that do not fit into their buffers."""
+    for sent in _messages(callbacks):
+        _check_size(sent, middleware, notes)
+
+
+def _messages(callbacks: Iterable[Callback]) -> Iterator[Message]:
+    """Each message once, even if several callbacks send it."""
+    seen = set()
+    for callback in callbacks:
+        for message in (callback.incoming, *callback.outgoing):
+            if message is not None and (key := (message.topic, message.size, message.origin)) not in seen:
+                seen.add(key)
+                yield message
+
+
+def _check_size(message: Message, middleware: Middleware, notes: Notes) -> None:
+    """Report a best-effort message larger than the MTU, or a reliable one larger than all buffers of its stream."""
+    limits = middleware.limits
+    if limits.RMW_UXRCE_MTU is None:
+        return
+    history = limits.RMW_UXRCE_STREAM_HISTORY or DEFAULT_STREAM_HISTORY
+    capacity = limits.RMW_UXRCE_MTU * (history if message.reliable else 1)
+    size = message.size + middleware.transport.overhead
+    if size > capacity:
+        source, options = "RMW_UXRCE_MTU", "RMW_UXRCE_MTU"
+        if message.reliable:
+            source = f"RMW_UXRCE_MTU times RMW_UXRCE_STREAM_HISTORY ({history})"
+            options = "RMW_UXRCE_MTU or RMW_UXRCE_STREAM_HISTORY"
+        needed, limit = data_size_text(size), data_size_text(capacity)
+        text = f"a message of {message.topic!r} needs {needed} with headers, but the limit is {limit}: {source}"
+        notes.error("UR121", text, message.origin, f"Increase {options}, or reduce the size of the message.")
