@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -14,12 +14,15 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.spec.read import read_section
 from amalthea_uros.uros.middleware.profile import Profile
+from amalthea_uros.uros.middleware.xrce_dds.pools import rows as xrce_rows
 from amalthea_uros.uros.middleware.xrce_dds.profile import XrceDds
+from amalthea_uros.uros.middleware.zenoh_pico.pools import rows as zenoh_rows
 from amalthea_uros.uros.middleware.zenoh_pico.profile import ZenohPico
 
 _SUFFIXES = (".yaml", ".yml")
 #: Keys with figures by name, and what these are; a file can change single ones.
 _TABLES = {"sizes": "size", "options": "build option"}
+_OPTIONS = {"xrce-dds": xrce_rows, "zenoh-pico": zenoh_rows}
 #: The middlewares whose rules are known, by the names of their profiles.
 KNOWN: Mapping[str, Callable[[ProfileData], Profile]] = {"xrce-dds": XrceDds, "zenoh-pico": ZenohPico}
 
@@ -43,7 +46,7 @@ def profile_of(middleware: Middleware, folder: Path | None = None) -> Profile:
         message = f"the profile {own.profile!r} does not name the one that it changes"
         raise _mistake("APP003", message, own.location(), f"Set 'base' to one of: {', '.join(KNOWN)}.")
     base = known_data(_known(own.base, own.location("base")))
-    _check_names(own, base)
+    _check_names(own, {"sizes": base.sizes, "options": ["MTU", *_OPTIONS[own.base]()]})
     tables = {key: getattr(base, key) | getattr(own, key) for key in _TABLES}
     return KNOWN[own.base](merged(own, base).model_copy(update=tables))
 
@@ -71,11 +74,11 @@ def _file(name: str, folder: Path | None, place: Location | None) -> Path:
     return path
 
 
-def _check_names(own: ProfileData, base: ProfileData) -> None:
+def _check_names(own: ProfileData, names: Mapping[str, Collection[str]]) -> None:
     """Refuse figures that the code of the base does not ask for."""
     findings = []
     for key, what in _TABLES.items():
-        known: Mapping[str, int] = getattr(base, key)
+        known = names[key]
         for name in getattr(own, key):
             if name not in known:
                 advice = _suggestion(name, known, f"Use one of: {', '.join(known)}.")

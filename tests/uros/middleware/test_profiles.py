@@ -31,8 +31,8 @@ amuros: 1
 profile: my-middleware
 base: xrce-dds
 title: a port that acknowledges quickly
-waiting: {slots: 3}
-sending: {timeout: 20 ms}
+waiting: {stored_data_ends_wait: true}
+options: {RMW_UXRCE_MAX_HISTORY: 3, RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT: 20}
 sizes: {acknowledgement: 9 B}
 """
 
@@ -53,7 +53,7 @@ def test_a_profile_states_its_sources(name):
     assert (profile.name, profile.title, profile.source) == (name, data.title, data.source)
     assert all((data.title, data.source))
     sections = {key.partition(".")[0] for key in data.sources}
-    assert {"waiting", "sending", "sizes", "options"} <= sections
+    assert {"waiting", "sending", "sizes"} <= sections
     # Each source is one of a figure that is there.
     for key in data.sources:
         section, _, figure = key.partition(".")
@@ -67,6 +67,7 @@ def test_a_file_changes_what_it_states(tmp_path):
     own, base = profile_of(described, tmp_path), profile_of(Middleware())
     assert own.title == "a port that acknowledges quickly"
     assert own.waiting(described).slots == 3
+    assert own.waiting(described).stored_data_ends_wait
     assert own.waiting(described).default_timeout == base.waiting(described).default_timeout
     assert own.sending(described).timeout == 20 * MILLISECOND
     (part,) = own.parts(MessageKind.PUBLICATION, 4, reliable=True, middleware=described)
@@ -101,7 +102,8 @@ def test_an_unknown_profile(tmp_path, monkeypatch, profile, message, advice):
         ("title: without a base", "the profile 'own' does not name the one that it changes"),
         ("base: xrce-dds\nsizes: {acknowledgment: 9 B}", "unknown size 'acknowledgment'"),
         ("base: xrce-dds\nsending: {timout: 9 ms}", "unknown key 'timout'"),
-        ("base: xrce-dds\nwaiting: {slots: -1}", "must be"),
+        ("base: xrce-dds\noptions: {RMW_UXRCE_MTU: 3}", "unknown build option 'RMW_UXRCE_MTU'"),
+        ("base: xrce-dds\nwaiting: {resolution: -1 ms}", "must not be negative"),
         ("base: [xrce-dds]", "base"),
     ],
 )

@@ -3,7 +3,7 @@
 import pytest
 
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.units import MILLISECOND
+from amalthea_uros.units import SECOND
 from amalthea_uros.uros.middleware.load import profile_of
 from amalthea_uros.uros.middleware.profile import MessageKind
 
@@ -67,4 +67,4 @@ def test_waiting():
 
 def test_keep_alives():
     # A third of the lease of 10 s, rounded down.
-    assert PROFILE.heartbeat(MIDDLEWARE) == (1, 3333 * MILLISECOND)
+    assert PROFILE.heartbeat(MIDDLEWARE) == (1, 10 * SECOND // 3)
