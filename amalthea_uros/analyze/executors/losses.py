@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.executors.cycle import Cycle
 from amalthea_uros.analyze.executors.results import HandleResult, Loss
 from amalthea_uros.perf.executors import Handle
@@ -124,7 +125,7 @@ def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None
     if is_pool_enough:
         return None
     sequence = (
-        f"{_while_nothing_is_taken(cycle)}messages for all handles of {executor.name} together use its {executor.waiting.slots} slots; "
+        f"{_while_nothing_is_taken(cycle)}messages for all handles of {executor.name} together use its {counted(executor.waiting.slots or 0, 'slot')}; "
         f"a new one for {handle.name} is dropped then"
     )
     return Loss(what="messages", is_certain=False, most=None, sequence=sequence, is_of_pool=True)

@@ -56,7 +56,7 @@ def applications(draw):
     waiting = Waiting(slots=draw(st.sampled_from((1, 4))))
     return looping(
         *handles, loop=draw(LOOPS), spin=draw(st.sampled_from((1, 50))), waiting=waiting, takes_first=draw(st.booleans())
-    ), dict((handle.name, cost) for handle, cost in handles)
+    ), {handle.name: cost for handle, cost in handles}
 
 
 def releases(handles, kinds, chance, until):
@@ -70,13 +70,13 @@ def releases(handles, kinds, chance, until):
     return sorted(found, key=lambda each: each[0])
 
 
-@examples(60)
+@examples(24)
 @given(applications(), st.integers(0, 2**32))
 def test_no_call_is_later_and_no_loss_is_untold(application, seed):
     model, costs = application
     result, executor, chance = evaluate(model), model.executors[0], random.Random(seed)
     spin = model.runnables[executor.spin].activities[0].demand.ticks.value
-    until = 500 * MS
+    until = 300 * MS
     run = play(
         executor,
         costs,
