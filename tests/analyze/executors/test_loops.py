@@ -234,3 +234,15 @@ def test_several_handles_of_a_callback_are_one_callback():
     assert [callback.name for callback in found.callbacks] == ["On_a"]
     # The other one before it.
     assert found.callbacks["On_a"].response.worst == (2 * 100 + 3 * 0.5) * MS
+
+
+@pytest.mark.parametrize(("sleep", "is_known"), [(0, False), (1, True)])
+def test_rounds_that_wait_for_acknowledgements_can_follow_each_other(sleep, is_known):
+    # Without a sleep, what became due in the second of the publication is executed at once afterwards.
+    publishing = timer("t", 500_000, 1000, publications=(waiting_publication(),))
+    loop = Loop(kind=LoopKind.SPIN_SOME, timeout=100 * MS, sleep=sleep * MS)
+    low = Proc("low", (ticks(1000),), period=100_000, priority=1)
+    found = analyze_system(looping(publishing, message("a", 500_000), loop=loop, others=(low,)))
+    assert (found.processes["low"].response is not None) is is_known
+    alone = analyze_system(looping(publishing, message("a", 500_000), loop=loop))
+    assert not any(finding.rule == "ANA005" for finding in alone.findings)
