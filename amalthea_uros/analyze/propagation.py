@@ -15,10 +15,11 @@ from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_offsets import tightened
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.perf.activities import Trigger, walk
+from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.software import Process
 from amalthea_uros.timing.activation import Output, UnknownActivationError
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, Periodic
 from amalthea_uros.timing.executors.bursts import dense_rounds
 from amalthea_uros.timing.limits import MAX_INPUT
@@ -123,8 +124,11 @@ def _is_above_others(item: ScheduledProcess, context: TimingContext) -> bool:
 
 def _triggers_others(item: ScheduledProcess, context: TimingContext) -> bool:
     """Whether a process activates others."""
-    bodies = (item.process.activities, *(runnable.activities for runnable in context.system.software.runnables))
-    return any(isinstance(activity, Trigger) for body in bodies for activity in walk(body))
+    try:
+        positions = context.dataflow.events.positions(item.name)
+    except UnresolvedError:
+        return True
+    return any(isinstance(position.activity, Trigger) for position in positions)
 
 
 def _output(solution: Solution, responses: Mapping[str, Response]) -> Output:

@@ -11,7 +11,7 @@ from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Events
 from amalthea_uros.perf.mapping import Mapping
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.perf.software import Isr, Software, Task
+from amalthea_uros.perf.software import Isr, Label, Software, Task
 from amalthea_uros.perf.stimuli import Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
@@ -27,6 +27,9 @@ from amalthea_uros.uros.can import CanBus
 from amalthea_uros.uros.chain_elements import chain_elements
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
+from amalthea_uros.uros.executors.activation import triggered_rounds
+from amalthea_uros.uros.executors.deadlines import deadlines
+from amalthea_uros.uros.executors.serving import placement
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
@@ -48,7 +51,8 @@ class Assembly(Brief):
 
     Attributes
     ----------
-    choices : the periods of the executor and of the callbacks' tasks, with reasons
+    choices : the periods of executors without a loop and of the callbacks' tasks, with reasons
+    placement : where callbacks run that do not say so, and who decided it; "" without callbacks
     bus, messages : the CAN bus, None if there is none, and what is sent on it
     pools : static pools of the middleware
     findings : of severity warning and info
@@ -57,6 +61,7 @@ class Assembly(Brief):
 
     system: System
     choices: tuple[PeriodChoice, ...]
+    placement: str
     messages: tuple[BusMessage, ...]
     bus: CanBus | None
     initialisation: Initialisation | None
@@ -94,7 +99,7 @@ def assemble(description: Description, hardware: Hardware, platform: str | None)
 
 def _assembly(context: AssemblyContext) -> Assembly:
     application, middleware = context.description.application, context.description.middleware
-    callbacks = callbacks_of(application, middleware.executor, context.notes)
+    callbacks = callbacks_of(application, middleware, context.notes)
     messages = bus_messages(callbacks, middleware.transport)
     check_bus_load(messages, middleware.transport, context.notes)
     check_identifiers(messages, middleware.transport, context.notes)
@@ -112,12 +117,14 @@ def _assembly(context: AssemblyContext) -> Assembly:
         context.notes.error("APP009", message, context.description.location(), advice)
     system = _system(context, callbacks)
     response_time = middleware.initialisation.response_time
+    first = next((choice for choice in choices if choice.task == choice.executor), None)
     return Assembly(
         system=system,
         choices=choices,
+        placement=placement(context.description, context.controller.platform) if callbacks else "",
         messages=messages,
         bus=bus_of(middleware.transport.can) if middleware.transport.can is not None else None,
-        initialisation=initialisation(application, choices[0].period, response_time) if choices else None,
+        initialisation=initialisation(application, first.period, response_time) if first else None,
         pools=pools,
         findings=tuple(context.notes.findings),
         task_periods=tuple(middleware.task_periods),
@@ -131,6 +138,20 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
     labels = labels_of(description, callbacks, context.runnables)
     check_unique_data(labels, context.channels.values(), notes)
     elements = chain_elements(context, callbacks)
+    system = _without_demands(context, labels)
+    check_shared_priorities(system, context.tasks, notes)
+    chains = Chains(elements, Dataflow(system), notes)
+    limits = chains.add_all(description.chains)
+    demanded = (*requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))
+    return replace(
+        system,
+        events=Events(events=tuple(chains.events.values()), chains=tuple(chains.chains.values())),
+        constraints=Constraints(constraints=limits, requirements=demanded),
+    )
+
+
+def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> System:
+    """The system without event chains and requirements."""
     system = System(
         hardware=context.controller.hardware,
         os=os_of(context),
@@ -139,25 +160,17 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
             tasks=tuple(map(_task, context.tasks)),
             isrs=tuple(map(_isr, context.isrs)),
             runnables=tuple(context.runnables.values()),
-            labels=labels,
+            labels=tuple(labels),
             channels=tuple(context.channels.values()),
         ),
         mapping=Mapping(
             tasks=tuple(task_allocations(context)),
             isrs=tuple(isr_allocations(context)),
-            placements=tuple(placements(labels, description, context.controller, notes)),
+            placements=tuple(placements(labels, context.description, context.controller, context.notes)),
         ),
+        executors=tuple(context.executors),
     )
-    check_shared_priorities(system, context.tasks, notes)
-    chains = Chains(elements, Dataflow(system), notes)
-    limits = chains.add_all(description.chains)
-    return replace(
-        system,
-        events=Events(events=tuple(chains.events.values()), chains=tuple(chains.chains.values())),
-        constraints=Constraints(
-            constraints=limits, requirements=tuple(requirements(description.requirements, elements, notes))
-        ),
-    )
+    return triggered_rounds(system)
 
 
 def _task(planned: PlannedTask) -> Task:

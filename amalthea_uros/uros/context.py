@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.software import Channel, Runnable
 from amalthea_uros.spec.description import Description
 from amalthea_uros.uros.demand import DemandConverter
@@ -23,6 +24,7 @@ class AssemblyContext:
     ----------
     runnables : by name, in the order of their creation
     channels : by name, of the messages that the application sends and receives itself
+    executors : that spin in loops
     """
 
     description: Description
@@ -33,6 +35,7 @@ class AssemblyContext:
     isrs: list[PlannedIsr] = field(default_factory=list)
     runnables: dict[str, Runnable] = field(default_factory=dict)
     channels: Mapping[str, Channel] = field(default_factory=dict)
+    executors: list[Executor] = field(default_factory=list)
 
     @property
     def converter(self) -> DemandConverter:

@@ -124,8 +124,9 @@ def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None
         return Loss(what="messages", is_certain=False, most=None, sequence=sequence)
     if is_pool_enough:
         return None
+    slots = counted(executor.waiting.slots or 0, "slot")
     sequence = (
-        f"{_while_nothing_is_taken(cycle)}messages for all handles of {executor.name} together use its {counted(executor.waiting.slots or 0, 'slot')}; "
+        f"{_while_nothing_is_taken(cycle)}messages for all handles of {executor.name} together use its {slots}; "
         f"a new one for {handle.name} is dropped then"
     )
     return Loss(what="messages", is_certain=False, most=None, sequence=sequence, is_of_pool=True)
