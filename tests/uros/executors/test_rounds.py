@@ -151,3 +151,11 @@ def test_a_deadline_of_a_callback_is_a_requirement_on_its_runnable():
     callbacks = CALLBACKS.replace("execution_time: 300 us,", "execution_time: 300 us, deadline: 15 ms,")
     (requirement,) = described(f"{{{SLEEPING}}}", callbacks).system.constraints.requirements
     assert (requirement.runnable, requirement.limit.value) == ("Control_Callback", 15 * MILLISECOND)
+
+
+def test_with_ticks_rounds_are_only_apart_by_the_sleep():
+    # vTaskDelay of 10 ticks of 1 ms, called at any time between two ticks, ends with the 10th tick from the one before.
+    text = f"{SLEEPING}, execution_time: 20 us"
+    for tick, apart in (("", 10 * MILLISECOND + 20 * MICROSECOND), ("os: {tick: 1 ms}\n", 10 * MILLISECOND)):
+        system = described(f"{{name: Main, {text}}}", more=f"publish: 1 us\n{tick}").system
+        assert system.stimuli_by_name["rounds_of_Main"].distance.lower == apart
