@@ -54,7 +54,8 @@ class Serving:
     @classmethod
     def of(cls, middleware: Middleware, notes: Notes) -> Serving:
         """Those of a middleware, with a finding if they are described twice."""
-        if middleware.executors and middleware.states("executor"):
+        # A platform may describe one executor for applications that describe none.
+        if middleware.executors and middleware.states("executor") and _same_file(*middleware.executors, middleware.executor):
             message = "'executor' and 'executors' exclude each other"
             advice = "Move what is under 'executor' to the first item of 'executors'."
             notes.error("APP003", message, middleware.location("executor"), advice)
@@ -93,3 +94,7 @@ class Serving:
 
     def _choices(self) -> Iterable[str]:
         return (_OWN_TASK, _FIRST, *(executor.name for executor in self.executors))
+
+
+def _same_file(*executors: Executor) -> bool:
+    return len({location.path for each in executors if (location := each.location()) is not None}) <= 1
