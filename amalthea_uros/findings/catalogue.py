@@ -16,6 +16,7 @@ FAMILIES = {
     "APP": "Content of app.yaml",
     "EXE": "Executors that spin in loops",
     "BLD": "Building a model",
+    "GEN": "Generating and checking build options",
     "EXT": "Extracting the performance model",
     "ANA": "Analysing response times",
     "SIM": "Simulating systems",

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from amalthea_uros.spec.section import Section
 from amalthea_uros.spec.values import WHOLE_NUMBER, Count, CountOrNone, Duration, Name, Offset, Priority, Size, SizeOrNothing
-
-S = TypeVar("S", bound=Section)
 
 
 class WaitingData(Section):
@@ -25,8 +23,6 @@ class WaitingData(Section):
     """Whether a guard condition ends the wait."""
     polls_without_messages: bool = True
     """Whether the wait of an executor that only has timers and guard conditions returns at once."""
-    slots: Count | None = None
-    """Messages that can be stored for all handles together; if omitted, any number."""
     default_timeout: Duration = 10**12
     """Timeout of executors for which nobody set one."""
 
@@ -36,14 +32,10 @@ class SendingData(Section):
 
     waits: bool = True
     """Whether a reliable message keeps its sender until it is acknowledged."""
-    timeout: Duration = 10**12
-    """Time after which the sender gives up."""
     flush_timeout: Duration | None = None
     """Time after which it gives up to empty full buffers, when a message is longer than all of them together."""
-    resends_after: Duration | None = None
-    """Time without input after which the receiver is asked what it has; if omitted, the transport cares for losses."""
     heartbeat: Duration | None = None
-    """Least interval of messages that are sent while something is not acknowledged, or to keep a connection alive."""
+    """Least interval of messages of the other side that ask for acknowledgements."""
     holds_session_while_waiting: bool = False
     """Whether a thread that waits for messages keeps others from sending, with several threads."""
     drops_when_busy: bool = False
@@ -93,18 +85,5 @@ class ProfileData(Section):
     sizes: dict[Name, SizeOrNothing] = Field(default_factory=dict)
     """Sizes of headers and other parts of its messages."""
     options: dict[Name, CountOrNone] = Field(default_factory=dict)
-    """Default values of build options that sizes of messages depend on; lengths are in bytes, times in milliseconds."""
-
-
-def completed(own: S, base: S) -> S:
-    """A section with what it does not state from another one, key by key."""
-    added = {}
-    for key in base.model_fields_set:
-        ours, theirs = getattr(own, key), getattr(base, key)
-        if key not in own.model_fields_set:
-            added[key] = theirs
-        elif isinstance(ours, Section):
-            added[key] = completed(ours, theirs)
-        elif isinstance(ours, dict):
-            added[key] = theirs | ours
-    return own.model_copy(update=added)
+    """Default values of build options where they differ from those of the packages, as the build takes them: lengths in bytes, times
+    in milliseconds; `MTU` for that of the transport."""

@@ -16,6 +16,7 @@ from amalthea_uros.perf.stimuli import Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import Hardware
+from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application import add_callbacks, add_interrupt
@@ -29,17 +30,20 @@ from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.executors.activation import is_triggered, round_trigger_name, triggered_rounds
 from amalthea_uros.uros.executors.deadlines import deadlines
+from amalthea_uros.uros.executors.serving import placement
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
+from amalthea_uros.uros.memory.ram import Memory, check_memory, memory_of
 from amalthea_uros.uros.middleware.check import check_middleware
 from amalthea_uros.uros.middleware.load import profile_of
+from amalthea_uros.uros.middleware.profile import Option, Profile
 from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
 from amalthea_uros.uros.overheads import add_overheads
 from amalthea_uros.uros.periods import PeriodChoice
-from amalthea_uros.uros.pools import Pool, check_pools, pools_of
+from amalthea_uros.uros.pools import check_options, options_of, pools_of, static_memory_of
 from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
 from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
@@ -54,23 +58,34 @@ class Assembly(Brief):
 
     Attributes
     ----------
+    description : what was assembled
     choices : the periods of executors without a loop and of the callbacks' tasks, with reasons
+    placement : where callbacks run that do not say so, and who decided it; "" without callbacks
     bus, messages : the classic CAN bus, None if there is none, and what is sent on it
-    pools : static pools of the middleware
+    options : build options of the middleware
+    memory : what micro-ROS takes of it
     findings : of severity warning and info
     task_periods : those that the middleware offers to tasks; empty if it offers any
     priority_scale : what priorities of tasks mean in the description
     """
 
+    description: Description
     system: System
     choices: tuple[PeriodChoice, ...]
+    placement: str
     messages: tuple[BusMessage, ...]
     bus: CanBus | None
     initialisation: Initialisation | None
-    pools: tuple[Pool, ...]
+    options: tuple[Option, ...]
+    memory: Memory
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
     priority_scale: PriorityScale
+
+    @property
+    def pools(self) -> tuple[Option, ...]:
+        """The options that count entities and waiting messages."""
+        return pools_of(self.options)
 
     def system_with_bus(self) -> System | None:
         """The system with its wire as further cores, whose tasks are the messages; None if there is no wire.
@@ -100,28 +115,39 @@ def assemble(
     notes = Notes()
     check_unique_names(description, notes)
     target = controller_of(description.name, hardware, platform, notes)
-    if target is None:
+    profile = _profile(description.middleware, notes)
+    if target is None or profile is None:
         raise ReadError(notes.findings)
-    assembly = _assembly(AssemblyContext(description=description, controller=target, notes=notes), database)
+    context = AssemblyContext(description=description, controller=target, notes=notes, profile=profile)
+    assembly = _assembly(context, hardware, database)
     if notes.has_errors:
         raise ReadError(notes.findings)
     return assembly
 
 
-def _assembly(context: AssemblyContext, database: Sequence[ForeignFrame]) -> Assembly:
+def _profile(middleware: Middleware, notes: Notes) -> Profile | None:
+    """The profile of the middleware; None if it is not known."""
+    try:
+        return profile_of(middleware)
+    except ReadError as error:
+        notes.findings.extend(error.findings)
+        return None
+
+
+def _assembly(context: AssemblyContext, hardware: Hardware, database: Sequence[ForeignFrame]) -> Assembly:
     application, middleware = context.description.application, context.description.middleware
     callbacks = callbacks_of(application, middleware, context.notes)
     messages = bus_messages(callbacks, middleware.transport)
     check_identifiers(messages, middleware.transport, context.notes)
-    pools = pools_of(application, middleware)
-    check_pools(pools, middleware, context.notes)
-    check_middleware(callbacks, middleware, context.notes)
+    options = options_of(application, middleware)
+    check_options(options, middleware, context.notes)
+    check_middleware(callbacks, middleware, context.profile, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
     network = planned_network(
         context,
         callbacks,
-        profile_of(middleware),
+        context.profile,
         tick=context.description.os.tick,
         wakes=[round_trigger_name(each.name) for each in context.executors if is_triggered(each)],
         database=database,
@@ -137,15 +163,20 @@ def _assembly(context: AssemblyContext, database: Sequence[ForeignFrame]) -> Ass
         message = "no callback, task or interrupt service routine is defined"
         context.notes.error("APP009", message, context.description.location(), advice)
     system = _system(context, callbacks, network)
+    memory = memory_of(context.description, hardware, system, static_memory_of(application, middleware))
+    check_memory(memory, hardware, context.notes)
     response_time = middleware.initialisation.response_time
     first = next((choice for choice in choices if choice.task == choice.executor), None)
     return Assembly(
+        description=context.description,
         system=system,
         choices=choices,
+        placement=placement(context.description, context.controller.platform) if callbacks else "",
         messages=messages,
         bus=bus_of(middleware.transport.can) if middleware.transport.can is not None else None,
         initialisation=initialisation(application, first.period, response_time) if first else None,
-        pools=pools,
+        options=tuple(options),
+        memory=memory,
         findings=tuple(context.notes.findings),
         task_periods=tuple(middleware.task_periods),
         priority_scale=context.priority_scale,

@@ -52,7 +52,7 @@ def extract_executors(tasks: Iterable[am.Task], system: System, context: Extract
 
 
 def _executor(context: Extracting, task: Element, text: str) -> Executor:
-    return from_text(Executor, text, task=context.names[task])
+    return from_text(Executor, text, task=context.names[task], origin=partial(context.location, task))
 
 
 def extract_network(models: Iterable[am.SWModel], tasks: Iterable[am.Task], system: System, context: Extracting) -> Network:
@@ -66,7 +66,7 @@ def extract_network(models: Iterable[am.SWModel], tasks: Iterable[am.Task], syst
     transmissions = _extracted(
         tasks,
         _TRANSMISSION,
-        lambda task, text: from_text(Transmission, text, name=context.names[task]),
+        lambda task, text: from_text(Transmission, text, name=context.names[task], origin=partial(context.location, task)),
         lambda each: _flaw_of_transmission(each, network, system),
         context,
     )

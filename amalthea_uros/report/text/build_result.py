@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.activation_text import activation_text
+from amalthea_uros.report.memory_text import memory_rows
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.units import time_text
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.initialisation import Initialisation
+from amalthea_uros.uros.memory.ram import Memory
 
 
 def write(result: BuildResult, terminal: Terminal) -> None:
@@ -18,11 +21,13 @@ def write(result: BuildResult, terminal: Terminal) -> None:
     assembly = result.assembly
     _tasks(terminal, assembly)
     _isrs(terminal, assembly.system)
+    _executors(terminal, assembly)
     _traffic(terminal, assembly)
     if assembly.initialisation is not None:
         terminal.heading("Initialisation of the middleware")
         terminal.line(f"  {start_text(assembly.initialisation)}")
     _pools(terminal, assembly)
+    _memory(terminal, assembly.memory)
 
 
 def write_closing(result: BuildResult, terminal: Terminal) -> None:
@@ -59,6 +64,39 @@ def _isrs(terminal: Terminal, system: System) -> None:
         terminal.table(("ISR", "activated", "priority", "core"), rows, right=(2,))
 
 
+def _executors(terminal: Terminal, assembly: Assembly) -> None:
+    executors = assembly.system.executors
+    if not executors:
+        return
+    terminal.heading(f"Executors ({len(executors)})")
+    terminal.line(f"  {assembly.placement}")
+    for executor in executors:
+        terminal.line(f"  {executor.name}: {loop_text(executor)}")
+    rows = [
+        (
+            executor.name,
+            number,
+            handle.name,
+            handle.kind,
+            "-" if handle.interval is None else time_text(handle.interval),
+            handle.runnable,
+        )
+        for executor in executors
+        for number, handle in enumerate(executor.handles, start=1)
+    ]
+    terminal.table(("executor", "order", "handle", "kind", "interval", "calls"), rows, right=(1, 4))
+
+
+def loop_text(executor: Executor) -> str:
+    """How an executor spins, in words."""
+    loop = executor.loop
+    timeout = f"timeout {time_text(loop.timeout)}"
+    period = "" if loop.period is None else f", period {time_text(loop.period)}"
+    sleep = f", sleep {time_text(loop.sleep)}" if loop.sleep else ""
+    semantics = ", all messages are taken first (LET)" if executor.takes_first else ""
+    return f"{loop.kind}, {timeout}{period}{sleep}; trigger condition {executor.trigger.kind}{semantics}"
+
+
 def _traffic(terminal: Terminal, assembly: Assembly) -> None:
     if not assembly.messages:
         return
@@ -93,5 +131,12 @@ def _pools(terminal: Terminal, assembly: Assembly) -> None:
     if not used:
         return
     terminal.heading("Static pools")
-    rows = [(pool.option, pool.needed, pool.available, "" if pool.configured else "default") for pool in used]
+    rows = [(pool.name, pool.needed, pool.available, "" if pool.is_stated else "default") for pool in used]
     terminal.table(("option", "needed", "available", ""), rows, right=(1, 2))
+
+
+def _memory(terminal: Terminal, memory: Memory) -> None:
+    rows = memory_rows(memory)
+    if rows:
+        terminal.heading("Memory")
+        terminal.table(("part", "size", ""), rows, right=(1,))

@@ -17,7 +17,6 @@ from amalthea_uros.uros.executors.activation import activation
 from amalthea_uros.uros.executors.checks import check_executor
 from amalthea_uros.uros.executors.handles import handle_names, handles_of
 from amalthea_uros.uros.executors.loops import loop_of
-from amalthea_uros.uros.executors.profile import waiting_of
 from amalthea_uros.uros.executors.rounds import has_one_message_per_round, polls_before_timers, round_activities
 from amalthea_uros.uros.executors.triggers import trigger_of
 from amalthea_uros.uros.tasks import PlannedTask
@@ -91,8 +90,8 @@ def _executor(
             if runnable.activities or runnable is body:
                 context.runnables[runnable.name] = runnable
         own_take = take if take.activities and callback.in_executor else None
-        handles += handles_of(callback, own_take, body, middleware)
-    waiting = waiting_of(middleware)
+        handles += handles_of(callback, own_take, body, middleware, context.profile)
+    waiting = context.profile.waiting(middleware)
     return Executor(
         name=section.name,
         task=section.name,

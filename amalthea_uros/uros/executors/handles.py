@@ -1,25 +1,21 @@
-"""The handles of an executor: one for each callback, several for the services of parameters and of the lifecycle.
-
-Default depths are those of the quality of service profiles in ros2/rmw `rmw/include/rmw/qos_profiles.h`: 10 by default, 5 for sensor
-data, which is the usual profile of best effort.
-"""
+"""The handles of an executor: one for each callback, several for the services of parameters and of the lifecycle."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
-from amalthea_uros.perf.executors import Handle, HandleKind, Publication
+from amalthea_uros.perf.executors import Handle, HandleKind
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec.application import MessageCallback, Subscription
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.units import SECOND
 from amalthea_uros.uros.callbacks import Callback, CallbackKind, transmission_name_of
 from amalthea_uros.uros.executors.counts import handle_count, source_count
-from amalthea_uros.uros.executors.profile import publications_of
 from amalthea_uros.uros.executors.wires import describes_wire
+from amalthea_uros.uros.middleware.histories import depth_of
+from amalthea_uros.uros.middleware.profile import Profile
+from amalthea_uros.uros.publications import publications
 
-_DEPTH_RELIABLE, _DEPTH_BEST_EFFORT = 10, 5
 _KINDS = {
     CallbackKind.SUBSCRIPTION: HandleKind.SUBSCRIPTION,
     CallbackKind.TIMER: HandleKind.TIMER,
@@ -40,7 +36,9 @@ def handle_names(callback: Callback) -> tuple[str, ...]:
     return (callback.name,)
 
 
-def handles_of(callback: Callback, take: Runnable | None, body: Runnable, middleware: Middleware) -> Iterator[Handle]:
+def handles_of(
+    callback: Callback, take: Runnable | None, body: Runnable, middleware: Middleware, profile: Profile
+) -> Iterator[Handle]:
     """The handles of a callback in its executor.
 
     Parameters
@@ -66,28 +64,12 @@ def handles_of(callback: Callback, take: Runnable | None, body: Runnable, middle
             transmission_name_of(incoming, incoming=True) if incoming and describes_wire(middleware.transport) else None
         ),
         always=isinstance(section, Subscription) and section.invocation == "always",
-        depth=_depth(section, reliable) if isinstance(section, MessageCallback) else None,
+        depth=depth_of(section),
         overwrites=not isinstance(section, MessageCallback) or section.history == "keep-last",
         reliable=reliable,
         sources=source_count(callback),
-        publications=tuple(_publications(callback, middleware)) if callback.in_executor else (),
+        publications=publications(callback, middleware, profile) if callback.in_executor else (),
         origin=callback.origin,
     )
     for name in handle_names(callback):
         yield replace(handle, name=name)
-
-
-def _depth(section: MessageCallback, reliable: bool) -> int:
-    return section.depth or (_DEPTH_RELIABLE if reliable else _DEPTH_BEST_EFFORT)
-
-
-def _publications(callback: Callback, middleware: Middleware) -> Sequence[Publication]:
-    if callback.kind not in (CallbackKind.PARAMETERS, CallbackKind.LIFECYCLE):
-        return publications_of(callback, middleware)
-    # Its sizes are not described, but responses are reliable, and keep the executor as others do.
-    waits = middleware.reliable.waits
-    timeout = (middleware.reliable.timeout or SECOND) if waits else None
-    answer = Publication(topic=f"{callback.name} (response)", reliable=True, waits=waits, timeout=timeout)
-    server = callback.node.parameter_server if callback.kind is CallbackKind.PARAMETERS else None
-    changes = Publication(topic="parameter_events", reliable=True, waits=waits, timeout=timeout)
-    return (answer, changes) if server is not None and server.events else (answer,)

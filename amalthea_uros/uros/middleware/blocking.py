@@ -8,6 +8,7 @@ from amalthea_uros.spec.executors import Executor
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.callbacks import Callback
+from amalthea_uros.uros.executors.serving import stated_executors
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.notes import Notes
 
@@ -15,16 +16,12 @@ from amalthea_uros.uros.notes import Notes
 def check_blocking(callbacks: Sequence[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
     """Report waiting that execution times and response times do not contain, and threads that are not kept apart."""
     senders = [callback for callback in callbacks if callback.outgoing]
-    loops = [executor for executor in _executors(middleware) if executor.loop is not None]
-    outside = [callback for callback in senders if not (loops and callback.in_executor)]
+    loops = {executor.name: executor for executor in stated_executors(middleware) if executor.loop is not None}
+    outside = [callback for callback in senders if not (callback.in_executor and callback.executor in loops)]
     _check_waiting_outside(outside, middleware, profile, notes)
     _check_recovery(callbacks, middleware, profile, notes)
     if len(loops) > 1 or (loops and outside):
-        _check_threads(senders, loops, middleware, profile, notes)
-
-
-def _executors(middleware: Middleware) -> Sequence[Executor]:
-    return middleware.executors or [middleware.executor]
+        _check_threads(senders, tuple(loops.values()), middleware, profile, notes)
 
 
 def _check_waiting_outside(senders: Iterable[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:

@@ -4,25 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.middleware.blocking import check_blocking
 from amalthea_uros.uros.middleware.histories import check_histories
-from amalthea_uros.uros.middleware.load import profile_of
 from amalthea_uros.uros.middleware.message_sizes import check_message_sizes
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.middleware.streams import check_streams
 from amalthea_uros.uros.notes import Notes
 
 
-def check_middleware(callbacks: Sequence[Callback], middleware: Middleware, notes: Notes) -> None:
-    """Report what an application asks too much of its middleware; nothing but its profile if that cannot be read."""
-    try:
-        profile = profile_of(middleware)
-    except ReadError as error:
-        notes.findings.extend(error.findings)
-        return
+def check_middleware(callbacks: Sequence[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
+    """Report what an application asks too much of its middleware."""
     check_message_sizes(callbacks, middleware, profile, notes)
     check_streams(callbacks, middleware, profile, notes)
     check_blocking(callbacks, middleware, profile, notes)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from amalthea_uros.perf.executors import Waiting
-from amalthea_uros.spec.middleware import Middleware, PoolSizes
+from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.units import DataSize
-from amalthea_uros.uros.middleware.profile import MiddlewareThread
+from amalthea_uros.uros.middleware.profile import MiddlewareThread, Option
 
 
 def size(data: ProfileData, name: str) -> int:
@@ -16,16 +16,9 @@ def size(data: ProfileData, name: str) -> int:
     return _bytes(data.sizes[name])
 
 
-def stated(limits: PoolSizes, *names: str) -> int | None:
-    """What the description states for the first of some build options that it states; None for none."""
-    values = (getattr(limits, name) for name in names if limits.states(name))
-    return next(values, None)
-
-
-def stated_length(limits: PoolSizes, *names: str) -> int | None:
-    """The same for options that are lengths, in bytes."""
-    length = stated(limits, *names)
-    return None if length is None else _bytes(length)
+def option(options: Iterable[Option], name: str) -> int:
+    """The value of a build option."""
+    return next(each.available for each in options if each.name == name)
 
 
 def _bytes(bits: DataSize) -> int:

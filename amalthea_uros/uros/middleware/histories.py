@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from amalthea_uros.spec.application import MessageCallback
+from amalthea_uros.spec.application import Callback as Section
+from amalthea_uros.spec.application import MessageCallback, Subscription
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.callbacks import Callback
+from amalthea_uros.uros.executors.serving import stated_executors
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.notes import Notes
 
 #: Depths of the profiles `rmw_qos_profile_default` and `rmw_qos_profile_sensor_data` in ros2/rmw rmw/include/rmw/qos_profiles.h.
-RELIABLE_DEPTH, BEST_EFFORT_DEPTH = 10, 5
+_RELIABLE, _BEST_EFFORT = 10, 5
 
 
-def depth_of(callback: Callback) -> int | None:
+def depth_of(section: Section) -> int | None:
     """The depth of the history of a callback's messages; None if it has none."""
-    if callback.incoming is None or not isinstance(callback.section, MessageCallback):
+    if not isinstance(section, MessageCallback):
         return None
-    stated = callback.section.depth
-    default = RELIABLE_DEPTH if callback.incoming.reliable else BEST_EFFORT_DEPTH
-    return default if stated is None else stated
+    is_best_effort = isinstance(section, Subscription) and section.reliability == "best-effort"
+    return section.depth or (_BEST_EFFORT if is_best_effort else _RELIABLE)
 
 
 def check_histories(callbacks: Sequence[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
@@ -29,21 +30,23 @@ def check_histories(callbacks: Sequence[Callback], middleware: Middleware, profi
     if slots is None:
         return
     by_default = []
+    loops = {executor.name for executor in stated_executors(middleware) if executor.loop is not None}
     for callback in callbacks:
-        depth = depth_of(callback)
-        if depth is None or depth <= slots or not isinstance(callback.section, MessageCallback):
+        depth = depth_of(callback.section)
+        if depth is None or depth <= slots:
             continue
         if callback.section.states("depth"):
             text = (
                 f"the history of {callback.name!r} is {depth} messages deep, but only {slots} can be stored for all callbacks"
             )
             notes.warning("UR125", f"{text}: {_effect(callback)}", callback.section.location("depth"), _ADVICE)
-        elif callback.in_executor and _loops(middleware):
+        elif callback.executor in loops:
             by_default.append(callback)
     if by_default:
         names = ", ".join(repr(callback.name) for callback in by_default)
-        text = f"histories are 10 messages deep by default, but only {slots} can be stored for all callbacks"
-        notes.info("UR125", f"{text}: {_effect(by_default[0])}: {names}", middleware.location("limits"), _ADVICE)
+        text = f"by default, the histories of {names} are deeper than the storage for messages of all callbacks, {slots}"
+        place = middleware.limits.location("RMW_UXRCE_MAX_HISTORY")
+        notes.info("UR125", f"{text}: {_effect(by_default[0])}", place, _ADVICE)
 
 
 _ADVICE = "Set RMW_UXRCE_MAX_HISTORY to the messages that can wait at the same time, or a smaller 'depth'."
@@ -54,7 +57,3 @@ def _effect(callback: Callback) -> str:
     assert isinstance(callback.section, MessageCallback)
     expected = "the oldest one being overwritten" if callback.section.history == "keep-last" else "more being kept"
     return f"a new message of any topic is dropped instead of {expected}"
-
-
-def _loops(middleware: Middleware) -> bool:
-    return any(executor.loop is not None for executor in (*middleware.executors, middleware.executor))

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
-from amalthea_uros._internal.similar import did_you_mean
+from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.spec.merging import merged
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.spec.profiles import ProfileData, completed
+from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.spec.read import read_section
 from amalthea_uros.uros.middleware.profile import Profile
+from amalthea_uros.uros.middleware.xrce_dds.pools import rows as xrce_rows
 from amalthea_uros.uros.middleware.xrce_dds.profile import XrceDds
+from amalthea_uros.uros.middleware.zenoh_pico.pools import rows as zenoh_rows
 from amalthea_uros.uros.middleware.zenoh_pico.profile import ZenohPico
 
 _SUFFIXES = (".yaml", ".yml")
+#: Keys with figures by name, and what these are; a file can change single ones.
+_TABLES = {"sizes": "size", "options": "build option"}
+_OPTIONS = {"xrce-dds": xrce_rows, "zenoh-pico": zenoh_rows}
 #: The middlewares whose rules are known, by the names of their profiles.
 KNOWN: Mapping[str, Callable[[ProfileData], Profile]] = {"xrce-dds": XrceDds, "zenoh-pico": ZenohPico}
 
@@ -40,8 +46,9 @@ def profile_of(middleware: Middleware, folder: Path | None = None) -> Profile:
         message = f"the profile {own.profile!r} does not name the one that it changes"
         raise _mistake("APP003", message, own.location(), f"Set 'base' to one of: {', '.join(KNOWN)}.")
     base = known_data(_known(own.base, own.location("base")))
-    _check_names(own, base)
-    return KNOWN[own.base](completed(own, base))
+    _check_names(own, {"sizes": base.sizes, "options": ["MTU", *_OPTIONS[own.base]()]})
+    tables = {key: getattr(base, key) | getattr(own, key) for key in _TABLES}
+    return KNOWN[own.base](merged(own, base).model_copy(update=tables))
 
 
 @cache
@@ -53,7 +60,7 @@ def known_data(name: str) -> ProfileData:
 def _known(name: str, place: Location | None) -> str:
     if name not in KNOWN:
         others = f"Known profiles: {', '.join(KNOWN)}; or give a file, e.g. ./my-middleware.yaml."
-        raise _mistake("APP001", f"unknown profile {name!r}", place, did_you_mean(name, KNOWN) or others)
+        raise _mistake("APP001", f"unknown profile {name!r}", place, _suggestion(name, KNOWN, others))
     return name
 
 
@@ -67,16 +74,22 @@ def _file(name: str, folder: Path | None, place: Location | None) -> Path:
     return path
 
 
-def _check_names(own: ProfileData, base: ProfileData) -> None:
+def _check_names(own: ProfileData, names: Mapping[str, Collection[str]]) -> None:
     """Refuse figures that the code of the base does not ask for."""
-    findings = [
-        Finding("APP001", Severity.ERROR, f"unknown {what} {name!r}", own.location(key), did_you_mean(name, known))
-        for key, what in (("sizes", "size"), ("options", "build option"))
-        for name in getattr(own, key)
-        if name not in (known := getattr(base, key))
-    ]
+    findings = []
+    for key, what in _TABLES.items():
+        known = names[key]
+        for name in getattr(own, key):
+            if name not in known:
+                advice = _suggestion(name, known, f"Use one of: {', '.join(known)}.")
+                findings.append(Finding("APP001", Severity.ERROR, f"unknown {what} {name!r}", own.location(key), advice))
     if findings:
         raise ReadError(findings)
+
+
+def _suggestion(name: str, known: Iterable[str], others: str) -> str:
+    near = similar(name, known)
+    return f"Did you mean {near[0]!r}?" if near else others
 
 
 def _mistake(rule: str, message: str, place: Location | None, advice: str) -> ReadError:

@@ -43,6 +43,15 @@ class Part(Brief):
     acknowledgement: int | None = None
 
 
+class OptionRole(StrEnum):
+    """What depends on the value of a build option."""
+
+    POOL = "pool"  # how many things can be created
+    QUEUE = "queue"  # how many messages can wait; more of them are lost
+    ROOM = "room"  # how long a name can be
+    SETTING = "setting"  # times and sizes that the figures depend on
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Option(Brief):
     """A build option of the middleware.
@@ -56,6 +65,10 @@ class Option(Brief):
     unit : such as "B" or "ms"; "" for a number of things
     counts : what it counts, for a comment
     when_exhausted : what happens when the application needs more
+    least : smallest value that the build takes
+    is_power_of_two : whether the build takes powers of two only
+    words : values that are words, by their numbers; () if they are numbers
+    without_effect : why the value that is stated has no effect; "" if it has
     """
 
     name: str
@@ -63,14 +76,33 @@ class Option(Brief):
     needed: int | None
     available: int
     is_stated: bool
+    role: OptionRole = OptionRole.POOL
     unit: str = ""
     counts: str = ""
     when_exhausted: str = ""
+    least: int = 0
+    is_power_of_two: bool = False
+    words: tuple[str, ...] = ()
+    without_effect: str = ""
 
     @property
     def is_exceeded(self) -> bool:
-        """Whether the application needs more than there is."""
-        return self.needed is not None and self.needed > self.available
+        """Whether the application needs more than there is, or something else."""
+        if self.needed is None:
+            return False
+        return self.needed != self.available if self.words else self.needed > self.available
+
+    @property
+    def smallest(self) -> int | None:
+        """The smallest value that the build takes and with which the application works; None if it has no use for it."""
+        if self.needed is None:
+            return None
+        value = max(self.needed, self.least)
+        return 1 << (value - 1).bit_length() if self.is_power_of_two else value
+
+    def text(self, value: int) -> str:
+        """A value as the build takes it."""
+        return self.words[value] if self.words else str(value)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

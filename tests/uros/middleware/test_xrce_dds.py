@@ -11,6 +11,8 @@ from amalthea_uros.uros.middleware.profile import MessageKind
 
 CAN_FD = {"can_fd": {"bitrate": "500 kbit/s", "data_bitrate": "2 Mbit/s"}}
 SERIAL = {"serial": {"baud_rate": 115200}}
+#: Options for the directions count only together.
+BOTH = {"RMW_UXRCE_STREAM_HISTORY_INPUT": 8, "RMW_UXRCE_STREAM_HISTORY_OUTPUT": 2}
 SENT = (MessageKind.PUBLICATION, MessageKind.REQUEST_OUT, MessageKind.RESPONSE_OUT)
 RECEIVED = (MessageKind.DELIVERY, MessageKind.REQUEST_IN, MessageKind.RESPONSE_IN)
 
@@ -79,6 +81,7 @@ def test_fragments_fill_the_buffers():
         ({"transport": SERIAL}, 500, 496),
         ({"transport": CAN_FD}, 48, 44),
         ({"limits": {"RMW_UXRCE_MTU": "256 B"}}, 244, 240),
+        ({"transport": SERIAL, "limits": {"UCLIENT_CUSTOM_TRANSPORT_MTU": "128 B"}}, 116, 112),
         # A constant of the transport, whatever the options say.
         ({"transport": CAN_FD, "limits": {"RMW_UXRCE_MTU": "256 B"}}, 48, 44),
     ],
@@ -96,6 +99,9 @@ def test_the_longest_messages_that_are_not_cut(keys, best_effort, unfragmented):
         (MessageKind.DELIVERY, {}, 500 * 4 - 8),
         (MessageKind.DELIVERY, {"limits": {"RMW_UXRCE_STREAM_HISTORY": 8}}, 500 * 8 - 8),
         (MessageKind.DELIVERY, {"transport": CAN_FD}, 51 * 4 - 8),
+        (MessageKind.DELIVERY, {"limits": {"RMW_UXRCE_STREAM_HISTORY_INPUT": 8}}, 500 * 4 - 8),
+        (MessageKind.DELIVERY, {"limits": BOTH}, 500 * 8 - 8),
+        (MessageKind.PUBLICATION, {"limits": BOTH, "multithread": True}, 500 * 2 - 8),
         (MessageKind.REQUEST_IN, {}, 500 * 4 - 8 - 24),
         (MessageKind.RESPONSE_IN, {}, 500 * 4 - 8 - 4),
         # The length of a submessage has 16 bits: 4 B of the entity, and aligned.
@@ -138,6 +144,7 @@ def test_an_overhead_that_is_stated_counts_as_it_always_has():
     [
         ({}, 8, SECOND),
         ({"reliable": {"timeout": "20 ms"}}, 8, 20 * MILLISECOND),
+        ({"limits": {"RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT": "20 ms"}}, 8, 20 * MILLISECOND),
         ({"reliable": {"waits": False}}, 8, None),
         # 1992 B in the four buffers; longer ones wait up to 1 s for each time that these are full, whatever the timeout is.
         ({"reliable": {"timeout": "20 ms"}}, 1992, 20 * MILLISECOND),
@@ -173,5 +180,8 @@ def test_several_threads_wait_for_each_other_only_if_they_are_protected():
 
 
 def test_heartbeats():
-    # HEARTBEAT of 13 B; the client sends one after 100 ms.
-    assert profile_of(middleware()).heartbeat(middleware()) == (13, 100 * MILLISECOND)
+    # HEARTBEAT of 13 B; the client sends one after 100 ms by default, the agent after 200 ms.
+    for keys, interval in (({}, 100), ({"limits": {"UCLIENT_MIN_HEARTBEAT_TIME_INTERVAL": "1 ms"}}, 1)):
+        described = middleware(**keys)
+        assert profile_of(described).heartbeat(described) == (13, interval * MILLISECOND)
+        assert profile_of(described).sending(described).resends_after == interval * MILLISECOND

@@ -1,1 +1,1 @@
-"""Micro XRCE-DDS, the middleware of micro-ROS."""
+"""XRCE-DDS: rmw_microxrcedds with its client, the middleware of micro-ROS."""

@@ -13,7 +13,7 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.uros.middleware.figures import size
 from amalthea_uros.uros.middleware.profile import MessageKind, Part
-from amalthea_uros.uros.middleware.xrce_dds.limits import history, mtu
+from amalthea_uros.uros.middleware.xrce_dds.limits import input_history, mtu, output_history
 
 #: What some messages have before their content, beside the identifier of the entity.
 _EXTRA = {
@@ -51,8 +51,8 @@ def _longest_fragmented(kind: MessageKind, waits: bool, middleware: Middleware, 
     """
     if kind in _SENT and waits and not middleware.multithread:
         return size(data, "longest_payload")
-    buffers = history(middleware, data, "OUTPUT" if kind in _SENT else "INPUT")
-    return _piece(middleware, data) * buffers - size(data, "submessage_header")
+    history = output_history if kind in _SENT else input_history
+    return _piece(middleware, data) * history(middleware, data) - size(data, "submessage_header")
 
 
 def _headers(data: ProfileData) -> int:

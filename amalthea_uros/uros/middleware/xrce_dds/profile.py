@@ -54,10 +54,8 @@ class XrceDds:
 
     def heartbeat(self, middleware: Middleware) -> tuple[int, Time] | None:
         """Length and least interval of heartbeats, which follow each other while something is not acknowledged."""
-        interval = self.data.sending.heartbeat
-        stated = limits.heartbeat_interval(middleware, self.data)
-        found = [each for each in (interval, stated) if each is not None]
-        return (figures.size(self.data, "heartbeat"), min(found)) if found else None
+        client = limits.heartbeat_interval(middleware, self.data)
+        return figures.size(self.data, "heartbeat"), min(client, self.data.sending.heartbeat or client)
 
     def gives_up_after(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Time | None:
         """Time after which a sender stops waiting."""
@@ -70,17 +68,18 @@ class XrceDds:
 
     def limiting_options(self, *, reliable: bool, middleware: Middleware) -> Sequence[str]:
         """The build options that limit the content of messages."""
-        options = limits.mtu_options(middleware)
-        return (*options, *limits.HISTORY_OPTIONS) if reliable else options
+        option = pools.mtu_option(middleware)
+        options = () if option is None else (option,)
+        return (*options, "RMW_UXRCE_STREAM_HISTORY") if reliable else options
 
     def buffers(self, middleware: Middleware) -> int | None:
         """The number of buffers of the reliable stream to the agent."""
-        return limits.history(middleware, self.data, "OUTPUT")
+        return limits.output_history(middleware, self.data)
 
     def options(self, application: Application, middleware: Middleware) -> Sequence[Option]:
         """Its build options."""
-        return pools.options(application, middleware, self.data)
+        return pools.options(application, middleware, self.data.options)
 
     def memory(self, application: Application, middleware: Middleware) -> Sequence[MemoryUse]:
         """What it occupies."""
-        return memory.memory(application, middleware, self.data)
+        return memory.memory(application, middleware, self.data.options)

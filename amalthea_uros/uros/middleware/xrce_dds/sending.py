@@ -10,7 +10,7 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.units import Time
 from amalthea_uros.uros.middleware.profile import MessageKind, Sending
-from amalthea_uros.uros.middleware.xrce_dds.limits import heartbeat_interval, history, publish_timeout
+from amalthea_uros.uros.middleware.xrce_dds.limits import heartbeat_interval, output_history, publish_timeout
 from amalthea_uros.uros.middleware.xrce_dds.messages import parts
 
 
@@ -37,5 +37,5 @@ def gives_up_after(
     if not (reliable and how.waits):
         return None
     fragments = len(parts(kind, content, reliable=True, middleware=middleware, data=data))
-    flushes = -(-fragments // history(middleware, data, "OUTPUT")) - 1
+    flushes = -(-fragments // output_history(middleware, data)) - 1
     return how.timeout + flushes * (data.sending.flush_timeout or how.timeout)

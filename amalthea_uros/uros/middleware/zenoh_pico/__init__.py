@@ -1,1 +1,1 @@
-"""zenoh-pico, with rmw_zenoh_pico below rclc."""
+"""zenoh-pico, with rmw_zenoh_pico."""

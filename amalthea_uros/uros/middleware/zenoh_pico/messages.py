@@ -9,10 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import repeat
 
+from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData
-from amalthea_uros.uros.middleware.figures import size, stated_length
+from amalthea_uros.uros.middleware.figures import option, size
 from amalthea_uros.uros.middleware.profile import MessageKind, Part
+from amalthea_uros.uros.middleware.zenoh_pico.pools import options
 
 _MESSAGES = ("push_header", "key", "put_header", "attachment", "encapsulation")
 _FRAME = ("frame_header", "sequence_number")
@@ -42,8 +44,7 @@ def batch(middleware: Middleware, data: ProfileData) -> int:
 
 
 def _limit(name: str, middleware: Middleware, data: ProfileData) -> int:
-    length = stated_length(middleware.limits, name, f"Z_{name}")
-    return data.options[name] if length is None else length
+    return option(options(Application(), middleware, data.options), name)
 
 
 def _overhead(kind: MessageKind, reliable: bool, data: ProfileData) -> int:

@@ -9,10 +9,13 @@ from amalthea_uros.perf.executors import Waiting
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData
-from amalthea_uros.units import Time
+from amalthea_uros.units import MILLISECOND, Time
 from amalthea_uros.uros.middleware import figures
 from amalthea_uros.uros.middleware.profile import MemoryUse, MessageKind, MiddlewareThread, Option, Part, Sending
 from amalthea_uros.uros.middleware.zenoh_pico import memory, messages, pools
+
+#: In each lease (`Z_TRANSPORT_LEASE_EXPIRE_FACTOR` in CMakeLists.txt of eclipse-zenoh/zenoh-pico).
+_KEEP_ALIVES = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,15 +41,15 @@ class ZenohPico:
 
     def waiting(self, middleware: Middleware) -> Waiting:
         """How an executor waits; its queues are lists on the heap, without a limit."""
-        return figures.waiting(self.data, self.data.waiting.slots)
+        return figures.waiting(self.data, None)
 
     def sending(self, middleware: Middleware) -> Sending:
         """How messages are sent: the transport acknowledges them, nobody waits for that."""
-        how = self.data.sending
+        how, stated = self.data.sending, middleware.reliable.timeout
         return Sending(
             waits=how.waits and middleware.reliable.waits,
-            timeout=how.timeout if middleware.reliable.timeout is None else middleware.reliable.timeout,
-            resends_after=how.resends_after,
+            timeout=self._time("Z_CONFIG_SOCKET_TIMEOUT", middleware) if stated is None else stated,
+            resends_after=None,
             holds_session_while_waiting=how.holds_session_while_waiting,
             drops_when_busy=how.drops_when_busy,
             is_protected=how.is_protected,
@@ -62,8 +65,7 @@ class ZenohPico:
 
     def heartbeat(self, middleware: Middleware) -> tuple[int, Time] | None:
         """Length and interval of messages that keep the connection alive."""
-        interval = self.data.sending.heartbeat
-        return None if interval is None else (figures.size(self.data, "heartbeat"), interval)
+        return figures.size(self.data, "heartbeat"), self._time("Z_TRANSPORT_LEASE", middleware) // _KEEP_ALIVES
 
     def gives_up_after(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Time | None:
         """Time after which a sender stops waiting for an acknowledgement, if it does at all."""
@@ -84,8 +86,11 @@ class ZenohPico:
 
     def options(self, application: Application, middleware: Middleware) -> Sequence[Option]:
         """Its build options."""
-        return pools.options(application, middleware, self.data)
+        return pools.options(application, middleware, self.data.options)
+
+    def _time(self, option: str, middleware: Middleware) -> Time:
+        return figures.option(self.options(Application(), middleware), option) * MILLISECOND
 
     def memory(self, application: Application, middleware: Middleware) -> Sequence[MemoryUse]:
         """What it occupies."""
-        return memory.memory(application, middleware, self.data)
+        return memory.memory(application, middleware, self.data.options)
