@@ -44,7 +44,8 @@ TRANSPORTS = {
     WireKind.CAN: f"can: {{bitrate: 1 Mbit/s, identifiers: {{odom_topic: 0x10}}, {INTERRUPT}}}",
     WireKind.CUSTOM: f"custom: {{table: [{{size: 512 B, time: {{min: 200 us, max: 900 us}}}}], {INTERRUPT}}}",
 }
-EXECUTORS = ["period: 10 ms", "loop: {spin: 1 s}", "loop: {spin_some: 100 ms, sleep: 10 ms}"]
+#: Rounds of executors that wait for acknowledgements without a sleep can follow each other at once: nothing behind them has a bound.
+EXECUTORS = ["period: 10 ms", "loop: {spin_some: 100 ms, sleep: 10 ms}"]
 
 
 @pytest.mark.parametrize(("kind", "executor"), every(9, [(kind, each) for kind in TRANSPORTS for each in EXECUTORS]))
