@@ -77,7 +77,6 @@ class Transmission(Named):
     driver : time in the driver of the controller after its receipt that is not execution time, such as waiting for ticks; while it is
         sent, the driver keeps the wire busy, so that this time is part of that on the wire
     processes : that a message passes before the executor sees it: interrupt service routines, then tasks of the middleware
-    keeps_sender : whether the thread of the controller that sends it waits until it is on the wire
     agent : time in the agent: from the host to the wire, from the wire to the host, or from a message to its acknowledgement
     """
 
@@ -90,7 +89,6 @@ class Transmission(Named):
     link: Span = field(default_factory=lambda: Span(most=0))
     driver: Span = field(default_factory=lambda: Span(most=0))
     processes: tuple[str, ...] = ()
-    keeps_sender: bool = False
     agent: Span = field(default_factory=Span)
 
 

@@ -170,9 +170,9 @@ class MiddlewareTask(Section):
     """A task or thread of the middleware, beside the executors."""
 
     name: Name
-    """Name of the task, as the middleware calls it: see `amuros explain` of its profile."""
+    """Name of the task: that of a thread of the profile, or of a task of this port that receives messages."""
     priority: Priority | None = None
-    """Its priority; default: that of the profile."""
+    """Its priority; default: that of the profile, if it has one."""
     core: Name | None = None
     """Its core; default: that of the first executor."""
     execution_time: MessageCost | None = None

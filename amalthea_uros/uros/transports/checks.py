@@ -102,18 +102,22 @@ def check_lengths(messages: Iterable[WireMessage], line: Line, notes: Notes) -> 
     """Report messages that the transport cannot carry, or that its receive buffer cannot hold, and what writing costs."""
     messages = tuple(messages)
     for message in messages:
-        length = max(part.length for part in message.parts)
-        if line.largest is not None and length > line.largest:
-            topic = message.message.topic
-            text = f"{topic!r} needs {length} bytes in one message of the transport, which carries {line.largest} at most"
-            advice = "Send a smaller message, or send it reliably, so that it is fragmented."
-            if line.key == "custom":
-                advice = f"Add a row for {length} B to 'table', or send a smaller message."
-            notes.error("UR134", text, message.message.origin, advice)
+        _check_length(message, line, notes)
     driver = driver_of(line)
     if driver is not None:
         _check_buffer(messages, line, driver, notes)
         _check_chunks(messages, line, notes)
+
+
+def _check_length(message: WireMessage, line: Line, notes: Notes) -> None:
+    """Report a message that the transport cannot carry; that best-effort messages are too long for the middleware is reported there."""
+    length, topic = max(part.length for part in message.parts), message.message.topic
+    is_custom = isinstance(line.section, CustomTransport)
+    if line.largest is None or length <= line.largest or not (is_custom or message.message.reliable):
+        return
+    text = f"{topic!r} needs {length} bytes in one message of the transport, which carries {line.largest} at most"
+    row = f"Add a row for {length} B to 'table', or send a smaller message."
+    notes.error("UR134", text, message.message.origin, row if is_custom else "Send a smaller message.")
 
 
 def _check_buffer(messages: Iterable[WireMessage], line: Line, driver: Driver, notes: Notes) -> None:

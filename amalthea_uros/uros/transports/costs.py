@@ -12,9 +12,8 @@ from amalthea_uros.units import Time
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.middleware.load import profile_of
 from amalthea_uros.uros.transports.choice import driver_of, line_of
-from amalthea_uros.uros.transports.driver import busy_time
-from amalthea_uros.uros.transports.framing import longest_frame, reads
-from amalthea_uros.uros.transports.line import Line
+from amalthea_uros.uros.transports.framing import least_frame, longest_frame, reads
+from amalthea_uros.uros.transports.line import Line, time_on
 from amalthea_uros.uros.transports.messages import opposite, wire_messages
 
 
@@ -36,22 +35,31 @@ def driver_costs(description: Description, callback: Callback, direction: Direct
 
 
 def _of_part(length: int, direction: Direction, line: Line, driver: Driver) -> Iterator[ExecutionTime | Time]:
+    """The parts for a message of the middleware; escaped bytes need more calls and time."""
     cost = driver.write_cost if direction is Direction.TO_AGENT else driver.read_cost
+    sizes = (least_frame(length), longest_frame(length)) if _is_framed(line) else (length, length)
     if cost.fixed is not None:
-        yield from [cost.fixed] * _calls(length, direction, line)
+        least, most = _calls(sizes, direction, line, length)
+        yield from [cost.fixed] * least
+        yield from [_between(0, cost.fixed.max) if cost.fixed.max is not None else cost.fixed] * (most - least)
     if cost.per_byte:
-        yield cost.per_byte * (longest_frame(length) if _is_framed(line) else length)
-    if busy := busy_time(line.frames(length, direction), line.ticks_per_second, direction, driver):
-        yield busy
+        yield _between(cost.per_byte * sizes[0], cost.per_byte * sizes[1])
+    if (driver.write if direction is Direction.TO_AGENT else driver.read) == "polling":
+        yield _between(*time_on(line, line.frames(length, direction)))
+
+
+def _between(least: Time, most: Time) -> ExecutionTime | Time:
+    return most if least == most else ExecutionTime.model_construct(min=least, max=most)
+
+
+def _calls(sizes: tuple[int, int], direction: Direction, line: Line, length: int) -> tuple[int, int]:
+    """The least and the most calls for a frame."""
+    if direction is Direction.TO_AGENT:
+        frames = line.frames(length, direction)
+        return sum(frame.least > 0 for frame in frames), len(frames)
+    return (reads(sizes[0])[0], reads(sizes[1])[1]) if _is_framed(line) else (1, 1)
 
 
 def _is_framed(line: Line) -> bool:
     section = line.section
     return isinstance(section, Serial | UsbCdc) or (isinstance(section, CustomTransport) and section.framing)
-
-
-def _calls(length: int, direction: Direction, line: Line) -> int:
-    """The most calls for a message of the middleware."""
-    if direction is Direction.TO_AGENT:
-        return len(line.frames(length, direction))
-    return reads(longest_frame(length))[1] if _is_framed(line) else 1

@@ -31,7 +31,7 @@ class CustomLine:
     def largest(self) -> int:
         """See `Line`: that of the last row."""
         last = self.section.table[-1].size // 8
-        return (last - 1) // 2 + 1 - OVERHEAD if self.section.framing else last
+        return max(0, (last - 1) // 2 + 1 - OVERHEAD) if self.section.framing else last
 
     def frames(self, length: int, direction: Direction) -> Sequence[Frame]:
         """See `Line`: one frame."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from amalthea_uros.perf.network import Direction, Span
+from amalthea_uros.perf.network import Span
 from amalthea_uros.spec.transports import Driver
 from amalthea_uros.units import SECOND, Time
 from amalthea_uros.uros.transports.line import Frame
@@ -54,12 +54,6 @@ def read_wait(calls: int, driver: Driver, tick: Time | None) -> Span:
     if driver.read != "dma":
         return Span(most=0)
     return Span(most=None if tick is None else calls * tick)
-
-
-def busy_time(frames: Sequence[Frame], ticks_per_second: int, direction: Direction, driver: Driver) -> Time:
-    """Execution time that moving a message takes: all of the time on the wire if the processor copies each byte, else none."""
-    mode = driver.write if direction is Direction.TO_AGENT else driver.read
-    return -(-sum(frame.most for frame in frames) * SECOND // ticks_per_second) if mode == "polling" else 0
 
 
 def bytes_between_reads(baud_rate: int, bits_per_byte: int, gap: Time) -> int:

@@ -238,7 +238,6 @@ class Queueing:
             link=self.line.link,
             driver=_sum(self.line.reading(part) for part in parts) if is_received else _AT_ONCE,
             processes=self.receivers if is_received else (),
-            keeps_sender=not is_received and keeps_sender(self.line),
             agent=agent,
         )
 

@@ -1,0 +1,135 @@
+"""What applications ask too much of their middleware: messages, histories, and threads that wait for each other."""
+
+import pytest
+
+from amalthea_uros.units import MILLISECOND, SECOND
+
+TEXT = """
+amuros: 1
+name: app
+hardware: {{platform: generic, frequency: 160 MHz}}
+middleware:
+  {middleware}
+  transport: {{{transport}}}
+  agent: {{acknowledgement: 2 ms}}
+application:
+  nodes:
+    - name: node
+      publishers:
+        - {{topic: state, message_size: {size}, reliability: {reliability}}}
+      subscriptions:
+        - {{name: Cmd, topic: cmd, rate: 20 Hz, message_size: {received}, execution_time: 4 us{more}}}
+      services:
+        - {{name: Ask, rate: 1 Hz, request_size: 8 B, response_size: 8 B, execution_time: 4 us}}
+      timers:
+        - {{name: Report, period: 10 ms, execution_time: 4 us, publishes: [state]{timer}}}
+"""
+LOOP = "executor: {loop: {spin_some: 80 ms}}"
+
+
+def app(middleware=LOOP, transport="", size="8 B", reliability="best-effort", received="8 B", more="", timer=""):
+    return TEXT.format(
+        middleware=middleware,
+        transport=transport,
+        size=size,
+        reliability=reliability,
+        received=received,
+        more=more,
+        timer=timer,
+    )
+
+
+def reported(author, rule, **keys):
+    return [
+        (str(finding.severity), finding.message) for finding in author.describe(app(**keys)).findings if finding.rule == rule
+    ]
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"size": "500 B"}, None),
+        ({"size": "501 B"}, "a message of 'state' has 501 B, but at most 500 B can be sent best effort"),
+        ({"size": "40 kB"}, "a message of 'state' has 40000 B, but at most 500 B can be sent best effort"),
+        ({"size": "40 kB", "reliability": "reliable"}, None),
+        (
+            {"size": "66 kB", "reliability": "reliable"},
+            "a message of 'state' has 66000 B, but at most 65528 B can be sent reliably",
+        ),
+        # (512 - 12) * 4 - 8
+        ({"received": "1992 B"}, None),
+        ({"received": "1993 B"}, "a message of 'cmd' has 1993 B, but at most 1992 B can be received reliably"),
+    ],
+)
+def test_messages_that_are_too_long(author, keys, message):
+    if message is None:
+        assert reported(author, "UR121", **keys) == []
+    else:
+        assert [(rule, found) for _, rule, found in author.findings(app(**keys))] == [("UR121", message)]
+
+
+def test_histories_are_shared(author):
+    # Reliable messages have a depth of 10 by default; the pool has 8 slots.
+    ((severity, message),) = reported(author, "UR125")
+    assert severity == "info"
+    assert message.startswith(
+        "by default, the histories of 'Cmd', 'Ask' are deeper than the storage for messages of all callbacks, 8: "
+    )
+    enough = LOOP + "\n  limits: {RMW_UXRCE_MAX_HISTORY: 10}"
+    assert reported(author, "UR125", middleware=enough) == []
+    ((severity, message),) = reported(author, "UR125", middleware=enough, more=", depth: 11, history: keep-all")
+    assert severity == "warning"
+    assert message == (
+        "the history of 'Cmd' is 11 messages deep, but only 10 can be stored for all callbacks: "
+        "a new message of any topic is dropped instead of more being kept"
+    )
+
+
+def test_a_lost_message_is_sent_again_only_without_input(author):
+    # Messages every 50 ms; the client asks after 100 ms without any.
+    found = reported(author, "UR124", transport="loses_messages: true", reliability="reliable")
+    text = "waits up to 1 s: it is sent again after 100 ms without input, but 'cmd' can arrive every 50 ms"
+    assert [message for _, message in found] == [
+        f"if a message of 'Ask' is lost, 'Ask' {text}",
+        f"if a message of 'state' is lost, 'Report' {text}",
+    ]
+    often = LOOP + "\n  limits: {UCLIENT_MIN_HEARTBEAT_TIME_INTERVAL: 50 ms}"
+    assert reported(author, "UR124", transport="loses_messages: true", reliability="reliable", middleware=often) == []
+
+
+def test_threads_of_one_session(author):
+    unprotected = "several threads use the middleware, but it is built for one: nothing protects its session"
+    assert reported(author, "UR124") == []
+    assert reported(author, "UR124", timer=", runs_in: own-task") == [("warning", unprotected)]
+    two = "executors: [{name: A, loop: {spin_some: 80 ms}}, {name: B, loop: {spin: 1 s}}]"
+    assert reported(author, "UR124", middleware=two, timer=", runs_in: B") == [("warning", unprotected)]
+    held = "a thread that waits for messages keeps the session for up to 1 s; others that send wait for it: 'Ask', 'Report'"
+    several = two + "\n  multithread: true"
+    assert reported(author, "UR124", middleware=several, timer=", runs_in: B") == [("warning", held)]
+    zenoh = two + "\n  profile: zenoh-pico\n  tasks: [{name: zenoh_read, priority: 3}]"
+    assert reported(author, "UR124", middleware=zenoh, timer=", runs_in: B") == []
+
+
+def publications(author, **keys):
+    (executor,) = author.describe(app(**keys)).system.executors
+    return {handle.name: handle.publications for handle in executor.handles}
+
+
+def test_publications_of_callbacks(author):
+    found = publications(author, reliability="reliable", transport="serial: {baud_rate: 115200}")
+    assert found["Cmd"] == ()
+    (state,), (response,) = found["Report"], found["Ask"]
+    assert (state.topic, state.transmission) == ("state", "state_topic_from_Report")
+    assert (state.acknowledgement, state.waits, state.timeout) == ("state_topic_from_Report_acknowledgement", True, SECOND)
+    assert (response.topic, response.waits, response.timeout) == ("Ask", True, SECOND)
+
+
+def test_publications_that_nobody_waits_for(author):
+    (state,) = publications(author, transport="serial: {baud_rate: 115200}")["Report"]
+    assert (state.acknowledgement, state.waits, state.timeout) == (None, False, None)
+    # A port that does not wait is acknowledged nevertheless.
+    port = LOOP + "\n  reliable: {waits: false}"
+    (state,) = publications(author, transport="serial: {baud_rate: 115200}", reliability="reliable", middleware=port)["Report"]
+    assert (state.acknowledgement, state.waits) == ("state_topic_from_Report_acknowledgement", False)
+    (state,) = publications(author, reliability="reliable", middleware=LOOP + "\n  reliable: {timeout: 30 ms}")["Report"]
+    assert (state.transmission, state.acknowledgement, state.timeout) == (None, None, 30 * MILLISECOND)
