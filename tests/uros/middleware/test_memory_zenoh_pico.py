@@ -1,0 +1,37 @@
+"""The options and buffers of zenoh-pico."""
+
+import pytest
+
+from amalthea_uros.spec.application import Application
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.uros.middleware.zenoh_pico.memory import memory
+from amalthea_uros.uros.middleware.zenoh_pico.pools import options
+
+APPLICATION = Application.model_validate({"nodes": [{"name": "node"}]})
+
+
+def middleware(**keys):
+    return Middleware.model_validate({"profile": "zenoh-pico", **keys})
+
+
+def test_there_are_no_pools():
+    assert all(option.role == "setting" or option.role == "room" for option in options(APPLICATION, middleware(), {}))
+
+
+@pytest.mark.parametrize(
+    ("ware", "sizes"),
+    [
+        ({"transport": {"udp": {"bitrate": "10 Mbit/s"}}}, [2048, 2048]),
+        ({"transport": {"serial": {}}}, [1500, 2048]),  # the MTU of a serial link
+        ({"limits": {"BATCH_UNICAST_SIZE": "1 kB"}}, [1000, 1000]),
+    ],
+)
+def test_a_buffer_for_each_direction(ware, sizes):
+    assert [use.size for use in memory(APPLICATION, middleware(**ware), {})] == sizes
+
+
+def test_a_message_that_arrives_in_fragments_has_a_limit():
+    topic = {"name": "S", "topic": "s", "message_size": "4050 B", "rate": "1 Hz", "execution_time": "1 us"}
+    application = Application.model_validate({"nodes": [{"name": "node", "subscriptions": [topic]}]})
+    (option,) = (each for each in options(application, middleware(), {}) if each.name == "FRAG_MAX_SIZE")
+    assert option.is_exceeded  # 4050 B and up to 50 B of headers, in 4096 B
