@@ -19,8 +19,8 @@ from amalthea_uros.uros.pools import option_table, options_of, static_memory_of
 #: So many are reported of a file; more of them say nothing new.
 MAX_FINDINGS = 100
 _COUNTED = (OptionRole.POOL, OptionRole.QUEUE)
-#: Options of rmw_microxrcedds that no figure depends on.
-_OTHERS = ("RMW_UXRCE_DEFAULT_", "RMW_UXRCE_IPV")
+#: Options that no figure depends on.
+_OTHERS = ("RMW_UXRCE_DEFAULT_", "RMW_UXRCE_IPV", "UCLIENT_PROFILE_", "UCLIENT_MAX_INPUT_", "UCLIENT_MAX_OUTPUT_")
 _MULTITHREAD = "UCLIENT_PROFILE_MULTITHREAD"
 
 
@@ -116,12 +116,11 @@ class _Comparison(Brief):
 
     def _misspelled(self, name: str) -> str | None:
         """Advice about a name that no option has; None if it may be one that is not known here."""
+        family = name.partition("_")[0]
+        if name.startswith(_OTHERS) or family not in {known.partition("_")[0] for known in self.table}:
+            return None
         near = self.suggestions.nearest(name, self.table)
-        question = f"Did you mean {near}?" if near else ""
-        if name.startswith("RMW_UXRCE_") and not name.startswith(_OTHERS):
-            return question or "Remove it."
-        prefixes = {known.partition("_")[0] for known in self.table}
-        return question if question and name.partition("_")[0] in prefixes and not name.startswith("UCLIENT_PROFILE_") else None
+        return f"Did you mean {near}?" if near else "Remove it." if name.startswith("RMW_UXRCE_") else None
 
     def _built(self) -> Middleware:
         """The middleware that is built with the file."""
@@ -166,7 +165,9 @@ class _Comparison(Brief):
     def _difference(self, option: Option, described: Option, place: Location) -> Iterator[Finding]:
         expected = value_of(described)
         value = described.available if expected is None else expected
-        if (described.is_stated or option.name in self.places) and option.available != value:
+        # Choices between words that the description leaves open change no figure.
+        matters = described.is_stated or (option.name in self.places and not option.words)
+        if matters and option.available != value:
             unit = f" {option.unit}" if option.unit else ""
             default = "" if option.name in self.places else " by default"
             message = (
