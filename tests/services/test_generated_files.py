@@ -289,7 +289,9 @@ def test_without_an_application_there_is_nothing_to_generate(tmp_path):
 
 def test_zenoh_has_options_for_cmake(tmp_path):
     app = tmp_path / "app.yaml"
-    text = RCLC.read_text().replace("middleware:\n", "middleware:\n  profile: zenoh-pico\n")
+    text = RCLC.read_text().replace(
+        "middleware:\n", "middleware:\n  profile: zenoh-pico\n  tasks: [{name: zenoh_read, priority: 5}]\n"
+    )
     app.write_text(text.replace("RMW_UXRCE_MTU: 512 B", "BATCH_UNICAST_SIZE: 1 kB, Z_FEATURE_BATCHING: false"))
     texts = generate(app).texts
     assert list(texts) == ["zenoh_options.cmake", "amuros_limits.h"]

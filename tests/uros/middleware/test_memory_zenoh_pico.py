@@ -35,3 +35,19 @@ def test_a_message_that_arrives_in_fragments_has_a_limit():
     application = Application.model_validate({"nodes": [{"name": "node", "subscriptions": [topic]}]})
     (option,) = (each for each in options(application, middleware(), {}) if each.name == "FRAG_MAX_SIZE")
     assert option.is_exceeded  # 4050 B and up to 50 B of headers, in 4096 B
+
+
+def test_its_thread_has_a_stack(author):
+    memory = author.describe("""
+        amuros: 1
+        name: app
+        hardware: {platform: single-core, frequency: 100 MHz}
+        middleware:
+          profile: zenoh-pico
+          executor: {period: 10 ms, stack: 4 kB}
+          tasks: [{name: zenoh_read, priority: 5, stack: 2 kB}]
+        application:
+          nodes: [{name: node, timers: [{name: T, period: 10 ms, execution_time: 1 us, runs_in: executor}]}]
+    """).memory
+    assert {user.name: user.size for user in memory.stacks.users} == {"Executor_Task": 4000, "zenoh_read": 2000}
+    assert (memory.total, memory.is_complete) == (2048 + 2048 + 6000, True)
