@@ -31,6 +31,7 @@ def test_larger_than_necessary_is_no_failure(tmp_path):
 def test_exactly_one_of_both_is_asked_for(tmp_path):
     assert amuros("generate", APP).returncode == 2
     assert amuros("generate", APP, "-o", tmp_path, "--check", APP).returncode == 2
+    assert amuros("generate", APP, "-o", "-", cwd=tmp_path).returncode == 2
 
 
 def test_a_folder_that_cannot_be_made(tmp_path):

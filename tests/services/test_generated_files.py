@@ -298,3 +298,13 @@ def test_zenoh_has_options_for_cmake(tmp_path):
     found = re.findall(r"^set\((\w+) (\d+) CACHE STRING", texts["zenoh_options.cmake"], re.MULTILINE)
     assert found == [("BATCH_UNICAST_SIZE", "1000"), ("Z_FEATURE_BATCHING", "0")]
     assert "rmw_microxrcedds" not in texts["amuros_limits.h"]
+
+
+def test_results_are_tables(tmp_path):
+    result = generate(RCLC, tmp_path)
+    rows = {row["option"]: (row["generated"], row["described"]) for row in result.to_records()}
+    assert rows["RMW_UXRCE_MAX_TOPICS"] == ("3", "8")
+    assert "RMW_UXRCE_MAX_TOPICS" in str(result)
+    check = check_colcon_meta(RCLC, tmp_path / "colcon.meta")
+    assert (check.to_records(), check.is_fine) == ([], True)
+    assert "holds for" in str(check)
