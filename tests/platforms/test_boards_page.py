@@ -71,7 +71,7 @@ def system(name):
     return row(
         f"`{name}`",
         rtos.title,
-        os.priorities.partition("-")[0],
+        (os.priorities or "").partition("-")[0],
         f"{os.priority_range.lowest} to {os.priority_range.highest}" if os.priority_range else "",
         time_text(os.tick) if os.tick else "",
         "" if os.time_slice is None else f"take turns after {time_text(os.time_slice)}" if os.time_slice else "in order",
