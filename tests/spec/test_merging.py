@@ -98,6 +98,17 @@ def test_a_value_of_the_platform_has_its_location_there(completed):
     assert executor.location("core") == executor.location()
 
 
+@pytest.mark.parametrize(
+    ("hardware", "os", "line"), [("esp32", "{tick: 1 ms}", 3), ("{platform: esp32}", "{}", 3), ("esp32", "{rtos: zephyr}", 4)]
+)
+def test_a_value_of_a_file_that_comes_with_amuros_has_the_location_of_its_name(tmp_path, hardware, os, line):
+    (tmp_path / "app.yaml").write_text(APPLICATION.format(f"os: {os}").replace("./mine.yaml", hardware))
+    whole = complete(read_description(tmp_path / "app.yaml"), tmp_path).description
+    executor = whole.middleware.executor
+    for location in (executor.location(), executor.location("stack"), executor.loop.location("sleep"), whole.os.location("stack")):
+        assert (location.path.name, location.line) == ("app.yaml", line)
+
+
 def test_two_applications_share_one_generic_model(tmp_path):
     generic = PLATFORM.replace("loop: {spin_some: 100 ms, sleep: 10 ms}", "period: 5 ms")
     (tmp_path / "mine.yaml").write_text(generic)
