@@ -26,18 +26,19 @@ TASKS = """
     ("sleep", "tick", "ticks", "expected"),
     [
         # vTaskDelay(1) ends at the next tick, which may come at once.
-        (10 * MS, 10 * MS, {"early": 1}, (0, 10 * MS)),
-        (100 * MS, 10 * MS, {"early": 1}, (90 * MS, 100 * MS)),
+        # The ends of two such sleeps are different ticks.
+        (10 * MS, 10 * MS, {"early": 1}, (0, 10 * MS, 10 * MS)),
+        (100 * MS, 10 * MS, {"early": 1}, (90 * MS, 100 * MS, 100 * MS)),
         # 15 ms are two ticks of 10 ms.
-        (15 * MS, 10 * MS, {"early": 1}, (10 * MS, 20 * MS)),
+        (15 * MS, 10 * MS, {"early": 1}, (10 * MS, 20 * MS, 20 * MS)),
         # Zephyr waits for a tick more, as the one that is running does not count: 250 us are three ticks of 100 us.
-        (250 * MICROSECOND, 100 * MICROSECOND, {"late": 1}, (300 * MICROSECOND, 400 * MICROSECOND)),
+        (250 * MICROSECOND, 100 * MICROSECOND, {"late": 1}, (300 * MICROSECOND, 400 * MICROSECOND, 300 * MICROSECOND)),
         # Of an unknown operating system both can be the case.
-        (10 * MS, 10 * MS, None, (0, 20 * MS)),
+        (10 * MS, 10 * MS, None, (0, 20 * MS, 10 * MS)),
         # Less than a tick early can not become negative, and no sleep is none.
-        (1 * MS, 10 * MS, {"early": 2}, (0, 10 * MS)),
-        (0, 10 * MS, {"late": 1}, (0, 0)),
-        (15 * MS, None, None, (15 * MS, 15 * MS)),
+        (1 * MS, 10 * MS, {"early": 2}, (0, 10 * MS, 10 * MS)),
+        (0, 10 * MS, {"late": 1}, (0, 0, 0)),
+        (15 * MS, None, None, (15 * MS, 15 * MS, 15 * MS)),
     ],
 )
 def test_a_sleep_is_counted_in_ticks(sleep, tick, ticks, expected):
